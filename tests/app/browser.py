@@ -68,13 +68,9 @@ main()
 @contextmanager
 def explorer_process(*words):
     """The address of an explorer, and its process."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", _SERVE, "app", "--no-browser", "--port", "0", *words],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-    )
+    command = [sys.executable, "-c", _SERVE, "app", "--no-browser", "--port", "0", *words]
+    streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    process = subprocess.Popen(command, **streams, encoding="utf-8")
     try:
         lines = []
         for line in process.stdout:
@@ -92,13 +88,6 @@ def explorer_process(*words):
 def pressure(preset="hip-28", force=3000.0, **changes):
     """Largest pressure that the page is to show."""
     return float(bs.Exact().press(replace(bs.joints[preset], **changes), force=force).max_pressure)
-
-
-@contextmanager
-def served_explorer(*words):
-    """The address of an explorer in a process of its own."""
-    with explorer_process(*words) as (address, _):
-        yield address
 
 
 def expect(locator):

@@ -6,7 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import User, opened_browser, opened_profile, served_explorer
+from .browser import User, explorer_process, opened_browser, opened_profile
 
 _LOOP = pytest.StashKey()
 
@@ -37,7 +37,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def address():
-    with served_explorer("--origin", "hips.example.org:8443") as served:
+    with explorer_process("--origin", "hips.example.org:8443") as (served, _):
         yield served
 
 

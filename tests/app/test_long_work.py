@@ -243,12 +243,6 @@ class Square(LongView):
         self.page.channel.put("#press-numbers", "" if result is None else f"{result:g}")
 
 
-class Automatic(Square):
-    """View that runs without a click."""
-
-    automatic = True
-
-
 @pytest.fixture
 def jobs(monkeypatch):
     """Jobs that run when they are told to; the works that were asked for."""
@@ -278,8 +272,9 @@ def finish(job, key, work):
         job._heard(key, RunFinished(value))
 
 
-def opened(monkeypatch, kind):
-    monkeypatch.setattr(session, "view_class", lambda name: kind)
+def opened(monkeypatch, automatic=False):
+    monkeypatch.setattr(session, "view_class", lambda name: Square)
+    monkeypatch.setattr(Square, "automatic", automatic)
     return Page("")
 
 
@@ -292,7 +287,7 @@ def button(page):
 
 
 def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkeypatch, jobs):
-    page = opened(monkeypatch, Square)
+    page = opened(monkeypatch)
     assert button(page)["label"] == "Square the force"
     assert not jobs
     with pytest.raises(ValueError, match="press 'Square the force' first"):
@@ -314,7 +309,7 @@ def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkey
 
 
 def test_a_result_is_shown_to_the_next_page_that_asks_for_it(monkeypatch, jobs):
-    edits(opened(monkeypatch, Square), "press.run", True)
+    edits(opened(monkeypatch), "press.run", True)
     finish(*jobs[-1])
     page = Page("")
     assert shown(page, "numbers") == "9e+06"
@@ -324,7 +319,7 @@ def test_a_result_is_shown_to_the_next_page_that_asks_for_it(monkeypatch, jobs):
 
 
 def test_work_that_is_cancelled_ends_and_is_not_begun_again_by_itself(monkeypatch, jobs):
-    page = opened(monkeypatch, Automatic)
+    page = opened(monkeypatch, automatic=True)
     assert len(jobs) == 1
     answer = edits(page, "press.run", False)["=press.run"]
     assert (answer["share"], answer["words"]) == (None, "Cancelled.")
@@ -335,7 +330,7 @@ def test_work_that_is_cancelled_ends_and_is_not_begun_again_by_itself(monkeypatc
 
 
 def test_work_that_is_refused_says_why_and_keeps_the_result(monkeypatch, jobs):
-    page = opened(monkeypatch, Automatic)
+    page = opened(monkeypatch, automatic=True)
     finish(*jobs[-1])
     edits(page, "load", 6000)
     finish(*jobs[-1])
@@ -344,11 +339,9 @@ def test_work_that_is_refused_says_why_and_keeps_the_result(monkeypatch, jobs):
     assert "earlier design" in shown(page, "earlier")
 
 
-@pytest.mark.parametrize(
-    ("elapsed", "share", "left"), [(0.5, 0.5, ""), (10.0, 0.25, ", about 30 s left"), (10.0, 0.99, "")]
-)
-def test_the_time_left_is_that_of_the_share_so_far(elapsed, share, left):
-    assert long_view._with_time_left(Reached(share=share, words="wear"), elapsed) == f"wear{left}"
+def test_the_time_left_is_that_of_the_share_so_far():
+    for elapsed, share, left in ((0.5, 0.5, ""), (10.0, 0.25, ", about 30 s left"), (10.0, 0.99, "")):
+        assert long_view._with_time_left(Reached(share=share, words="wear"), elapsed) == f"wear{left}"
 
 
 def test_a_store_of_results_is_bounded_in_number_bytes_and_time(monkeypatch):

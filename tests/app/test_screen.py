@@ -45,11 +45,8 @@ def screen_with(query="preset=hip-28", **changes):
 lengths = st.floats(1e-3, 1e3)
 names = st.text(st.characters(exclude_categories=("Cc", "Cs")), max_size=8)
 presets, moduli = st.sampled_from(list(materials.values())), st.floats(1.0, 1e6)
-made_materials = st.one_of(
-    presets,
-    st.builds(bs.Material, young=moduli, poisson=st.floats(-0.9, 0.5)),
-    st.builds(lambda one, young: replace(one, young=young), presets, moduli),
-)
+changed_presets = st.builds(lambda one, young: replace(one, young=young), presets, moduli)
+made_materials = presets | st.builds(bs.Material, young=moduli, poisson=st.floats(-0.9, 0.5)) | changed_presets
 layers = st.builds(bs.Layer, thickness=lengths, material=made_materials)
 made_joints = st.builds(
     bs.Joint,
@@ -63,43 +60,34 @@ made_joints = st.builds(
     name=names,
     source=names,
 )
-cups = st.builds(
-    Cup,
-    arc_of_cover=st.floats(0.8, 5.9),
-    chamfer=st.floats(0.0, 2.0),
-    interface=st.sampled_from(Interface),
-    inclination=st.floats(0.0, pi / 2),
-    anteversion=st.floats(-pi / 2, pi / 2),
-    side=st.sampled_from(Side),
-)
-loads = st.one_of(
-    st.fixed_dictionaries({"force": st.floats(1e-3, 1e5)}),
-    st.fixed_dictionaries({"indentation": st.floats(1e-6, 1.0)}),
-    st.fixed_dictionaries({"half_angle": st.floats(0.01, 1.5)}),
-)
+cup_sizes = {"arc_of_cover": st.floats(0.8, 5.9), "chamfer": st.floats(0.0, 2.0)}
+orientation = {"inclination": st.floats(0.0, pi / 2), "anteversion": st.floats(-pi / 2, pi / 2)}
+choices = {"interface": st.sampled_from(Interface), "side": st.sampled_from(Side)}
+cups = st.builds(Cup, **cup_sizes, **orientation, **choices)
+load_ranges = {"force": (1e-3, 1e5), "indentation": (1e-6, 1.0), "half_angle": (0.01, 1.5)}
+loads = st.one_of(*(st.fixed_dictionaries({name: st.floats(*ends)}) for name, ends in load_ranges.items()))
 models = st.sampled_from(list(bs.catalogue))
 ways = st.tuples(*3 * (st.floats(-1e3, 1e3),)).filter(lambda way: any(abs(each) > 1e-3 for each in way))
 aims = st.one_of(st.just({}), st.builds(lambda way: {"direction": way}, ways), st.just({"tilt": 0.5}))
 made_files = st.builds(JointFile, made_joints, loads, cups, aims)
 axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force"), ("liner_poisson", "outer_radius")])
 
+CHOICES = "view", "map_model", "angle", "size", "theme"
+
 
 @st.composite
 def screens(draw):
     ends = st.tuples(lengths, lengths).filter(lambda pair: pair[0] < pair[1])
     across, up = (MapAxis(name=name, low=low, high=high) for name in draw(axes) for low, high in [draw(ends)])
+    drawn = {name: draw(st.sampled_from(getattr(screen_module, f"{name.upper()}S"))) for name in CHOICES}
     return Screen(
-        view=draw(st.sampled_from(screen_module.VIEWS)),
         file=draw(made_files),
         beside=tuple(draw(st.lists(made_files, max_size=2))),
         shown=tuple(draw(st.lists(models, max_size=3, unique=True))),
         answered_by=draw(models),
         across=across,
         up=up,
-        map_model=draw(st.sampled_from(screen_module.MAP_MODELS)),
-        angle=draw(st.sampled_from(screen_module.ANGLES)),
-        size=draw(st.sampled_from(screen_module.SIZES)),
-        theme=draw(st.sampled_from(screen_module.THEMES)),
+        **drawn,
     )
 
 

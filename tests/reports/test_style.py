@@ -1,5 +1,7 @@
-"""One model has one line, wherever it is drawn."""
+"""One model has one line, wherever it is drawn; the report of the paper stands alone, its numbers beside it."""
 
+import csv
+import json
 import re
 from importlib.util import find_spec
 from itertools import combinations
@@ -10,14 +12,16 @@ from matplotlib.colors import to_hex, to_rgb
 import ballsocket as bs
 from ballsocket.catalogue import judge
 from ballsocket.compare import force_curves
+from ballsocket.paper import claims, curves
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
-from ballsocket.reports import style
-from ballsocket.reports.paper_report import draw
+from ballsocket.reports import accuracy_results, paper_report, style
+from ballsocket.reports.paper_report import draw, write_report
 from ballsocket.reports.press_plots import press_figure
 from ballsocket.reports.style import INK, LineStyle, line_of
 
 from ..joints import HIP
+from ..places import DATA
 
 MODELS = [*bs.catalogue, judge.name]
 PAPERS = [*quick_plan().parts["figure_3"], judge.name]
@@ -100,3 +104,49 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
         line = pressed[name]
         assert colour == ("var(--text)" if line.colour == INK else line.colour)
         assert dash == " ".join(f"{2 * length:g}" for length in line.dash)
+
+
+ACCURACY = json.loads((DATA / "accuracy.json").read_text(encoding="utf-8"))
+EXACT = bs.Exact(tolerance=1e-4)
+FEW = {name: bs.catalogue[name] for name in ("hess-forsbach", "exact")}
+JUDGED = {
+    "about": ["By the exact solution."],
+    "claims": [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
+    "elsewhere": [],
+    "table_3": [],
+    "accuracy": [ACCURACY],
+}
+
+
+def read_table(path):
+    with path.open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def check_page(path, *texts):
+    page = path.read_text(encoding="utf-8")
+    assert all(text in page for text in ("src='data:image/png;base64,", *texts))
+    assert not any(text in page for text in ("<script", "src='http"))
+
+
+def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch):
+    monkeypatch.setattr(paper_report, "_write_picture", lambda *words: b"picture")  # drawn in the long form
+    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1")
+    worst = max(read_table(tmp_path / "accuracy.csv"), key=lambda row: float(row["worst"]))
+    assert worst["model"] == "cosine-limit"
+    assert json.loads((tmp_path / "accuracy.json").read_text(encoding="utf-8")) == ACCURACY
+    assert (tmp_path / "accuracy.md").read_text(encoding="utf-8") == accuracy_results.markdown(ACCURACY)
+
+
+@pytest.mark.long
+def test_the_figures_and_tables_of_the_paper_are_in_the_report(tmp_path):
+    pieces = quick_plan().parts
+    computed = {
+        "elsewhere": [pieces["elsewhere"]["half_angles_of_jin"]()],
+        "table_3": [pieces["table_3"]["exact 0.4"]()],
+        "figure_3": [curves.figure_3_or_4(3, {name: model}).summary() for name, model in FEW.items()],
+        "figure_6": [curves.figure_6("hess-forsbach", bs.HessForsbach(), points=7).summary()],
+    }
+    check_page(write_report({**JUDGED, **computed}, tmp_path), "Figure 3", "Table 3", "hess-forsbach", "Jin")
+    assert {row["model"] for row in read_table(tmp_path / "figure_3.csv")} == set(FEW)
+    assert (tmp_path / "figure_6.svg").stat().st_size > 5000
