@@ -1,7 +1,4 @@
-"""A browser and a running explorer, and somebody who uses them: what they do, and what they see.
-
-On a machine without a browser these tests skip.
-"""
+"""A browser, a running explorer, a line that fails, and somebody at the page; without a browser these tests skip."""
 
 import asyncio
 import os
@@ -10,8 +7,9 @@ import shutil
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
+from threading import Event, Thread
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -86,12 +84,10 @@ def explorer_process(*words):
 
 
 def pressure(preset="hip-28", force=3000.0, **changes):
-    """Largest pressure that the page is to show."""
     return float(bs.Exact().press(replace(bs.joints[preset], **changes), force=force).max_pressure)
 
 
 def expect(locator):
-    """What Playwright waits for."""
     from playwright.sync_api import expect
 
     return expect(locator)
@@ -156,14 +152,12 @@ class User:
         self.answered()
 
     def types(self, name, text):
-        """Fill the box of a number, and confirm it."""
         box = self.page.locator(f"[data-name={name}] input[type=text]")
         box.fill(text)
         box.press("Enter")
         return box
 
     def enters(self, name, text):
-        """Type a number, and wait for the answer."""
         box = self.types(name, text)
         self.answered()
         return box
@@ -185,7 +179,6 @@ class User:
         return self.answered()
 
     def link(self):
-        """Names and values in the address."""
         query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
         return {name: values[0] for name, values in query.items()}
 
@@ -207,3 +200,94 @@ AT_REST = """async () => {
   return place.scrollWidth;
 }"""
 """The width of what is on the page, once twenty frames have changed nothing."""
+
+
+class Proxy:
+    """Proxy on its own port, in a thread of its own; `delay` is the latency in s towards the browser."""
+
+    def __init__(self, target):
+        self._target, self._ready = target, Event()
+        self._lines, self._tasks = set(), set()
+        self.delay = 0.0
+        self._thread = Thread(target=lambda: asyncio.run(self._serve()))
+        self._thread.start()
+        self._ready.wait(timeout=60)
+
+    async def _serve(self):
+        self._loop = asyncio.get_running_loop()
+        self._open, self._end = asyncio.Event(), asyncio.Event()
+        self._open.set()
+        server = await asyncio.start_server(self._connect, "127.0.0.1", 0)
+        self.address = f"http://127.0.0.1:{server.sockets[0].getsockname()[1]}/"
+        self._ready.set()
+        await self._end.wait()
+        server.close()
+        for line in self._lines:
+            line.transport.abort()
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    def _connect(self, reader, writer):
+        task = asyncio.ensure_future(self._relay(reader, writer))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _relay(self, reader, writer):
+        await self._open.wait()
+        try:
+            server_reader, server_writer = await asyncio.open_connection("127.0.0.1", self._target)
+        except OSError:
+            writer.close()
+            return
+        lines = {writer, server_writer}
+        self._lines |= lines
+        with suppress(OSError):
+            await asyncio.gather(self._copy(reader, server_writer), self._copy(server_reader, writer, late=True))
+        self._lines -= lines
+
+    async def _copy(self, reader, writer, late=False):
+        """Copy in order; each piece of data to the browser waits for the delay."""
+        waiting = asyncio.Queue()
+
+        async def send():
+            while (item := await waiting.get()) is not None:
+                moment, data = item
+                await asyncio.sleep(max(0.0, moment - self._loop.time()))
+                await self._open.wait()
+                writer.write(data)
+                await writer.drain()
+            writer.close()
+
+        sender = asyncio.ensure_future(send())
+        while data := await reader.read(65536):
+            waiting.put_nowait((self._loop.time() + late * self.delay, data))
+        waiting.put_nowait(None)
+        await sender
+
+    def stop(self):
+        """Stop all data without closing a connection, as a network without signal does."""
+        self._loop.call_soon_threadsafe(self._open.clear)
+
+    def go_on(self):
+        self._loop.call_soon_threadsafe(self._open.set)
+
+    def cut(self):
+        """Close all connections; new ones wait until `go_on`."""
+        self.stop()
+        for line in list(self._lines):
+            self._loop.call_soon_threadsafe(line.transport.abort)
+
+    def end(self):
+        """Close the port and all connections."""
+        self._loop.call_soon_threadsafe(self._end.set)
+        self._thread.join()
+
+
+@contextmanager
+def opened_proxy(address):
+    proxy = Proxy(int(address.rstrip("/").rpartition(":")[2]))
+    try:
+        yield proxy
+    finally:
+        proxy.end()

@@ -28,7 +28,6 @@ def violations(user):
 @pytest.mark.long
 @pytest.mark.parametrize(("view", "looks"), list(zip(VIEWS, cycle(_LOOKS), strict=False)))
 def test_a_page_fits_and_axe_finds_no_violation(browser, address, view, looks, tmp_path):
-    """One page takes two looks: its size and its theme change while it is open."""
     with opened_profile(browser, address, bypass_csp=True) as profile:
         user = User(profile, address).open(f"?view={view}&beside1.preset=hip-36&use.cycle=iso-14242-1")
         user.page.locator(".side").evaluate("(side) => { side.open = true; }")

@@ -16,8 +16,7 @@ from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
-from .browser import WAIT, User, opened_profile
-from .proxy import opened_proxy
+from .browser import WAIT, User, opened_profile, opened_proxy
 
 pytestmark = pytest.mark.long
 _NUMBERS = ("load", "clearance", "ball_radius", "liner_thickness")
@@ -216,7 +215,6 @@ def test_boxes_drawing_answer_and_link_agree(browser, address, seed):
 
 
 def test_messages_of_older_screens_change_nothing(browser, address):
-    """A message that arrives again, after those of a newer screen, is dropped."""
     messages = []
 
     def relay(line):

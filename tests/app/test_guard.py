@@ -47,13 +47,11 @@ class Wire:
         self.status = int(head.split()[1])
 
     def send(self, content, kind=TEXT):
-        """Send one frame."""
         size = len(content)
         length = bytes([0x80 | size]) if size < 126 else b"\xff" + struct.pack(">Q", size)
         self._line.sendall(bytes([0x80 | kind]) + length + bytes(4) + content)
 
     def ask(self, number, action, **words):
-        """Send one request of a page."""
         self.send(json.dumps({"n": number, "do": action, **words}).encode())
 
     def receive(self):
@@ -104,7 +102,6 @@ class Wire:
 
 @contextmanager
 def opened_wire(address, query=""):
-    """Connection with an open page."""
     with closing(Wire(address)) as wire:
         assert wire.status == 101
         wire.ask(1, "open", query=query)
@@ -133,7 +130,6 @@ def answer(address, path="/", method="GET", host=None, **headers):
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:5006", "127.0.0.1.evil.example"])
 @pytest.mark.parametrize("path", ["/", "/socket", "/assets/page.js", "/nothing"])
 def test_names_that_are_not_ours_are_refused(address, path, host):
-    """A page elsewhere whose name leads to this machine reads nothing from it."""
     response, body = answer(address, path, host=host)
     assert response.status == 403
     assert body == b"this server does not answer to that name; see --origin\n"
@@ -300,12 +296,10 @@ def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(address, w
 
 
 def megabytes(process="self"):
-    """Memory of a process in MB."""
     return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
 def clearance_of(number):
-    """One of a hundred clearances in mm."""
     return 0.05 + 0.001 * (number % 100)
 
 
@@ -395,7 +389,6 @@ class Someone:
         await self.line.write_message(json.dumps({"n": self.number, "do": what, **words}))
 
     async def asks(self, what, **words):
-        """Ask, and return the answer."""
         await self.says(what, **words)
         while True:
             text = await asyncio.wait_for(self.line.read_message(), 100)
@@ -423,7 +416,6 @@ async def until(condition):
 
 @in_loop
 async def test_work_in_a_thread_does_not_hold_the_server(served):
-    """Work that waits for the server to go on comes to its end."""
     went_on, found = Event(), []
     PageThread.current.set(PageThread())
     run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
@@ -476,7 +468,6 @@ async def test_a_closed_page_is_forgotten_at_once(served, broken):
 
 @in_loop
 async def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
-    """Sockets that ask for nothing are not pages, and the oldest of them are closed when there are too many."""
     monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
     silent = [await Someone(served).connect() for _ in range(4)]
     assert [await asyncio.wait_for(one.line.read_message(), 10) for one in silent[:2]] == [None, None]

@@ -7,8 +7,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import User, explorer_process, opened_profile, pressure
-from .proxy import opened_proxy
+from .browser import User, explorer_process, opened_profile, opened_proxy, pressure
 
 pytestmark = pytest.mark.long
 _SLACK = 1000
@@ -118,7 +117,6 @@ def test_a_loss_is_seen_after_two_seconds_of_silence_by_the_clock_of_the_page(br
 
 
 def test_quick_keys_on_a_handle_add_up_and_a_number_keeps_its_unit(browser, address):
-    """Before any answer comes: six steps of 50 N, then inches are chosen and millimetres are typed."""
     with opened_line(browser, address) as (proxy, user):
         proxy.stop()
         user.page.locator("[tabindex][data-drag=load]").first.focus()

@@ -60,7 +60,6 @@ def nothing_is_left_running():
 
 
 def presses_of(monkeypatch):
-    """The joints that this process solves by models that take long."""
     seen = []
     for kind in (Exact, PlaneLayer):
         own = kind._solve
@@ -79,7 +78,6 @@ SLOW = [
 
 @pytest.mark.parametrize("query", some(SLOW))
 def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
-    """None of its presses is made in the server's own process; the page says what it waits for."""
     seen = presses_of(monkeypatch)
     page = Page(query)
     page.leave()
@@ -90,7 +88,6 @@ def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
 
 
 def test_joints_as_people_make_them_are_pressed_at_once():
-    """A slider's answer does not take the way through another process."""
     for preset, joint in bs.joints.items():
         assert not any(heavy(joint, name) for name in bs.catalogue), preset
 
@@ -282,13 +279,9 @@ def shown(page, element):
     return page.channel.shown_value(f"#press-{element}") or ""
 
 
-def button(page):
-    return page.channel.shown_value("=press.run")
-
-
 def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkeypatch, jobs):
     page = opened(monkeypatch)
-    assert button(page)["label"] == "Square the force"
+    assert page.channel.shown_value("=press.run")["label"] == "Square the force"
     assert not jobs
     with pytest.raises(ValueError, match="press 'Square the force' first"):
         page.view.result(page.screen)
@@ -298,7 +291,7 @@ def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkey
     finish(*jobs[-1])
     assert "squaring" in messages[0]["=press.run"]["words"]
     assert shown(page, "numbers") == "9e+06"
-    assert button(page)["share"] is None
+    assert page.channel.shown_value("=press.run")["share"] is None
     edits(page, "load", 2000)
     assert "belong to an earlier design" in shown(page, "earlier")
     assert shown(page, "numbers") == "9e+06"
@@ -315,7 +308,7 @@ def test_a_result_is_shown_to_the_next_page_that_asks_for_it(monkeypatch, jobs):
     assert shown(page, "numbers") == "9e+06"
     edits(page, "press.run", True)
     assert len(jobs) == 1
-    assert button(page)["share"] is None
+    assert page.channel.shown_value("=press.run")["share"] is None
 
 
 def test_work_that_is_cancelled_ends_and_is_not_begun_again_by_itself(monkeypatch, jobs):

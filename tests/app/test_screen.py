@@ -38,7 +38,6 @@ from .asking import does, edits, saved, told, trouble
 
 
 def screen_with(query="preset=hip-28", **changes):
-    """Return the screen of a link with other fields."""
     return replace(read_link(parse_qs(query)), **changes)
 
 

@@ -128,7 +128,6 @@ def contact():
 
 @pytest.fixture(scope="module")
 def figure(contact):
-    """Map of the cup and section of the contact, drawn once."""
     return cup_figure(contact)
 
 

@@ -61,7 +61,6 @@ def contacts():
 
 @pytest.fixture(scope="module")
 def pressed(contacts):
-    """The lines of the figure of a press, by model."""
     left, _ = press_figure(contacts, force_curves(contacts, bs.catalogue)).axes
     return {curve.get_label(): as_drawn(curve) for curve in left.lines}
 

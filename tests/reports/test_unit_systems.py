@@ -136,7 +136,6 @@ def test_a_study_is_told_in_micrometres_and_degrees(capsys):
 
 
 def test_a_slope_is_told_in_the_units_of_its_numbers(capsys):
-    """Micrometres of indentation per mm of thickness, when micrometres stand above them."""
     thickness, load = {"liner_thickness": (4.0, 8.0)}, {"force": 3000.0}
     best = optimise(bs.HessForsbach(), bs.joints["hip-28"], thickness, load=load, minimise="indentation")
     print_optimum(best)
