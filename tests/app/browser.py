@@ -65,7 +65,6 @@ main()
 
 @contextmanager
 def explorer_process(*words):
-    """The address of an explorer, and its process."""
     command = [sys.executable, "-c", _SERVE, "app", "--no-browser", "--port", "0", *words]
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     process = subprocess.Popen(command, **streams, encoding="utf-8")
@@ -95,7 +94,6 @@ def expect(locator):
 
 @contextmanager
 def opened_profile(browser, address, width=WIDE, dark=False, **more):
-    """A browser of one user, who has opened nothing yet."""
     look = {"viewport": {"width": width, "height": 900}, "color_scheme": "dark" if dark else "light"}
     profile = browser.new_context(**look, accept_downloads=True, **more)
     profile.grant_permissions(["clipboard-read", "clipboard-write"], origin=address)
@@ -126,7 +124,6 @@ class User:
         return float(self.page.locator(f"dd[data-name={name}]").get_attribute("data-value"))
 
     def shows(self, name, value):
-        """Wait until a number on the page is this one."""
         deadline = time.monotonic() + WAIT / 1000
         while time.monotonic() < deadline:
             if self.number(name) == pytest.approx(value, rel=1e-9):

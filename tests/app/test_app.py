@@ -1,14 +1,19 @@
-"""The explorer in a real browser: files, handles, undo and redo, and a narrow screen."""
+"""The explorer in a real browser: files, handles, undo and redo, a narrow screen, maps, and pictures that move."""
 
+import re
+import time
 import tomllib
+from io import BytesIO
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import ballsocket as bs
 from ballsocket.files.joint_file import parse_joint
 
 from ..places import EXAMPLES
-from .browser import NARROW, User, opened_profile, pressure
+from .browser import NARROW, WAIT, User, expect, opened_profile, pressure
 
 pytestmark = pytest.mark.long
 
@@ -194,3 +199,224 @@ def test_a_refused_number_stays_in_its_box_with_the_reason(user):
     assert user.link()["joint.ball_radius"] == "14.1"
     sliders = page.locator(".side input[type=range]:visible")
     assert {slider.get_attribute("tabindex") for slider in sliders.all()} == {"-1"}
+
+
+MAP = "?view=map&limit=outer_radius<=26"
+CUP = "preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
+
+
+def spot(user, across, up):
+    """The point of the screen at two shares of the map."""
+    frame = user.page.locator("#map-picture .frame")
+    frame.wait_for()
+    frame.scroll_into_view_if_needed()
+    box = frame.bounding_box()
+    return box["x"] + across * box["width"], box["y"] + (1 - up) * box["height"]
+
+
+def test_a_click_on_the_map_shows_a_design_that_is_used_in_one_step(user):
+    user.open(MAP)
+    user.page.mouse.click(*spot(user, 0.25, 0.25))
+    user.page.locator("button", has_text="Use this design").click()
+    user.until("location.search.includes('joint.ball_radius')")
+    taken = [float(user.link()[f"joint.{name}"]) for name in ("ball_radius", "liner_thickness")]
+    assert taken == pytest.approx([14.0, 6.0], abs=0.1)
+    user.answered()
+    user.page.go_back()
+    user.until("location.search.includes('preset=hip-28')")
+    user.answered()
+    expect(user.page.locator("[data-name=ball_radius] input[type=text]")).to_have_value("28")
+
+
+def test_everything_on_the_map_is_done_by_keys(user):
+    user.open(MAP)
+    user.page.mouse.move(*spot(user, 0.25, 0.75))
+    cursor = user.page.locator("#map-picture .cursor")
+    head, liner = map(float, re.findall(r"([\d.]+) mm", cursor.locator("text").first.text_content()))
+    assert (head, liner) == pytest.approx((28.0, 12.0), abs=0.1)
+    cursor.focus()
+    cursor.press("Shift+ArrowRight")
+    cursor.press("ArrowDown")
+    numbers = [float(number) for number in re.findall(r"\]: ([\d.]+)", cursor.get_attribute("aria-label"))]
+    assert numbers[:2] == pytest.approx([head + 2.4, liner - 0.24], abs=0.02)
+    assert numbers[2] == pytest.approx(pressure(ball_radius=numbers[0] / 2, liner_thickness=numbers[1]), rel=0.01)
+    cursor.press("Enter")
+    user.page.locator("#map-point table").wait_for()
+    user.answered()
+    expect(cursor).to_be_focused()
+    square = user.page.locator("#map-picture [data-limit]")
+    square.focus()
+    for _ in range(3):
+        square.press("ArrowUp")
+        user.answered()
+    user.until("location.search.includes('limit=outer_radius%3C%3D29.0')")
+    user.answered()
+    expect(square).to_be_focused()
+    expect(user.page.locator(".limit-rows input")).to_have_value("29")
+
+
+def test_a_limit_is_dragged_and_undone_as_one_step(user):
+    user.open(MAP)
+    spot(user, 0, 0)
+    user.drags("#map-picture .square", (-36, 34), (-30, 20))
+    user.until("!location.search.includes('%3D26.0')")
+    user.answered()
+    assert 15 < float(user.page.locator(".limit-rows input").input_value()) < 25.5
+    assert user.page.locator("#map-point table").count() == 0  # it was no click
+    user.page.go_back()
+    user.until("location.search.includes('%3D26.0')")
+    user.answered()
+    expect(user.page.locator(".limit-rows input")).to_have_value("26")
+
+
+def test_rows_of_limits_are_added_refused_and_taken_away(user):
+    user.open("?view=map")
+    user.page.locator("button", has_text="Add a limit").click()
+    row = user.page.locator(".limit-rows > div")
+    box = row.locator("input")
+    expect(box).to_be_focused()
+    row.locator("select").first.select_option(label="Outer diameter")
+    expect(box).to_have_value("38.2")
+    box.fill("52,x")
+    box.press("Enter")
+    assert user.says("Outer diameter must be a number in mm")
+    expect(box).to_have_value("52,x")
+    box.fill("52")
+    box.press("Enter")
+    user.until("location.search.includes('limit=outer_diameter%3C%3D52.0')")
+    row.locator("button").click()
+    user.until("!location.search.includes('limit=')")
+    assert row.count() == 0
+
+
+def test_elements_run_beside_others_who_go_on(user, profile, address):
+    """A run answers, another is cancelled, and somebody else's page answers before the run does."""
+    user.open("?view=judge")
+    other = User(profile, address).open()
+    button = user.page.locator("[data-name='judge.run'] button")
+    button.click()
+    expect(button).to_have_text("Cancel")
+    other.nudge("clearance")
+    assert other.shows("max_pressure", pressure(clearance=0.105))
+    other.page.close()
+    picture = user.page.locator("svg[aria-label^='mesh and von Mises']")
+    assert not picture.is_visible()
+    picture.wait_for()
+    row = user.page.locator("#judge-numbers tr", has_text="largest pressure [").locator("td")
+    contact = bs.FiniteElement().press(bs.joints["hip-28"], force=3000.0)
+    assert float(row.nth(1).inner_text()) == pytest.approx(contact.max_pressure, rel=1e-3)
+    user.nudge("clearance")
+    assert user.says("belong to an earlier design")
+    assert picture.is_visible()
+    button.click()
+    button.click()
+    assert user.says("Cancelled.")
+
+
+def share_of_colours(pixels):
+    """Share of pixels with the colours of a pressure: the cup and the page are nearly grey."""
+    return float((pixels.max(axis=2) - pixels.min(axis=2) > 90).mean())
+
+
+def difference(one, other):
+    return float(np.abs(one - other).mean())
+
+
+def seen(canvas, condition):
+    """Take pictures until one meets a condition and the next is equal, as a moving canvas is drawn sharp at its end."""
+    deadline, before = time.monotonic() + WAIT / 1000, None
+    while time.monotonic() < deadline:
+        pixels = np.asarray(Image.open(BytesIO(canvas.screenshot())).convert("RGB")).astype(int)
+        if condition(pixels) and before is not None and difference(pixels, before) == 0.0:
+            return pixels
+        before = pixels
+    pytest.fail("the canvas never looks so")
+
+
+def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):
+    user.open(f"?view=cup&{CUP}")
+    viewer = user.page.locator("#cup-viewer .viewer")
+    canvas = viewer.locator("canvas")
+    canvas.wait_for()
+    before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)  # the contact is seen at first
+    assert {"medial", "anterior", "up"} == set(viewer.locator(".triad text").all_text_contents())
+    assert viewer.locator(".scale-bar p").inner_text().split() == ["12", "10", "8", "6", "4", "2", "0"]
+    assert "[MPa]" in viewer.locator(".scale-bar").inner_text()
+    canvas.focus()
+    for _ in range(20):  # half a turn: the wall hides the pressure
+        canvas.press("ArrowLeft")
+    seen(canvas, lambda pixels: share_of_colours(pixels) < 0.01)
+    viewer.get_by_text("Show the contact").click()
+    straight = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
+    box = canvas.bounding_box()
+    user.page.mouse.move(box["x"] + 100, box["y"] + 100)
+    user.page.mouse.down()
+    user.page.mouse.move(box["x"] + 180, box["y"] + 120)
+    user.page.mouse.up()
+    turned = seen(canvas, lambda pixels: difference(pixels, straight) > 3)
+    canvas.press("+")
+    seen(canvas, lambda pixels: difference(pixels, turned) > 3)
+    viewer.get_by_text("Reset").click()
+    seen(canvas, lambda pixels: difference(pixels, before) < 0.5)
+    section = viewer.get_by_label("Section plane")
+    section.fill("0")  # the plane through the load and the cup's axis
+    few = 0.7 * share_of_colours(before)  # half of the contact is cut away
+    cut = seen(canvas, lambda pixels: share_of_colours(pixels) < few)
+    viewer.get_by_label("Ball").check()
+    seen(canvas, lambda pixels: difference(pixels, cut) > 3)
+    stood = user.page.locator("#cup-stood svg")
+    stood.scroll_into_view_if_needed()
+    place = stood.bounding_box()
+    user.page.mouse.click(place["x"] + 0.5 * place["width"], place["y"] + 0.4 * place["height"])
+    user.until("!location.search.includes('cup.inclination=45.0')")
+    user.answered()
+    inclination = float(user.page.locator("[data-field='cup.inclination'] input[type=text]").input_value())
+    assert 40 < inclination < 46
+
+
+def test_a_cycle_is_played_and_stops_where_it_is(user):
+    user.open(f"?view=gait&{CUP}")
+    button = user.page.locator(".transport button")
+    button.wait_for()
+    output, canvas = user.page.locator(".player output"), user.page.locator(".player canvas")
+    few = 0.7 * share_of_colours(seen(canvas, lambda pixels: share_of_colours(pixels) > 0))
+    button.click()
+    user.until("(bar => bar.value > 0.7 * bar.max)(document.querySelector('.transport input'))")  # the leg swings
+    button.click()
+    user.until("location.search.includes('use.instant=')")
+    seen(canvas, lambda pixels: share_of_colours(pixels) < few)  # the swinging leg presses less
+    bar = user.page.locator(".transport input")
+    bar.focus()
+    bar.press("Home")
+    assert output.inner_text().startswith("0.5 % of the cycle: load ")
+    user.until("location.search.includes('use.instant=0')")
+    user.page.locator(".player .spot").nth(5).wait_for()  # the film follows: load, pressure, distance, two films and λ
+    smallest = user.page.evaluate("""() => Math.min(...[...document.querySelectorAll('.courses text')].map((text) =>
+        parseFloat(getComputedStyle(text).fontSize) *
+        Math.hypot(text.getScreenCTM().a, text.getScreenCTM().b)))""")
+    assert smallest >= 11.5
+
+
+NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...more) {
+    return kind === "webgl2" ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype.getContext)"""
+
+
+def test_a_browser_without_webgl_is_shown_the_flat_view(user):
+    user.page.add_init_script(NO_WEBGL)
+    user.open(f"?view=cup&{CUP}")
+    assert user.says("This browser has no WebGL 2")
+    assert "from the rim" in user.page.locator("#cup-map svg").get_attribute("aria-label")
+
+
+def test_a_lost_context_is_restored(user):
+    user.open(f"?view=cup&{CUP}")
+    canvas = user.page.locator("#cup-viewer canvas")
+    canvas.wait_for()
+    before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
+    lose = "canvas => (window.lost = canvas.getContext('webgl2').getExtension('WEBGL_lose_context')).loseContext()"
+    canvas.evaluate(lose)
+    seen(canvas, lambda pixels: share_of_colours(pixels) < 0.01)
+    canvas.press("ArrowLeft")  # nothing breaks
+    canvas.press("ArrowRight")
+    user.page.evaluate("window.lost.restoreContext()")
+    seen(canvas, lambda pixels: difference(pixels, before) < 0.5)

@@ -299,10 +299,6 @@ def megabytes(process="self"):
     return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def clearance_of(number):
-    return 0.05 + 0.001 * (number % 100)
-
-
 @pytest.mark.long
 @needs_proc
 def test_a_client_that_never_reads_does_not_grow_the_server():
@@ -311,11 +307,11 @@ def test_a_client_that_never_reads_does_not_grow_the_server():
     def edit_often():
         with suppress(OSError):  # the connection ends
             for number in range(3000):
-                deaf.ask(number + 2, "edit", name="clearance", value=clearance_of(number))
+                deaf.ask(number + 2, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
 
     with explorer_process() as (address, process), opened_wire(address) as user, opened_wire(address) as deaf:
         for number in range(2, 102):  # caches fill first
-            user.ask(number, "edit", name="clearance", value=clearance_of(number))
+            user.ask(number, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
             user.answer(number)
         before = megabytes(process.pid)
         sender = Thread(target=edit_often)

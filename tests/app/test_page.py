@@ -79,16 +79,9 @@ def test_names_that_are_formulas_elsewhere_are_text_in_files():
     assert saved(page, "PNG").startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize(
-    ("where", "sentence"),
-    [
-        ((70000,), "port = 70000 is not allowed: a port is 0 to 65535"),
-        ((0, "nowhere.invalid"), "address = 'nowhere.invalid' is not allowed"),
-        ((0, "a" * 300), "address = 'aaa.* is not allowed"),
-    ],
-)
-def test_a_port_or_an_address_that_is_none_is_refused(where, sentence):
-    with pytest.raises(ValueError, match=sentence):
+@pytest.mark.parametrize("where", [(70000,), (0, "nowhere.invalid"), (0, "a" * 300)])
+def test_a_port_or_an_address_that_is_none_is_refused(where):
+    with pytest.raises(ValueError, match=rf"^(port|address) = '?{str(where[-1])[:9]}.* is not allowed"):
         serve.server(*where)
 
 
@@ -221,9 +214,8 @@ def test_six_designs_are_compared_by_the_checks_of_contact():
     assert page.channel.shown_value("=compare.base")["options"][-1][0] == "6"
     table = page.channel.shown_value("#compare-table")
     contact = bs.Exact().press(page.screen.file.joint, force=3000.0)
-    (check,) = [
-        row for row in checks_of(contact, Cup(), float(contact.von_mises)) if "stress in the liner" in row.title
-    ]
+    checks = checks_of(contact, Cup(), float(contact.von_mises))
+    (check,) = [row for row in checks if "stress in the liner" in row.title]
     row = re.search(rf"<th scope='row'>{check.title} / {check.limit}</th><td class='\w*'>(.*?)</td>", table)
     assert row[1] == f"✓ {100 * check.ratio:.0f} %"
     does(page, "choose", name="view", value="press")
@@ -234,8 +226,6 @@ def test_six_designs_are_compared_by_the_checks_of_contact():
 
 
 MAP = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
-FRAME = (58.0, 12.0, 426.0, 308.0)
-"""Left, top, right and foot of the map in its picture."""
 
 
 def part(page, name):
@@ -248,17 +238,15 @@ def found(page):
 
 def on_axes(x, y):
     """The numbers of a point of the picture, for the axes of MAP."""
-    left, top, right, foot = FRAME
+    left, top, right, foot = 58.0, 12.0, 426.0, 308.0  # of the map in its picture
     return 11 + 12 * (x - left) / (right - left), 3 + 12 * (foot - y) / (foot - top)
 
 
 def handles(page):
     """Text and point of each square of a limit."""
     pattern = r'aria-valuetext="([^"]+)" data-limit="(\d)"[^>]+translate\(([\d.]+) ([\d.]+)\)'
-    return {
-        int(number): (text, *on_axes(float(x), float(y)))
-        for text, number, x, y in re.findall(pattern, part(page, "picture"))
-    }
+    squares = re.findall(pattern, part(page, "picture"))
+    return {int(number): (text, *on_axes(float(x), float(y))) for text, number, x, y in squares}
 
 
 def pressure_at(radius, thickness):

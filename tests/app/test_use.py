@@ -320,10 +320,6 @@ EVIDENCE_CUP = bs.Cup(inclination=radians(40.0))
 FILE = JointFile(bs.joints["hip-36"], {"force": 3000.0})
 
 
-def evidence_told(page, name):
-    return unescape(page.channel.shown_value(f"#evidence-{name}") or "")
-
-
 def test_what_is_typed_is_a_question_file(tmp_path):
     limits, tolerances = "max_pressure <= 20 MPa; half_angle <= 60 deg", "clearance = 0.1 +- 0.02 mm"
     matrix = "force = 2, 3 kN; inclination = 30, 45 deg; clearance = 0.1 mm"
@@ -346,16 +342,16 @@ def test_what_is_typed_is_a_question_file(tmp_path):
 
 def test_a_question_is_read_as_it_is_typed():
     page = opened(EVIDENCE)
-    assert "2 cases" in evidence_told(page, "found")
-    assert "2000 N, 3000 N" in evidence_told(page, "found")
+    assert "2 cases" in unescape(told(page, "evidence-found"))
+    assert "2000 N, 3000 N" in unescape(told(page, "evidence-found"))
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
-    assert "6 cases" in evidence_told(page, "found")
+    assert "6 cases" in unescape(told(page, "evidence-found"))
     assert "ask.matrix=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
     edits(page, "evidence.matrix", "clearance = 0.05, 0.1 mm")
-    assert "[matrix] needs a load" in evidence_told(page, "found")
+    assert "[matrix] needs a load" in unescape(told(page, "evidence-found"))
     edits(page, "evidence.run", True)
-    assert "[matrix] needs a load" in evidence_told(page, "trouble")
+    assert "[matrix] needs a load" in unescape(told(page, "evidence-trouble"))
 
 
 @pytest.mark.parametrize(
@@ -373,7 +369,7 @@ def test_a_question_is_read_as_it_is_typed():
 def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence):
     page = opened(EVIDENCE)
     edits(page, f"evidence.{name}", value)
-    assert sentence in evidence_told(page, "found")
+    assert sentence in unescape(told(page, "evidence-found"))
 
 
 def test_limits_are_rows():
@@ -390,9 +386,9 @@ def test_limits_are_rows():
 
 def test_a_limit_is_asked_for_before_anything_runs(asked):
     page = opened(EVIDENCE)
-    assert "✗ No limit is stated" in evidence_told(page, "found")
+    assert "✗ No limit is stated" in unescape(told(page, "evidence-found"))
     edits(page, "evidence.run", True)
-    assert "Evidence needs a limit to decide on" in evidence_told(page, "trouble")
+    assert "Evidence needs a limit to decide on" in unescape(told(page, "evidence-trouble"))
     edits(page, "evidence.allowable", True)
     assert "the liner has no allowable pressure" in trouble(page)
     edits(page, "allowable", 20)
@@ -425,15 +421,15 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     edits(page, "evidence.take", True)
     assert "there is no result for this design yet" in trouble(page)
     edits(page, "evidence.run", True)
-    found = evidence_told(page, "found")
+    found = unescape(told(page, "evidence-found"))
     assert "11.2 MPa" in found
     assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: not kept</p>")
     assert "✓ largest pressure at most 20 MPa: kept" in found
     assert edits(page, "evidence.take", True)["file"]["name"] == "evidence.zip"
     assert b"largest pressure,11.2 MPa" in saved(page, "CSV")
     edits(page, "liner_young", 900)
-    assert evidence_told(page, "found") == found
-    assert "belong to an earlier design" in evidence_told(page, "earlier")
+    assert unescape(told(page, "evidence-found")) == found
+    assert "belong to an earlier design" in unescape(told(page, "evidence-earlier"))
     edits(page, "evidence.take", True)
     assert "there is no result for this design yet" in trouble(page)
     page.leave()

@@ -89,8 +89,6 @@ def test_a_joint_outside_its_tolerance_is_refused():
     """Its pressure would stand beside a band that cannot hold it."""
     with pytest.raises(ValueError, match="clearance = 0.1 mm lies outside its tolerance of 0.15 to 0.25 mm: change"):
         local_uncertainty(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.2, 0.05)})
-    with pytest.raises(ValueError, match="force = 3000 N lies outside its tolerance of 900 to 1100 N"):
-        local_uncertainty(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
 
 
 def recipe_of(page):
@@ -182,17 +180,12 @@ def test_a_page_is_printed_as_pdf(tmp_path, paper, width):
     assert round(float(re.search(rb"/MediaBox ?\[ ?0 0 ([\d.]+)", text)[1])) == width  # in points
 
 
-def test_what_a_percent_does_is_the_slope(pages):
-    near = pages[1]
+def test_what_a_percent_does_is_the_slope_and_the_band_of_a_tolerance_holds_the_ends_of_the_clearance(pages):
     more, less = (bs.Tabulated().press(HIP, force=force).max_pressure for force in (3000.0 * 1.01, 3000.0 / 1.01))
-    assert near.changes["max_pressure"]["force"] == pytest.approx((more / less - 1) / 0.02, rel=2e-2)
-
-
-def test_the_band_of_a_tolerance_holds_the_ends_of_the_clearance(pages):
-    """Of one number that scatters normally they are at 1.96 deviations, a third of 0.03 mm each."""
-    low, middle, high = pages[1].band["max_pressure"]
+    assert pages[1].changes["max_pressure"]["force"] == pytest.approx((more / less - 1) / 0.02, rel=2e-2)
+    # one number that scatters normally ends at 1.96 deviations, a third of 0.03 mm each
     ends = [bs.Tabulated().press(replace(HIP, clearance=c), force=3e3).max_pressure for c in (0.0804, 0.1, 0.1196)]
-    assert [low, middle, high] == pytest.approx(ends, rel=2e-3)
+    assert list(pages[1].band["max_pressure"]) == pytest.approx(ends, rel=2e-3)
 
 
 def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():

@@ -94,10 +94,8 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
 
     page = Page(f"preset=hess-forsbach&shown={','.join(pressed)}")
     page.view.show(page.screen)
-    curves = re.findall(
-        r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>',
-        page.channel.shown_value("#press-charts"),
-    )
+    line = r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>'
+    curves = re.findall(line, page.channel.shown_value("#press-charts"))
     assert {name for _, name, _ in curves} == set(pressed)
     for colour, name, dash in curves:
         line = pressed[name]
@@ -108,13 +106,8 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
 ACCURACY = json.loads((DATA / "accuracy.json").read_text(encoding="utf-8"))
 EXACT = bs.Exact(tolerance=1e-4)
 FEW = {name: bs.catalogue[name] for name in ("hess-forsbach", "exact")}
-JUDGED = {
-    "about": ["By the exact solution."],
-    "claims": [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
-    "elsewhere": [],
-    "table_3": [],
-    "accuracy": [ACCURACY],
-}
+CLAIMS = [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]]
+JUDGED = {"about": ["By the solution."], "claims": CLAIMS, "elsewhere": [], "table_3": [], "accuracy": [ACCURACY]}
 
 
 def read_table(path):
