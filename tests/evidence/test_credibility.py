@@ -236,11 +236,7 @@ def test_the_band_lies_within_the_limit(record, low, high, status):
 
 @pytest.mark.parametrize(
     ("largest", "status", "evidence"),
-    [
-        (0.01, "met", "1 % at most"),
-        (0.1, "not met", "10 % at most"),
-        (None, "not known", "no error bar and no"),
-    ],
+    [(0.01, "met", "1 % at most"), (0.1, "not met", "10 % at most"), (None, "not known", "no error bar and no")],
 )
 def test_the_accuracy_is_a_row(record, largest, status, evidence):
     record["accurate"].update(largest=largest, holds=status == "met")

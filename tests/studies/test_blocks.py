@@ -16,7 +16,7 @@ from ballsocket.studies.design import Design, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.metadata import _describe_array
 from ballsocket.studies.run import _create_task, _duration_text, memory_size
-from ballsocket.studies.sampling import CHUNK_SIZE, Method, permute
+from ballsocket.studies.sampling import CHUNK_SIZE, Method
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
 
 from ..extent import either
@@ -106,14 +106,6 @@ def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
     assert np.mean(points * count % 1.0) == pytest.approx(0.5, abs=0.02)
     other = sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
     assert not np.isclose(other, chunks[0]).any()
-
-
-@pytest.mark.parametrize("count", [1, 2, 65, 1000])
-def test_a_permutation_has_each_number_once(count):
-    keys = np.random.SeedSequence(0).generate_state(8, np.uint64)
-    permuted = permute(np.arange(count, dtype=np.uint64), count, keys)
-    assert sorted(permuted.tolist()) == list(range(count))
-    assert count < 64 or np.mean(permuted == np.arange(count)) < 0.1
 
 
 def test_no_worker_draws_all_samples(monkeypatch, small_chunks):

@@ -60,9 +60,8 @@ def test_the_fit_of_table_3_agrees_with_the_paper():
 def test_errors_are_those_of_the_closed_form():
     fit = bs.calibrate(HIP, force=3000.0)
     exact, own = (model.press(HIP, force=3000.0) for model in (bs.Exact(), fit.model))
-    assert fit.error["half_angle"] == pytest.approx(own.half_angle / exact.half_angle - 1)
-    assert fit.error["max_pressure"] == pytest.approx(abs(own.max_pressure / exact.max_pressure - 1))
-    assert fit.error["indentation"] == pytest.approx(abs(own.indentation / exact.indentation - 1))
+    for name in ("half_angle", "max_pressure", "indentation"):
+        assert fit.error[name] == pytest.approx(abs(getattr(own, name) / getattr(exact, name) - 1))
     at_equal_indentation = fit.model.press(HIP, indentation=exact.indentation)
     assert fit.error["force"] == pytest.approx(abs(at_equal_indentation.force / 3000.0 - 1))
     assert max_relative_error(np.array([1.0, 2.2, 2.7]), np.array([1.0, 2.0, 3.0])) == pytest.approx(0.1)

@@ -33,8 +33,6 @@ HIP = bs.joints["hess-forsbach"]
 SHELL = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0))
 TINY = Limit(name="outer_radius", high=1.0)
 AT = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "force": 3000.0}
-
-
 RANGES = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
 LOAD = {"force": 3000.0}
 

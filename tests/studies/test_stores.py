@@ -15,7 +15,6 @@ import xarray as xr
 
 import ballsocket as bs
 from ballsocket.core.executors import Processes
-from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, write_csv
 from ballsocket.models.modulus import Modulus
 from ballsocket.studies import store as store_module
 from ballsocket.studies.export import export
@@ -24,7 +23,6 @@ from ballsocket.studies.run import _create_task, read
 from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, StudyStore
 
 from ..cli.command import run
-from ..hip.test_cohort import FEW_CYCLES, quick_variability
 from ..hip.test_uncertainty import short_file
 
 HIP = bs.joints["hess-forsbach"]
@@ -64,6 +62,7 @@ def test_a_finished_study_is_not_computed_again_even_on_a_full_disk(store, finis
     monkeypatch.setattr("ballsocket.core.storage.folders.available_disk_space", lambda path: 0)
     again, blocks = presses(store)
     assert (blocks, again.identical(finished[1])) == (0, True)
+    assert xr.open_zarr(store, consolidated=False).max_pressure.identical(again.max_pressure)
 
 
 @pytest.mark.parametrize(
@@ -342,24 +341,6 @@ def test_commands_refuse_addresses_that_they_cannot_use(tmp_path, words):
 
 
 @pytest.mark.long
-def test_a_cohort_at_an_address_resumes(bucket):
-    one = quick_variability()
-    cohort = CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, 2, 0))
-    store = cohort_store("memory://bucket/patients", one, [FEW_CYCLES], 0)
-    first = cohort.simulate(store=store)
-    assert {path.rpartition("/")[2] for path in bucket.find("/bucket")} == {"patients.json", "patients_000000.npz"}
-    done = []
-    again = cohort.simulate(store=store, progress=done.append)
-    assert done == [2]
-    assert again.table.tobytes() == first.table.tobytes()
-    path = write_csv(Path("memory://bucket/patients") / "patients.csv", cohort, first)
-    assert bucket.cat_file("/bucket/patients/patients.csv").startswith(b"clearance_mm,")
-    assert path.name == "patients.csv"
-    with pytest.raises(ValueError, match="memory://bucket/patients has another cohort"):
-        cohort_store("memory://bucket/patients", one, [FEW_CYCLES], 1)
-
-
-@pytest.mark.long
 def test_a_remote_store_has_the_study_and_the_cohort_of_processes(monkeypatch, tmp_path, finished):
     """Files of fsspec in the working folder, which other processes reach too."""
     fsspec = pytest.importorskip("fsspec")
@@ -377,4 +358,7 @@ def test_a_remote_store_has_the_study_and_the_cohort_of_processes(monkeypatch, t
     for workers in ((), ("--workers", "1")):
         done = run(*words, *workers, folder=tmp_path)
         assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "local://bucket/patients/patients.csv")
+    written = {path.name: path for path in (tmp_path / "bucket" / "patients").iterdir()}
+    assert written.keys() == {"patients.json", "patients.csv", "patients_000000.npz"}
+    assert len(written["patients.csv"].read_text(encoding="utf-8").splitlines()) == 3  # a head, two patients
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bucket", "hip.toml"]

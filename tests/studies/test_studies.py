@@ -16,7 +16,6 @@ from pyarrow import parquet
 
 import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial
-from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
@@ -26,17 +25,11 @@ from ballsocket.studies.parameters import vary_joint
 from ballsocket.studies.task import Blocks
 
 from ..cli.command import run
-from ..extent import some
 from ..places import symlink_or_skip
 from .servers import cluster
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
-
-
-def same(one, other):
-    names = set(one.data_vars)
-    return names == set(other.data_vars) and all(one[n].values.tobytes() == other[n].values.tobytes() for n in names)
 
 
 @pytest.mark.parametrize("name", ["hess-forsbach", "tabulated", "exact", "plane-layer"])
@@ -213,17 +206,6 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
 
 
 @pytest.mark.long
-def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 5)
-    for model in some([bs.Exact(), bs.HessForsbach()], 1):
-        here = bs.study(model, HIP, **AXES)
-        assert same(bs.study(model, HIP, engine=Processes(workers=2), **AXES), here)
-        for engine in (Serial(), Distributed(workers=1)):
-            store = tmp_path / f"{model.name}-{type(engine).__name__}.zarr"
-            assert same(bs.study(model, HIP, engine=engine, store=store, **AXES).load(), here)
-
-
-@pytest.mark.long
 def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(tmp_path):
     """`dask scheduler` and two of `dask worker`, which share the blocks: the CSV is that of one process."""
     from distributed import Client
@@ -265,11 +247,3 @@ def test_files_for_other_programs(tmp_path):
         export(found, tmp_path / "s.zarr")
     with pytest.raises(ValueError, match=r"must end in .nc, .csv, .parquet or .zarr"):
         export(found, tmp_path / "s.xls")
-
-
-def test_a_stored_study_is_read_by_xarray_alone(tmp_path):
-    stored = bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **AXES)
-    plain = xr.open_zarr(tmp_path / "s.zarr", consolidated=False)
-    assert plain.max_pressure.identical(stored.max_pressure)
-    point = stored.max_pressure.sel(clearance=0.1, force=3000.0, ball_radius=17.9)
-    assert (point.item(), point.attrs["units"]) == (pytest.approx(11.27, abs=0.01), "MPa")

@@ -156,19 +156,6 @@ def test_killed_workers_cost_retries(tmp_path, start, engine):
     assert equal_to_undisturbed(tmp_path / "s.zarr")
 
 
-def test_workers_leave_when_the_study_is_killed_alone(tmp_path, start):
-    process = start(engine="processes", clearances=60)  # more than it will be given time for
-    wait_for_blocks(process, tmp_path / "s.zarr", 1)
-    workers = workers_of(process)
-    assert workers
-    process.kill()
-    process.wait()
-    deadline = time.monotonic() + PATIENCE
-    while any(map(is_alive, workers)) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not any(map(is_alive, workers))
-
-
 def workers_of(process):
     """Process ids of a study's workers."""
     pids, workers = [process.pid], []
@@ -180,12 +167,6 @@ def workers_of(process):
             if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
                 workers.append(pid)
     return workers
-
-
-def is_alive(pid):
-    with suppress(FileNotFoundError):
-        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(")")[-1].split()[0]
-    return False
 
 
 @pytest.mark.parametrize("end", ["interrupted", "killed", "scheduler killed"])

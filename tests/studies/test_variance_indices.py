@@ -97,17 +97,6 @@ def test_correlated_parameters_share_the_variance_of_a_linear_function_as_theory
     assert found["shapley"][0].sum() == pytest.approx(1.0, abs=1e-12)
 
 
-def test_two_correlated_parameters_have_the_published_effects():
-    """Iooss & Prieur 2019, Int. J. Uncertain. Quantif. 9, 493: the sum of two normal parameters."""
-    rho, one, two = 0.9, 1.0, 2.0
-    spreads = [Normal(mean=0.0, deviation=deviation) for deviation in (one, two)]
-    matrix = numpy.array([[1.0, rho], [rho, 1.0]])
-    found = shapley_effects(lambda x: x.sum(axis=0)[None], spreads, matrix, 4096, 0, None)
-    share = one**2 * (1 - rho**2 / 2) + rho * one * two + two**2 * rho**2 / 2
-    first = share / (one**2 + two**2 + 2 * rho * one * two)
-    assert found["shapley"][0] == pytest.approx([first, 1 - first], abs=2e-3)
-
-
 def test_without_correlation_shapley_effects_lie_between_first_and_total_order():
     first, interaction = ishigami_shares()
     found = shapley_effects(ishigami, [UNIFORM] * 3, numpy.eye(3), 8192, 0, None)
