@@ -135,12 +135,8 @@ def test_resurfacing_has_the_published_pressure_and_a_smaller_area(published):
     joints = [shell.replace(liner_thickness=wall, backing=(bone,)) for wall in (3.5, 4.0, 4.5) for bone in bones]
     contacts = [Exact().press(joint, force=3200) for joint in joints]
     durom = published["durom"]
-    titles = {
-        "max_pressure": "largest pressure, MPa",
-        "pole_pressure": "pole pressure, MPa",
-        "area": "contact area, mm²",
-    }
-    for quantity, title in titles.items():
+    titles = ("largest pressure, MPa", "pole pressure, MPa", "contact area, mm²")
+    for quantity, title in zip(("max_pressure", "pole_pressure", "area"), titles, strict=True):
         assert durom.ours[title] == ends([float(getattr(contact, quantity)) for contact in contacts])
     assert_reaches(durom, COCR, 3200.0, radii=(25.0, 25.0), clearances=(0.0725, 0.0725), walls=(3.5, 4.5))
     low, high = durom.ours["largest pressure, MPa"]
@@ -152,11 +148,9 @@ def test_resurfacing_has_the_published_pressure_and_a_smaller_area(published):
 def test_pressure_of_the_inlay_depends_on_its_wall(published):
     """Wall 2 to 4 mm on 3 to 5 mm of polyethylene, head 28 mm, bore 28.12 mm, 3200 N."""
     inlay = Joint(ball_radius=14.0, clearance=0.06, liner_thickness=3.0, liner=COCR, ball=COCR)
-    cases = [(wall, Layer(thickness=behind, material=UHMWPE)) for wall in (2.0, 3.0, 4.0) for behind in (3.0, 5.0)]
-    pressures = [
-        float(Exact().press(inlay.replace(liner_thickness=wall, backing=(layer,)), force=3200.0).max_pressure)
-        for wall, layer in cases
-    ]
+    layers = [Layer(thickness=behind, material=UHMWPE) for behind in (3.0, 5.0)]
+    joints = [inlay.replace(liner_thickness=wall, backing=(layer,)) for wall in (2.0, 3.0, 4.0) for layer in layers]
+    pressures = [float(Exact().press(joint, force=3200.0).max_pressure) for joint in joints]
     low, high = published["metasul"].ours["largest pressure, MPa"]
     assert (low, high) == ends(pressures)
     assert low < 47 < high

@@ -33,17 +33,13 @@ _OTHERS |= {"--interface": mistyped(("bonded",))}
 _LOADS = {"--force": words.force, "--indentation": words.indentation, "--half-angle": words.half_angle}
 _STUDY = {"--force": words.force, "--indentation": words.indentation, "--limit": _limit, "--points": _count}
 _SPREADS = {"--spread": _spread, "--correlation": _correlation, "--of": mistyped(CONTACT)}
+_SPREADS |= {"--force": words.force, "--count": _count, "--intervals": mistyped(("none", "bootstrap"))}
 _FORMS = mistyped(("constant", "polynomial"))
 _FLAGS = {
     "press": {**_OWN, **_OTHERS, **_LOADS},
     "map": {**_STUDY, "--x": _range, "--y": _range},
     "optimise": {**_STUDY, "--vary": _range, "--minimise": mistyped(CONTACT)},
-    "sensitivity": {
-        **_SPREADS,
-        "--force": words.force,
-        "--count": _count,
-        "--intervals": mistyped(("none", "bootstrap")),
-    },
+    "sensitivity": _SPREADS,
     "deck": {**_LOADS, "--steps": _count, "--scale": number, "--element-size": _size, "--element": odd_text},
     "calibrate": {"--force": words.force, "--thickness": words.length, "--form": _FORMS},
 }

@@ -28,6 +28,7 @@ from ballsocket.mcp.call import command_line
 
 from ..cli.command import run
 from ..places import EXAMPLES
+from ..planning.scans import binary
 from . import damage
 from .limits import check_command, check_run, check_sentence, folder_with, inputs, within_limits
 from .words import mistyped, number, odd_text, quantity
@@ -148,10 +149,8 @@ PLY = ["ply", "format ascii 1.0", f"element vertex {len(ROWS)}", *(f"property fl
 PLY += [f"element face {len(FACES)}", "property list uchar int vertex_indices", "end_header", *ROWS]
 PLY += [f"3 {i} {j} {k}" for i, j, k in FACES]
 OBJ = ["v " + row for row in ROWS] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in FACES]
-STL = numpy.zeros(len(FACES), dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
-STL["p"] = POINTS_OF_BORE[numpy.array(FACES)]
 MESHES = {"ply": "\n".join(PLY).encode(), "obj": "\n".join(OBJ).encode()}
-MESHES["stl"] = b"\0" * 80 + len(FACES).to_bytes(4, "little") + STL.tobytes()
+MESHES["stl"] = binary(POINTS_OF_BORE[numpy.array(FACES)])
 _wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
 wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
 

@@ -154,20 +154,16 @@ def test_earlier_names_warn_or_are_those_of_today():
     result, normal = identified(measured()), NormalScatter()
     with pytest.warns(DeprecationWarning, match="'own'.*'observable'"):
         frequencies = measured("frequency", FORCE, own=oscillation(1.0))
-    for owner, name, value in (
-        (result, "told", result.identifiable),
-        (result, "scales", result.transform),
-        (result.best, "places", result.best.theta),
-        (result.information, "untold", result.information.unidentifiable),
-        (result["clearance"], "left", result["clearance"].width_ratio),
-        (result.next, "each_quantity", result.next.best_by_quantity),
-        (frequencies, "own", frequencies.observable),
-        (normal, "told", normal.information),
-        (normal, "beyond", normal.censored),
-        (parameters, "Identified", IdentificationResult),
-    ):
-        with pytest.warns(DeprecationWarning, match=name):
-            assert getattr(owner, name) == value
+    renamed = [(result, "told identifiable"), (result, "scales transform"), (result.best, "places theta")]
+    renamed += [(result.information, "untold unidentifiable"), (result["clearance"], "left width_ratio")]
+    renamed += [(result.next, "each_quantity best_by_quantity"), (frequencies, "own observable")]
+    renamed += [(normal, "told information"), (normal, "beyond censored")]
+    for owner, names in renamed:
+        old, new = names.split()
+        with pytest.warns(DeprecationWarning, match=old):
+            assert getattr(owner, old) == getattr(owner, new)
+    with pytest.warns(DeprecationWarning, match="Identified"):
+        assert parameters.Identified is IdentificationResult
     with pytest.warns(DeprecationWarning, match="'place'.*'index'"):
         result.curve(place=0)
 

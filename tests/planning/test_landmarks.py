@@ -6,15 +6,8 @@ from math import degrees, radians
 import numpy as np
 import pytest
 
-from ballsocket.planning import (
-    HipPlan,
-    Landmarks,
-    cup_orientation,
-    make_plan,
-    orientation_of_axis,
-    pelvic_frame,
-    read_landmarks,
-)
+from ballsocket.planning import HipPlan, Landmarks, cup_orientation, make_plan, orientation_of_axis, pelvic_frame
+from ballsocket.planning.landmarks import read_landmarks
 from ballsocket.problem.cup import Side
 
 from . import scans

@@ -26,7 +26,7 @@ from ballsocket.studies.pareto import pareto
 from ballsocket.studies.run import default_model
 from ballsocket.studies.sensitivity import sensitivity
 
-from ..cli.command import run
+from ..cli.command import answer, run
 from ..extent import either, some
 
 HIP = bs.joints["hess-forsbach"]
@@ -35,15 +35,6 @@ TINY = Limit(name="outer_radius", high=1.0)
 AT = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "force": 3000.0}
 RANGES = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
 LOAD = {"force": 3000.0}
-
-
-def command(folder, *words):
-    return run(*words, folder=folder)
-
-
-def answer(folder, *words):
-    """Results of a command in JSON."""
-    return json.loads(command(folder, *words, "--json").stdout)
 
 
 def study_ranges(model, count):
@@ -243,17 +234,17 @@ def test_lists_alone_are_searched_in_python_and_the_shell(tmp_path):
     with pytest.raises(ValueError, match="head_diameter = 36 is not allowed by outer_diameter ≤ 20"):
         optimise(bs.HessForsbach(), HIP, {}, choices=choice, load=LOAD, limits=[replace(limit, high=20.0)])
     words = ("--vary", "head_diameter=2.8, 3.2, 3.6 cm", "--vary", "liner=pom,UHMWPE", "--force", "3 kN")
-    best = answer(tmp_path, "optimise", "hip-28", *words)
+    best = answer("optimise", "hip-28", *words, folder=tmp_path)
     assert (best["point"], best["materials"]) == ({"head_diameter": pytest.approx(36.0)}, {"liner": "UHMWPE"})
-    front = command(tmp_path, "optimise", "hip-28", *words, "--minimise", "area", "--minimise", "max_pressure")
+    front = run("optimise", "hip-28", *words, "--minimise", "area", "--minimise", "max_pressure", folder=tmp_path)
     assert "POM" in front.stdout
 
 
 def test_a_preset_of_questions_is_varied_and_the_next_command_runs(tmp_path):
     words = ("--liner", "uhmwpe", "--ball", "cocr", "--liner-thickness", "5", "--head-diameter", "28", "--points", "5")
-    answers = [answer(tmp_path, "map", preset, *words, "--force", "3 kN") for preset in ("hip-36", "hip-28")]
+    answers = [answer("map", preset, *words, "--force", "3 kN", folder=tmp_path) for preset in ("hip-36", "hip-28")]
     for step in [each.pop("next")[0]["command"] for each in answers]:
-        assert command(tmp_path, *shlex.split(step)[1:]).returncode == 0
+        assert run(*shlex.split(step)[1:], folder=tmp_path).returncode == 0
     assert answers[0] == answers[1]
 
 
@@ -347,7 +338,7 @@ MODEL = 'model = "hess-forsbach"'
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)
-    refused = command(tmp_path, "study", "s.toml")
+    refused = run("study", "s.toml", folder=tmp_path)
     assert (refused.returncode, len(refused.stderr.strip().splitlines())) == (2, 1)
     assert re.search(message, refused.stderr)
     assert not (tmp_path / "out").exists()
@@ -358,16 +349,16 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
         SIZES + '[[backing]]\nthickness = 3\nmaterial = "titanium"\n[load]\nforce = 3000\n'
     )
     ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "2")
-    found = command(tmp_path, "map", "backed.toml", *ranges, "--json")
+    found = run("map", "backed.toml", *ranges, "--json", folder=tmp_path)
     assert json.loads(found.stdout)["model"] == "exact"
     assert "model exact is used, since none of these joints is in the tables of tabulated" in found.stderr
-    limited = command(tmp_path, "map", "backed.toml", *ranges, "--limit", "max_pressure<=1")
+    limited = run("map", "backed.toml", *ranges, "--limit", "max_pressure<=1", folder=tmp_path)
     assert "no point of the map is allowed by max_pressure ≤ 1, according to exact" in limited.stderr
-    named = command(tmp_path, "map", "backed.toml", *ranges, "--model", "tabulated")
+    named = run("map", "backed.toml", *ranges, "--model", "tabulated", folder=tmp_path)
     assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
-    best = answer(tmp_path, "optimise", "backed.toml", "--vary", "liner_thickness=4,6 mm")
+    best = answer("optimise", "backed.toml", "--vary", "liner_thickness=4,6 mm", folder=tmp_path)
     assert best["point"]["liner_thickness"] == pytest.approx(6.0)
-    assert answer(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges)["model"] == "tabulated"
+    assert answer("map", "hip-28", "--force", "3 kN", *ranges, folder=tmp_path)["model"] == "tabulated"
 
 
 def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
@@ -388,15 +379,16 @@ def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
 
 def test_maps_and_fronts_on_the_command_line(tmp_path):
     common = ("hess-forsbach", "--force", "3 kN", "--limit", "outer_radius<=26 mm", "--limit", "liner_thickness>=4")
-    least = answer(tmp_path, "map", *common, "--points", "15", "--figure", "map.png")
+    least = answer("map", *common, "--points", "15", "--figure", "map.png", folder=tmp_path)
     assert 10.2 < least["quantities"]["max_pressure"][0]["value"] < 10.9
     assert (tmp_path / "map.png").stat().st_size > 10_000
     ranges = ("--vary", "ball_radius=11..23 mm", "--vary", "liner_thickness=3..15 mm")
-    front = answer(tmp_path, "optimise", *common, *ranges, "--minimise", "area", "--minimise", "max_pressure")["points"]
+    minimised = ("--minimise", "area", "--minimise", "max_pressure")
+    front = answer("optimise", *common, *ranges, *minimised, folder=tmp_path)["points"]
     assert np.all(np.diff(front["area"]) > 0)
     assert np.all(np.diff(front["max_pressure"]) < 0)
     loads = ("--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9")
-    assert answer(tmp_path, "map", "hess-forsbach", *loads)["limits"] == ["area ≤ 500"]
+    assert answer("map", "hess-forsbach", *loads, folder=tmp_path)["limits"] == ["area ≤ 500"]
 
 
 SPREAD = "--spread 'clearance=0.1+-0.05 mm' --spread 'liner_young=700..1100 MPa'"
@@ -422,7 +414,7 @@ SPREAD = "--spread 'clearance=0.1+-0.05 mm' --spread 'liner_young=700..1100 MPa'
 )
 def test_wrong_questions_are_one_sentence_on_the_command_line(tmp_path, words, message):
     words = words.replace(" L", " hess-forsbach --force '3 kN'").replace(" S", f" {SPREAD}")
-    refused = command(tmp_path, *shlex.split(words))
+    refused = run(*shlex.split(words), folder=tmp_path)
     assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr
     assert refused.stderr.count("\n") == 1
 
@@ -431,7 +423,7 @@ def test_sensitivities_in_csv_and_json(tmp_path):
     """A page of the docs shows the tables."""
     words = shlex.split(f"sensitivity hip-36 --force '3 kN' {SPREAD} --count 64 --of max_pressure")
     figures = either((), ("--figure", "all.png"))
-    found = answer(tmp_path, *words, "--second-order", "--csv", "all.csv", *figures)
+    found = answer(*words, "--second-order", "--csv", "all.csv", *figures, folder=tmp_path)
     assert found["confidence"] == 0.95
     rows = list(csv.DictReader((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()))
     (pair,) = [row for row in rows if row["index"] == "second_order"]
@@ -439,9 +431,9 @@ def test_sensitivities_in_csv_and_json(tmp_path):
     assert float(pair["low"]) < float(pair["value"]) < float(pair["high"])
     assert {row["quantity"] for row in rows} == {"max_pressure"}
     assert all(row["low"] for row in rows if row["index"] != "elasticity")
-    numbers = answer(tmp_path, *words, "--intervals", "none")["quantities"]["max_pressure"]["numbers"]
+    numbers = answer(*words, "--intervals", "none", folder=tmp_path)["quantities"]["max_pressure"]["numbers"]
     assert set(numbers["clearance"]) == {"first_order", "total_order", "elasticity"}
-    correlated = answer(tmp_path, *words, "--correlation", "clearance, liner_young = 0.6", *figures)
+    correlated = answer(*words, "--correlation", "clearance, liner_young = 0.6", *figures, folder=tmp_path)
     assert correlated["correlation"] == "clearance, liner_young = 0.6"
     numbers = correlated["quantities"]["max_pressure"]["numbers"].values()
     assert sum(number["shapley"] for number in numbers) == pytest.approx(1.0)
