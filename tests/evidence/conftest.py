@@ -1,17 +1,15 @@
 import copy
-from shutil import rmtree
 
 import pytest
 
 
 @pytest.fixture(scope="session")
-def pack():
+def pack(tmp_path_factory):
     """Question, record and folder of a small pack; nothing may change them."""
     pytest.importorskip("xarray", reason="the extra for studies is not installed")
     from .small_pack import small_pack
 
-    yield small_pack()
-    rmtree(small_pack()[2])
+    return small_pack(tmp_path_factory.mktemp("pack"))
 
 
 @pytest.fixture

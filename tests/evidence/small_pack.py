@@ -1,9 +1,7 @@
-"""Small question and its pack, computed once for all tests of one process."""
+"""Small question and its pack."""
 
 import json
 from functools import cache
-from pathlib import Path
-from tempfile import mkdtemp
 
 from ballsocket.evidence.folder import write
 from ballsocket.evidence.pack import gather_evidence
@@ -43,10 +41,8 @@ def question_of(folder, *replacements):
     return read_question(folder / "asked.toml")
 
 
-@cache
-def small_pack():
-    """Return the question, its record, and a folder with the pack in `out` and its stored results in `data`."""
-    folder = Path(mkdtemp(prefix="ballsocket-test-"))
+def small_pack(folder):
+    """Return the question, its record, and the folder with the pack in `out` and its stored results in `data`."""
     question = question_of(folder)
     record = gather_evidence(question, folder / "data")
     write(question, record, page, folder / "out")

@@ -126,7 +126,6 @@ def without_gaps(record):
 
 
 HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
-STYLE = "</p><style>body>*{display:none}</style><p>\u200bAll limits are kept"
 OTHER_VERSION = both(updated(version="1.0.0+deadbeef"), in_page(b"not kept", b"kept"))
 OTHER_LIBRARY = both(updated("made_with", matplotlib="3.4.1"), swap_figure)
 DIGEST_DIFFERS = "the page differs from the page made from evidence.json"
@@ -138,7 +137,6 @@ FORGERIES = {
     "a page that hides itself": (in_page(b"<html lang=", b"<html lang=" + HIDDEN), "instead of"),
     "a verdict on the page": (in_page(b"not kept", b"kept"), "instead of"),
     "text of no width on the page": (in_page(b"not kept", "not\u200b kept".encode()), "instead of"),
-    "bytes after the page": (replace_bytes(PAGE, lambda text: text + b"<h1>kept</h1>"), "instead of"),
     "a mark before the page": (replace_bytes(PAGE, lambda text: b"\xef\xbb\xbf" + text), "instead of"),
     "line ends of the page": (replace_bytes(PAGE, lambda text: text.replace(b"\n", b"\r\n")), "instead of"),
     "another digest on the page": (lambda out: in_page(digest_of(out).encode(), b"0" * 64)(out), "instead of"),
@@ -153,7 +151,6 @@ FORGERIES = {
     "no page": (lambda out: (out / PAGE).unlink(), "evidence.html: written 'not listed', now 'missing'"),
     "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'not kept'"),
     "a verdict in both, judged again": (in_record(verdict, True), r"limits\[0\].verdict: written 'kept'"),
-    "styles in the words": (updated(context_of_use=STYLE), "context_of_use: written '</p><style>"),
     "a level of a factor": (updated("credibility", 7, reached="d"), r"credibility\[7\].reached: written 'd', now 'a'"),
     "gaps that were left out": (in_record(without_gaps), "requirements: written"),
     "an empty word more": (updated(approved=None), "approved: written None, now 'absent'"),
@@ -167,7 +164,6 @@ FORGERIES = {
     "another library": (updated("made_with", approved="yes"), "made_with: holds more than the names and versions"),
     "a key twice": (replace_bytes(RECORD, lambda text: b'{"approved":"yes",' + text[1:]), NOT_CANONICAL),
     "line ends of the record": (replace_bytes(RECORD, lambda text: text.replace(b"\n", b"\r\n")), NOT_CANONICAL),
-    "bytes after the record": (replace_bytes(RECORD, lambda text: text + b" \n"), NOT_CANONICAL),
     "a comment in the question": (replace_bytes(QUESTION, lambda text: text + b"# approved\n"), DIGEST_DIFFERS),
 }
 

@@ -9,17 +9,14 @@ import pytest
 from scipy.stats import qmc
 
 import ballsocket as bs
-from ballsocket.core.executors import Processes, Serial
 from ballsocket.studies import Progress, axes, run, sampling
 from ballsocket.studies.axes import TableAxis
 from ballsocket.studies.design import Design, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.metadata import _describe_array
-from ballsocket.studies.run import _create_task, _duration_text, memory_size
-from ballsocket.studies.sampling import CHUNK_SIZE, Method
+from ballsocket.studies.run import _create_task, memory_size
+from ballsocket.studies.sampling import Method
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
-
-from ..extent import either
 
 HIP = bs.joints["hess-forsbach"]
 SCATTER = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.3, high=0.4)}
@@ -58,8 +55,6 @@ def test_the_time_left_is_the_rest_over_the_rate():
     progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=8.0)
     assert (progress.rate, progress.seconds_left) == (5.0, 10.0)
     assert Progress(n_done=0, n_points=100, n_stored=0, seconds=8.0).seconds_left == inf
-    texts = {1 / 3600: "1 s", 1 / 60.5: "60 s", 1 / 59.5: "1 min", 0.5: "30 min", 2.0: "2 hours"}
-    assert {hours: _duration_text(hours) for hours in texts} == texts
     described = _describe_array(np.arange(100_000.0) + 3)  # in the identity of a stored study
     assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)
 
@@ -127,16 +122,6 @@ def test_samples_outside_the_range_of_a_parameter_are_named_by_their_index(small
     assert first > 64
     with pytest.raises(ValueError, match=rf"clearance\[{first}\] = -.* truncate the distribution"):
         bs.study(bs.HessForsbach(), HIP, design, force=1e3)
-
-
-@pytest.mark.parametrize("method", Method)
-def test_samples_in_chunks_are_the_same_in_a_store_and_for_other_processes(method, tmp_path, monkeypatch):
-    monkeypatch.setattr(run, "points_per_block", lambda model: 30_000)
-    design = sample(CHUNK_SIZE + 5000, method=method, **SCATTER)
-    here = bs.study(bs.HessForsbach(), HIP, design, force=1e3)
-    engine = either(quick=Serial(), long=Processes(workers=2)) if method is Method.SOBOL else Serial()
-    stored = bs.study(bs.HessForsbach(), HIP, design, force=1e3, store=tmp_path / "s.zarr", engine=engine)
-    assert stored.load().equals(here)
 
 
 COUNT = 1 << 21

@@ -86,8 +86,7 @@ def test_the_command_prints_table_and_json(monkeypatch):
     assert answer["constants"][0] == pytest.approx(bs.calibrate(bs.joints["hip-28"], force=[1e3, 2e3]).wanted)
     family = run("calibrate", "hip-28", "--thickness", "4", "--thickness", "8 mm", "--form", "corrected-vessel")
     assert "corrected-vessel" in family.stdout
-    wrong = run("calibrate", "hip-28", "--form", "polynomal").stderr
-    assert wrong == "ballsocket: form 'polynomal' is not known; did you mean 'polynomial'?\n"
+    assert "did you mean 'polynomial'?" in run("calibrate", "hip-28", "--form", "polynomal").stderr
     assert len(json.loads(run("calibrate", "--json").stdout)["table_3"]) == 5
 
 

@@ -308,6 +308,8 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
     assert set(found.data_vars) == {"max_pressure", "stiffness", "status", "valid"}
     assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
     (tmp_path / "rows.csv").write_text("liner_thickness\n5\n6\n")
+    correlated = read_study(write_study("seed = 3", 'correlation = ["clearance, liner_young = 0.5"]'))
+    assert correlated.design.axes[0].correlation == ((("clearance", "liner_young"), 0.5),)
     assert read_study(write_study("[axes]", '[table]\npath = "rows.csv"\n[axes]')).design.shape == (2, 8, 5, 2)
 
 
@@ -324,6 +326,7 @@ MODEL = 'model = "hess-forsbach"'
         ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
+        ("seed = 3", "correlation = ['clearance: 0.5']", "s.toml: .*is not a correlation, such as 'clearance, liner_y"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
         ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
         ("plus_minus", "plusminus", "must be {low, high}"),
@@ -334,7 +337,7 @@ MODEL = 'model = "hess-forsbach"'
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
-    ids=range(16),
+    ids=range(17),
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)

@@ -116,7 +116,7 @@ def test_materials_are_an_axis_or_fixed(tmp_path, monkeypatch):
 
 
 ORDERED = 'joint = "hip-36"\n[axes]\nball_radius = [15, 16, 17]\nouter_radius = [24, 25]\nliner = ["uhmwpe", "pom"]\n'
-ORDERED += "clearance = [0.05, 0.1]\nforce = 3000\n"
+ORDERED += "clearance = [0.05, 0.1]\nforce = 3000\n[samples]\ncount = 2\nball_young = {low = 2e5, high = 3e5}\n"
 
 
 def test_a_study_has_one_order_in_memory_in_a_store_and_from_other_processes(tmp_path):
@@ -125,11 +125,11 @@ def test_a_study_has_one_order_in_memory_in_a_store_and_from_other_processes(tmp
     texts = set()
     for store, engine in ((None, Serial()), (tmp_path / "here", Serial()), (tmp_path / "there", Processes(workers=2))):
         found = bs.study(given.model, given.joint, given.design, store=store, engine=engine)
-        assert list(found.sizes) == ["ball_radius", "outer_radius", "liner", "clearance"]
+        assert list(found.sizes) == ["sample", "ball_radius", "outer_radius", "liner", "clearance"]
         export(found, tmp_path / "study.csv")
         texts.add((tmp_path / "study.csv").read_text(encoding="utf-8"))
     (text,) = texts
-    assert text.startswith("ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,")
+    assert text.startswith("ball_young_MPa,ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,")
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact()], ids=lambda m: m.name)
@@ -210,7 +210,7 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
     """`dask scheduler` and two of `dask worker`, which share the blocks: the CSV is that of one process."""
     from distributed import Client
 
-    several = "force = { from = '0.1 kN', to = '3 kN', count = 20 }"  # exact presses: several blocks
+    several = "force = { from = '0.1 kN', to = '3 kN', count = 10 }"  # exact presses: several blocks
     text = f"model = 'exact'\n{ORDERED.replace('force = 3000', several)}"
     with cluster(tmp_path, 2, DEVNULL) as (_, address):
         with Client(address) as client:
@@ -220,7 +220,7 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
             told = run("study", f"{name}.toml", "--store", f"{name}.zarr", "--out", f"{name}.csv", folder=tmp_path)
             assert told.returncode == 0, told.stderr
     here, there = ((tmp_path / f"{name}.csv").read_bytes() for name in ("here", "there"))
-    assert here.startswith(b"ball_radius_mm,outer_radius_mm,liner,")
+    assert here.startswith(b"ball_young_MPa,ball_radius_mm,outer_radius_mm,liner,")
     assert here == there
 
 

@@ -9,7 +9,6 @@ from scipy import stats
 
 import ballsocket as bs
 from ballsocket.studies.distributions import LogNormal, Normal, Rectangular, copula_matrix
-from ballsocket.studies.file import read_study
 from ballsocket.studies.run import study
 from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.variance_indices import shapley_effects, sobol_indices
@@ -114,18 +113,6 @@ def test_samples_have_the_rank_correlation_and_their_own_distributions():
         assert stats.kstest(values[name], spread.frozen.cdf).statistic < 0.01
     pressed = study(bs.HessForsbach(), HIP, design * bs.studies.grid(force=1000.0))
     assert '"correlation": [[["liner_young", "clearance"], -0.7]]' in pressed.attrs["design"]
-
-
-def test_a_study_file_states_correlations(tmp_path):
-    text = 'joint = "hip-36"\n[axes]\nforce = 1000\n[samples]\ncount = 8\nclearance = {low = 0.05, high = 0.15}\n'
-    text += 'liner_young = {low = 700, high = 1100}\ncorrelation = ["clearance, liner_young = 0.5"]\n'
-    path = tmp_path / "s.toml"
-    path.write_text(text, encoding="utf-8")
-    (axis,) = read_study(path).design.axes
-    assert axis.correlation == ((("clearance", "liner_young"), 0.5),)
-    path.write_text(text.replace("young = 0.5", "young: 0.5"), encoding="utf-8")
-    with pytest.raises(ValueError, match="s.toml: .*is not a correlation, such as 'clearance, liner_young = 0.5'"):
-        read_study(path)
 
 
 def test_a_power_of_correlated_log_normal_parameters_has_analytic_first_order_indices():
