@@ -14,5 +14,4 @@ def pack(tmp_path_factory):
 
 @pytest.fixture
 def record(pack):
-    """Copy of the record of the small pack."""
     return copy.deepcopy(pack[1])

@@ -32,7 +32,6 @@ coefficient = 0.06
 
 
 def question_of(folder, *replacements):
-    """Write the question with parts of it replaced, and read it."""
     text = QUESTION_TEXT
     for old, new in replacements:
         assert old in text, old

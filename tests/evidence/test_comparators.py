@@ -170,7 +170,6 @@ def test_pressure_of_a_3_mm_liner_exceeds_that_of_12_mm_by_41_to_69_percent(publ
 
 
 def test_strain_of_a_ptfe_liner_at_its_limit_is_a_sixth(published):
-    """It follows from the stated modulus."""
     (strain,) = published["ptfe"].ours.values()
     assert strain[0] < 100 / 6 < strain[1]
     assert strain == pytest.approx((482 / 31.0264, 541 / 31.0264), rel=1e-4)

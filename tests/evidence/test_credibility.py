@@ -24,7 +24,6 @@ def reached(record, name):
 
 
 def apply_only(record, name, verdict="applies", force="within"):
-    """Let one comparator apply, and no other."""
     for comparator in (*record["claims"], *record["comparators"]):
         comparator["applicability"]["verdict"] = "does not apply"
         if comparator["name"] == name:

@@ -40,7 +40,6 @@ def record_of(out):
 
 
 def seal(out):
-    """Rewrite the checksums."""
     names = [name for name in (QUESTION, RECORD, PAGE, "addendum.html") if (out / name).exists()]
     (out / SUMS).write_bytes(folder.sums_bytes({name: (out / name).read_bytes() for name in names}))
 
@@ -54,7 +53,6 @@ def plain_page(record, digest):
 
 
 def redraw(out, record):
-    """Write a record and its page."""
     (out / RECORD).write_bytes(folder.record_bytes(record))
     sums = folder.digest({name: (out / name).read_bytes() for name in (QUESTION, RECORD)})
     (out / PAGE).write_text(plain_page(record, sums), "utf-8")
@@ -69,7 +67,6 @@ def in_page(old, new):
 
 
 def in_record(change, judged_again=False):
-    """Change a record, and redraw its page."""
 
     def forge(out):
         record = record_of(out)
@@ -80,7 +77,6 @@ def in_record(change, judged_again=False):
 
 
 def updated(*path, **entries):
-    """Replace entries of a part of the record."""
     return in_record(lambda record: reduce(getitem, path, record).update(entries))
 
 
@@ -260,7 +256,6 @@ def of_another_pack(out):
 
 
 def in_signature(change):
-    """Change the bytes that the lines of a signature encode."""
 
     def forge(out):
         first, *lines, last = (out / SIGNATURE).read_text("ascii").splitlines()

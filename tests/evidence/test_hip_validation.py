@@ -118,7 +118,6 @@ def test_patient_rates_are_penetrations_and_volumes_per_year(simulated):
 
 
 def page_column(label):
-    """Texts of a column of the table of friction on the page, from top to bottom."""
     part = PAGE.split("% friction begin")[1].split("% friction end")[0]
     head, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in part.strip().splitlines()]
     return [row[head.index(label)] for row in rows]

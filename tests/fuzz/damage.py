@@ -43,7 +43,6 @@ def _with_cell(seed, position, column, cell):
 
 
 def with_bytes(seed, position, width, wound):
-    """Replace some bytes of a file."""
     position %= max(len(seed), 1)
     return seed[:position] + wound + seed[position + width :]
 
@@ -66,7 +65,6 @@ def file_of(*seeds):
 
 
 def table_of(*seeds):
-    """Draw the bytes of a table."""
     seed = st.sampled_from(seeds)
     cell = st.builds(_with_cell, seed, _position, st.integers(0, 6), number | odd_text | quantity)
     head = st.builds(_with_cell, seed, st.just(0), st.integers(0, 6), odd_text | st.sampled_from(HEADS))

@@ -55,7 +55,6 @@ _LAST = ([], [], [], ["--json"], ["--help"], ["--all"], ["--forse", "1"], ["--"]
 
 
 def _given(flags, names):
-    """Flags with their values, one after the other."""
     pairs = [st.tuples(st.just(name), mostly(flags[name], quantity | odd_text)) for name in names]
     return st.tuples(*pairs).map(lambda each: [word for pair in each for word in pair])
 

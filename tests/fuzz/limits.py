@@ -71,7 +71,6 @@ def within_limits():
 
 @contextmanager
 def folder_with(files):
-    """Make a folder with files of these bytes for one input."""
     with TemporaryDirectory() as name:
         for file, raw in files.items():
             (Path(name) / file).write_bytes(raw)
@@ -86,7 +85,6 @@ def check_sentence(text):
 
 
 def check_run(run):
-    """Check the status of a command, and that its refusal is one line."""
     assert run.returncode in (0, 2, 3), (run.returncode, run.stderr)
     assert not any(text in run.stdout + run.stderr for text in ("Traceback", "\x1b"))
     if run.returncode == 2:
@@ -97,6 +95,5 @@ def check_run(run):
 
 
 def check_command(files, *words):
-    """Run a command in a folder with files."""
     with folder_with(files) as folder, within_limits():
         check_run(run(*words, folder=folder))

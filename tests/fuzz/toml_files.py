@@ -12,7 +12,6 @@ from .words import mistyped, mostly, number, odd_text, quoted
 
 
 def value(usual):
-    """One entry as it is written in TOML."""
     return mostly(usual | usual.map(_in_quotes), ODD_VALUES)
 
 
@@ -54,7 +53,6 @@ _written = st.tuples(st.lists(_name, max_size=1), st.tuples(joint, liner, _load)
 )
 
 joints = st.one_of(_written, _written, file_of(*(path.read_bytes() for path in sorted(EXAMPLES.glob("*.toml")))))
-"""Bytes of a joint file."""
 
 TABLE = "points.csv"
 _QUICK = ("hess-forsbach", "hertz", "bartel", "tabulated", "refined")
@@ -112,7 +110,6 @@ def _study(top, joint, design):
 
 
 studies = st.builds(_study, _top, _joint, _design)
-"""Bytes of a study file."""
 
 _cell = mostly(words.clearance, number | odd_text | st.just('"'))
 _ODD_TABLES = (b"clearance\n0.1\n" + b'"' * 999, b"a," * 20_000, b"clearance\n" + b"1" * 200_000)
@@ -135,4 +132,3 @@ csv = st.one_of(
     st.sampled_from(_ODD_TABLES),
     st.binary(max_size=80),
 )
-"""Bytes of a table of numbers."""

@@ -112,7 +112,6 @@ def test_bands_widen_with_the_scatter(scatter):
 
 
 def unstated(seed=3, quantity="indentation"):
-    """Make data without a stated uncertainty."""
     values = DEPTH + np.random.default_rng(seed).normal(0, 4e-4, 12)
     return Measured(quantity=quantity, values=values, force=PRESS, name="press")
 

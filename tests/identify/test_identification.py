@@ -137,7 +137,6 @@ def test_the_posterior_agrees_with_the_bands_or_follows_the_product():
 
 
 def test_modulus_and_poissons_ratio_are_not_identifiable_together():
-    """Poisson's ratio and the modulus combine to one stiffness."""
     result = identified(measured("indentation"), free={**FREE, "liner.poisson": (0.3, 0.48)})
     assert result.information.unidentifiable == ("liner_young", "liner_poisson")
     assert result.information.rank == 2

@@ -70,7 +70,6 @@ def test_the_band_of_samples_is_their_central_interval():
 
 
 def test_the_posterior_of_a_number_follows_from_its_prior_and_a_value():
-    """Two normal distributions."""
     pytest.importorskip("emcee")
     data = Measured(quantity="ball_radius", values=18.0, uncertainty=0.2)
     free = {"ball_radius": Normal(mean=17.6, deviation=0.2)}

@@ -28,8 +28,6 @@ NAMES = ("liner_poisson", "ball_poisson")
 
 @dataclass(frozen=True)
 class LinearForward:
-    """Forward model with results that are linear in the unknowns."""
-
     data: tuple
     matrix: np.ndarray
     model: object = bs.HessForsbach()
@@ -55,7 +53,6 @@ def linear_misfit(noise=0.0, unknowns=None, scatter=None, matrix=MATRIX, uncerta
 
 
 def scaled_covariance(misfit, uncertainty=0.02):
-    """Return the covariance of theta."""
     slopes = MATRIX * [unknown.prior_deviation for unknown in misfit.transform.unknowns] / uncertainty
     return np.linalg.inv(slopes.T @ slopes)
 

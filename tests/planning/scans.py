@@ -81,7 +81,6 @@ def arc(radius, start, end, steps):
 
 
 def liner(radius=16.0, wall=8.0, arc_of_cover=170.0, chamfer=0.0, steps=40, segments=96, cylinder=0.0):
-    """Triangles of a liner that opens upwards."""
     end = arc_of_cover / 2
     bore = arc(radius, 0.0, end, steps)
     mouth = bore[-1:] + np.array([[0.0, cylinder]])
@@ -101,7 +100,6 @@ def head(radius=16.0, arc_of_cover=280.0, depth=12.0, steps=40, segments=96):
 
 
 def ribbed(triangles, radius, height=1.0, ribs=8, width=8.0):
-    """Raise ribs on the outer surface beyond a radius."""
     distance = np.linalg.norm(triangles, axis=2)
     azimuth = np.degrees(np.arctan2(triangles[..., 1], triangles[..., 0])) % (360.0 / ribs)
     polar = np.degrees(np.arccos(np.clip(-triangles[..., 2] / distance, -1.0, 1.0)))

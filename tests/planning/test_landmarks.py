@@ -16,7 +16,6 @@ NAMES, POINTS = scans.pelvis()
 
 
 def oriented(names, points, **frame):
-    """Return the orientation of a cup from landmarks."""
     landmarks = Landmarks(names=tuple(names), points=np.array(points))
     return cup_orientation(landmarks, pelvic_frame(landmarks, **frame))
 
@@ -120,7 +119,6 @@ def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
 
 
 def changed(row, point):
-    """Return the points of the pelvis with one replaced."""
     return np.concatenate([POINTS[:row], [point], POINTS[row + 1 :]])
 
 

@@ -16,7 +16,6 @@ from . import scans
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Folder with landmarks, liner and head of one patient."""
     folder = tmp_path_factory.mktemp("plan")
     names, points = scans.pelvis(scatter=0.3, turn=scans.rotated(pitch=8.0))
     (folder / "pelvis.mrk.json").write_text(scans.markups(names, points))

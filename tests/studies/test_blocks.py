@@ -42,7 +42,6 @@ def test_a_small_study_has_blocks_of_half_a_second_and_closed_forms_of_a_million
 
 
 def test_an_enlarged_block_has_the_results_of_small_ones(monkeypatch):
-    """A large block is pressed in parts of half a second."""
     forces = np.linspace(500.0, 3000.0, 10).tolist()
     small = bs.study(bs.Exact(), HIP, force=forces)
     monkeypatch.setattr("ballsocket.studies.task.points_per_block", lambda model: 4)

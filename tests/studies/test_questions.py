@@ -132,7 +132,6 @@ def test_slopes_by_differences_are_those_of_scaling():
     ids=["perfect fit", "rubber"],
 )
 def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name, end, inside):
-    """There steps go to one side."""
     at = {"clearance": 0.1, "liner_poisson": 0.4, "force": 2000.0}
     slopes = [finite_differences(model, HIP, ("max_pressure",), {**at, name: one})[1] for one in (end, inside)]
     for each in at:
@@ -423,7 +422,6 @@ def test_wrong_questions_are_one_sentence_on_the_command_line(tmp_path, words, m
 
 
 def test_sensitivities_in_csv_and_json(tmp_path):
-    """A page of the docs shows the tables."""
     words = shlex.split(f"sensitivity hip-36 --force '3 kN' {SPREAD} --count 64 --of max_pressure")
     figures = either((), ("--figure", "all.png"))
     found = answer(*words, "--second-order", "--csv", "all.csv", *figures, folder=tmp_path)

@@ -140,7 +140,6 @@ def test_a_study_stopped_many_times_is_that_of_an_undisturbed_one(tmp_path, star
 
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_killed_workers_cost_retries(tmp_path, start, engine):
-    """One or two of them, at random moments."""
     process, moments, killed = start(engine=engine), random.Random(engine), []
     while len(killed) < 2 and process.poll() is None:
         if stored_blocks(tmp_path / "s.zarr") > len(killed):
@@ -157,7 +156,6 @@ def test_killed_workers_cost_retries(tmp_path, start, engine):
 
 
 def workers_of(process):
-    """Process ids of a study's workers."""
     pids, workers = [process.pid], []
     for pid in pids:
         for path in Path(f"/proc/{pid}/task").glob("*/children"):
