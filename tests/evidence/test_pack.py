@@ -4,9 +4,9 @@ import json
 import math
 import shutil
 from functools import partial
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -281,9 +281,5 @@ RENAMED = {
 
 @pytest.mark.parametrize(("old", "new"), RENAMED.items())
 def test_calls_in_packs_of_version_1_0_still_work(old, new):
-    def resolve(path):
-        module, _, name = path.partition(".")
-        return getattr(import_module(f"ballsocket.evidence.{module}"), name)
-
     with pytest.warns(DeprecationWarning, match=new.rpartition(".")[2]):
-        assert resolve(old) is resolve(new)
+        assert resolve_name(f"ballsocket.evidence.{old}") is resolve_name(f"ballsocket.evidence.{new}")

@@ -50,8 +50,6 @@ def refused_in_a_sentence(files=None):
 
 
 PHASES = numpy.linspace(0.0, 1.0, 11)
-
-
 _rows = [f"{t:.4g},{2000 + 900 * cos(6.2832 * t):.4g},{20 * (t - t * t):.4g},0,0" for t in PHASES]
 CSV = "\n".join(["time [s],force [N],flexion [deg],adduction [deg],rotation [deg]", *_rows]).encode()
 ORTHOLOAD = b"\n".join(

@@ -12,9 +12,12 @@ TRUTH = bs.Joint(ball_radius=15.3, clearance=0.12, liner_thickness=7.4, liner=bs
 VALUES = {"clearance": 0.12, "liner_young": 780.0}
 FREE = {"clearance": (0.02, 0.4), "liner.young": (300.0, 2500.0)}
 NARROW = {"clearance": (0.05, 0.3), "liner.young": (600.0, 1000.0)}
+CLEARANCE = {"clearance": (0.02, 0.3)}
 MODEL = bs.HessForsbach()
 FORCE, PRESS = np.linspace(500.0, 3000.0, 6), np.linspace(250.0, 3000.0, 12)
 CONTACT, DEPTH = MODEL.press(TRUTH, force=FORCE), MODEL.press(TRUTH, force=PRESS).indentation
+AREAS = Measured(quantity="area", values=CONTACT.area, uncertainty=0.04 * CONTACT.area, force=FORCE)
+ERRORS = {"offset": 1.0, "compliance": PRESS, "drift": np.arange(12.0)}
 
 
 def identified(*data, free=FREE, **words):
@@ -33,9 +36,6 @@ def angles_and_pressures(seed):
 
 def indentations(values=DEPTH, **words):
     return Measured(quantity="indentation", values=values, uncertainty=4e-4, force=PRESS, **words)
-
-
-AREAS = Measured(quantity="area", values=CONTACT.area, uncertainty=0.04 * CONTACT.area, force=FORCE)
 
 
 @pytest.mark.parametrize(
@@ -116,9 +116,6 @@ def unstated(seed=3, quantity="indentation"):
     return Measured(quantity=quantity, values=values, force=PRESS, name="press")
 
 
-CLEARANCE = {"clearance": (0.02, 0.3)}
-
-
 def test_an_unknown_noise_is_estimated_and_said():
     """Its bands are those of the estimated noise, wider by Student's quantile."""
     data = unstated(quantity="displacement")
@@ -154,9 +151,6 @@ def test_each_data_set_has_its_own_noise():
 def test_bands_of_estimated_noise_hold_the_truth():
     estimates = [identified(unstated(seed), free=CLEARANCE)["clearance"] for seed in range(100)]
     assert sum(estimate.low < 0.12 < estimate.high for estimate in estimates) >= 89
-
-
-ERRORS = {"offset": 1.0, "compliance": PRESS, "drift": np.arange(12.0)}
 
 
 def by_depth(depths):

@@ -14,6 +14,7 @@ FORCE = np.array([250.0, 500.0, 1000.0, 2000.0, 3000.0])
 CONTACT = bs.Tabulated().press(HIP, force=FORCE)
 READ = CONTACT.indentation + 5e-6 * FORCE + 0.002
 TRUTH = {"clearance": HIP.clearance, "liner_young": HIP.liner.young, "frame.compliance": 5e-6}
+HEADS = "force_N,indentation_um\n"
 
 
 def csv(folder, text, name="press.csv"):
@@ -92,9 +93,6 @@ def test_angles_belong_to_pressures_a_machine_to_indentations_and_a_saturation_t
     assert film.saturated.tolist() == [False, True]
 
 
-HEADS = "force_N,indentation_um\n"
-
-
 @pytest.mark.parametrize(
     ("text", "settings", "message"),
     [
@@ -107,7 +105,6 @@ HEADS = "force_N,indentation_um\n"
         (HEADS + "100,\n" * 9, {}, r"in row 1, 2, 3, 4, 5, 6, 7, 8 \.\.\.; add it"),
         (HEADS + "100,\n" * 8 + "100,20\n", {}, "in row 1, 2, 3, 4, 5, 6, 7, 8; add it"),
         ("force [kN,area_mm2\n1,2\n", {}, "the unit of force .kN = "),
-        ("force),area_mm2\n1,2\n", {}, "column 'force.'"),
         ("force_N,liner_poisson_mm\n1,2\n", {}, "liner_poisson"),
         (HEADS, {}, "press.csv has no row"),
         (HEADS + "0,2\n9,3\n", {}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
@@ -145,8 +142,6 @@ values = [{areas}]
 force = ["1 kN", "3 kN"]
 uncertainty = "1 %"
 """
-
-
 PERCENT, FRAME, AREA = 'uncertainty = "1 %"', 'machine = "frame"', 'quantity = "area"'
 
 

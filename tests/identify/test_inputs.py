@@ -16,6 +16,7 @@ from .rigid import JOINT, MODEL
 
 FORCE = [100.0, 400.0, 900.0]
 CLEARANCE, YOUNG = {"clearance": (0.02, 0.3)}, {"liner.young": (400.0, 2000.0)}
+COMPLIANT = Machine(compliance=1e-6)
 
 
 def measured(quantity="indentation", values=(0.01, 0.02, 0.03), force=FORCE, uncertainty=1e-3, **settings):
@@ -32,9 +33,6 @@ def unknowns(free, *machines):
 
 def torques():
     return measured("friction_torque", observable=sliding_torque())
-
-
-COMPLIANT = Machine(compliance=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -72,8 +70,7 @@ COMPLIANT = Machine(compliance=1e-6)
         # machines
         (lambda: Machine(compliance=(-1e-6, 1e-6)), "a machine's compliance .mm/N. is 0 or more"),
         (lambda: Machine(offset=(0.1, 0.1)), "offset = .* must be a number, or two ends in ascending order"),
-        (lambda: Machine(offset=(0.1, 0.2, 0.3)), "two ends in ascending order"),
-        (lambda: Machine(drift=(-inf, 0.0)), "two ends in ascending order"),
+        *((lambda o=o: Machine(drift=o), "two ends in ascending order") for o in ((0.1, 0.2, 0.3), (-inf, 0.0))),
         (lambda: unknowns({}, Machine(offset=1.0), Machine(offset=2.0)), "two machines have the name 'machine'; use"),
         # unknowns
         (lambda: unknowns({**YOUNG, "liner_young": (1.0, 2.0)}), "an unknown is stated twice"),
@@ -89,8 +86,8 @@ COMPLIANT = Machine(compliance=1e-6)
         (lambda: identified({}), "free has no unknowns"),
         (lambda: identified({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}), "are one too many"),
         (lambda: identified({**CLEARANCE, **YOUNG}, data=measured(values=0.02, force=9.0)), "1 values do not suff"),
-        (lambda: identified(data=measured("area", [10.0, 5e3, 20.0])), r"area\[1\] = 5000 .* below half of the ball"),
         (lambda: identified(data=measured(values=0.02, force=9.0, uncertainty=None)), "is missing, and 1 values are t"),
+        (lambda: identified(data=measured("area", [10.0, 5e3, 20.0])), r"area\[1\] = 5000 .* below half of the ball"),
         (lambda: identified(data=[]), "data must have at least one set of measurements"),
         (lambda: identified(joint=JOINT.replace(clearance=np.array([0.1, 0.2]))), "identify one joint at a time"),
         (lambda: identified({"liner_thickness": (0.05, 0.1)}, bs.Tabulated()), "has no result for all the data"),

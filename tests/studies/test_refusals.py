@@ -61,7 +61,6 @@ def off_axis(force=2000.0, /, **spread):
         # materials
         (lambda: press(liner=["uhmwpe"], force=1.0), r"liner must be a list of Materials, got \['uhmwpe'\]"),
         (lambda: press(liner=1000.0, force=1.0), "liner must be a Material or a list of Materials, got 1000"),
-        (lambda: press(liner=[], force=1.0), "liner has no values"),
         (lambda: press(liner=[bs.POM, bs.POM], force=1.0), "liner has POM twice"),
         (lambda: press(liner=[bs.POM], liner_young=[1.0], force=1.0), "liner_young varies along two axes"),
         # samples
@@ -91,9 +90,7 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: correlated({PAIR: 0.5, PAIR[::-1]: 0.4}), "is given twice"),
         (lambda: correlated(CLASH), "no joint distribution has .* clearance, force = 0.9; .*: reduce them"),
         # calibrations
-        (lambda: bs.calibrate(HIP, force=[0.0, 1000.0]), "a calibration needs loads .N. above 0"),
-        (lambda: bs.calibrate(HIP, force=np.nan), "a calibration needs loads .N. above 0"),
-        (lambda: bs.calibrate(HIP, force=[]), "a calibration needs loads .N. above 0"),
+        *((lambda f=f: bs.calibrate(HIP, force=f), "loads .N. above 0") for f in ([0.0, 1000.0], np.nan, [])),
         (lambda: bs.calibrate(HIP, force=1e9), "exact has no result for some joints or loads: .* not reach this load"),
         (lambda: bs.corrected_vessel(1.0, -3.0, 0.0), "the factor on K_B must be above 0"),
         (lambda: bs.calibrate(TWO, form=bs.as_polynomial), "has 2 different values, but Eq. .18. has three constants"),

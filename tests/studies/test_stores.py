@@ -27,6 +27,8 @@ from ..hip.test_uncertainty import short_file
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": np.linspace(0.05, 0.2, 12).tolist(), "force": [500.0, 1500.0, 3000.0, 4000.0]}
+LABEL = b'{"zarr_format": 3, "node_type": "group", "attributes": '
+STUDY = "joint = 'hip-36'\nstore = '{}'\n[axes]\nforce = [1, 2]\n"
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -124,9 +126,6 @@ def test_custom_models_are_distinguished_by_what_their_formula_encloses(tmp_path
 def test_points_of_an_unfinished_store_have_a_status(store):
     first_chunk(store, "status").unlink()
     assert (read(store).status.values == NOT_COMPUTED).any()
-
-
-LABEL = b'{"zarr_format": 3, "node_type": "group", "attributes": '
 
 
 def test_a_store_whose_label_has_no_study_is_no_study_and_left_alone(store, tmp_path):
@@ -273,9 +272,6 @@ def test_a_study_at_an_address_is_that_of_the_memory_and_resumes(bucket, finishe
     with stopped_at(2, RuntimeError("slow down")), pytest.raises(OSError, match=message) as no:
         presses("memory://bucket/slow.zarr")
     assert no.value.filename == "memory://bucket/slow.zarr"
-
-
-STUDY = "joint = 'hip-36'\nstore = '{}'\n[axes]\nforce = [1, 2]\n"
 
 
 def test_a_store_of_a_file_or_a_command_is_an_address_or_a_path_beside_the_file(tmp_path):

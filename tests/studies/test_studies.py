@@ -30,6 +30,7 @@ from .servers import cluster
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
+LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
 
 
 @pytest.mark.parametrize("name", ["hess-forsbach", "tabulated", "exact", "plane-layer"])
@@ -81,9 +82,6 @@ def test_diameters_are_axes():
     np.testing.assert_array_equal(found.max_pressure, by_radii.max_pressure)
     for name, limit in radii.items():
         np.testing.assert_allclose(Limit(name=name).evaluate(found), limit, rtol=1e-12)
-
-
-LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
 
 
 def rows_of(path):
