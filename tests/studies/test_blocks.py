@@ -15,7 +15,7 @@ from ballsocket.studies.design import Design, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.metadata import _describe_array
 from ballsocket.studies.run import _create_task, memory_size
-from ballsocket.studies.sampling import Method
+from ballsocket.studies.sampling import Method, permute
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
 
 HIP = bs.joints["hess-forsbach"]
@@ -100,6 +100,12 @@ def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
     assert np.mean(points * count % 1.0) == pytest.approx(0.5, abs=0.02)
     other = sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
     assert not np.isclose(other, chunks[0]).any()
+
+
+def test_a_permutation_has_each_number_once():
+    keys = np.random.SeedSequence(0).generate_state(8, np.uint64)
+    for count in (1, 2, 65, 1000):
+        assert sorted(permute(np.arange(count, dtype=np.uint64), count, keys).tolist()) == list(range(count))
 
 
 def test_no_worker_draws_all_samples(monkeypatch, small_chunks):
