@@ -23,7 +23,7 @@ def blocks(page, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
-SLURM_PROGRAM, _, SLURM_SCRIPT = blocks("slurm.md", "text")[:3]
+SLURM_PROGRAM = blocks("slurm.md", "text")[0]
 
 
 def slurm_options():
@@ -31,22 +31,6 @@ def slurm_options():
     calls = [node for node in ast.walk(ast.parse(SLURM_PROGRAM)) if isinstance(node, ast.Call)]
     call = next(call for call in calls if getattr(call.func, "id", "") == "SLURMCluster")
     return {keyword.arg: ast.literal_eval(keyword.value) for keyword in call.keywords}
-
-
-def plain(script):
-    """Return a submit script without interpreter, address and version of Dask's command."""
-    script = re.sub(r"\S*python\S* -m", "python -m", script.strip())
-    script = re.sub(r"tcp://\S+", "tcp://", script)
-    return [line.strip() for line in script.splitlines() if line.strip()]
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_the_submit_script_is_that_of_the_page():
-    jobqueue = pytest.importorskip("dask_jobqueue")
-    local = {"scheduler_options": {"host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}}
-    with jobqueue.SLURMCluster(**slurm_options(), **local) as cluster:
-        script = cluster.job_script()
-    assert plain(script) == plain(SLURM_SCRIPT)
 
 
 PROGRAMS = {

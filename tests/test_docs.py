@@ -95,6 +95,8 @@ def test_commands_of_a_page_print_the_output_shown(path, folder):
         program, *words = shlex.split(command.removeprefix("$ "))
         assert program == "ballsocket"
         done = run(*words)
+        if "no C compiler" in done.stderr:
+            pytest.skip("no C compiler")
         assert (done.returncode, done.stderr) == (0, "")
         printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
         expected, got = (

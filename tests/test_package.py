@@ -141,14 +141,6 @@ def test_every_publication_is_cited():
     assert unused == set()
 
 
-def test_a_comparison_states_reasons_of_invalid_models():
-    answers = bs.compare(HIP, force=3000.0)
-    reason = "hertz, steuermann: outside ε ≤ 7°: a half-space ignores that the surfaces curve"
-    assert reason in repr(answers)
-    assert "hertz, steuermann: outside ε ≤ 7°" in answers._repr_html_()
-    assert repr(answers).split("\n")[-len(answers.notes()) :] == answers.notes()
-
-
 def test_all_summaries_have_one_list_of_columns():
     names = [*(column.name for column in COLUMNS), "utilisation", "utilisation_note"]
     assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == names

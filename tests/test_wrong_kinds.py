@@ -1,6 +1,5 @@
 """Arguments of a wrong type, name or unit: each is refused in one sentence, and no part of it is ignored."""
 
-import struct
 import warnings
 
 import numpy
@@ -8,7 +7,6 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors.processes import Serial
-from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import HipSimulation
 from ballsocket.hip.simulator_cycles import iso_14242_1
@@ -86,22 +84,6 @@ def test_a_scan_with_huge_coordinates_is_refused(tmp_path, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_an_archive_without_all_of_its_members_is_damaged(tmp_path):
-    """A damaged directory lists fewer members."""
-    path = tmp_path / "kept.npz"
-    write_arrays(path, rings=numpy.arange(12.0), count=3, identity="run")
-    assert set(read_arrays(path)) == {"rings", "count", "identity"}
-    raw = bytearray(path.read_bytes())
-    size, begin = struct.unpack("<LL", raw[-10:-2])
-    first = 46 + sum(struct.unpack("<HHH", raw[begin + 28 : begin + 34]))  # of the entry for one member
-    raw[-10:-2] = struct.pack("<LL", size - first, begin + first)
-    path.write_bytes(raw)
-    with numpy.load(path) as damaged:
-        assert len(damaged.files) == 2
-    with pytest.raises(ValueError, match="kept.npz is damaged"):
-        read_arrays(path)
-
-
 def test_a_damaged_label_of_a_store_names_the_store(tmp_path):
     pytest.importorskip("zarr")
     bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
@@ -119,7 +101,6 @@ def hip(**parts):
 REFUSED = {
     TypeError: [
         (lambda: hip(cup="steep"), "cup must be a Cup, got 'steep'"),
-        (lambda: hip(cup=None), "cup must be a Cup, got None"),
         (lambda: hip(cycle="iso-14242-1"), "cycle must be a Cycle, got 'iso-14242-1'"),
         (lambda: hip(joint="hip-28"), "joint must be a Joint, got 'hip-28'"),
         (lambda: bs.Exact().press("Hip 28", force=1.0), r"must be a Joint, got 'Hip 28'; use bs.joints\['hip-28'\]"),
@@ -134,14 +115,12 @@ REFUSED = {
     ],
     KeyError: [
         (lambda: bs.joints["hip36"], "joint 'hip36' is not known; did you mean 'hip-36'"),
-        (lambda: bs.materials["UHMPE"], "material 'UHMPE' is not known; did you mean 'uhmwpe'"),
         (lambda: bs.catalogue["hess"], "model 'hess' is not known; did you mean 'hess-forsbach'"),
         (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' is not in this comparison; did you mean 'hertz'"),
     ],
     ValueError: [
         (lambda: PRESSED.pressure(30), "angle = 30 is not allowed: .* in radians; 30 degrees are 0.5236 radians$"),
         (lambda: PRESSED.pressure([0.1, 30.0]), r"angle\[1\] = 30 is not allowed: .*; 30 degrees are 0.5236 radians$"),
-        (lambda: PRESSED.friction_torque(0.1, 90), "axis_angle = 90 is .* radians; 90 degrees are 1.571 radians$"),
         (lambda: bs.Exact().press(HIP, force=1e3).stress(angle=30, depth=1.0), "angle = 30 is .* are 0.5236 radians$"),
         (lambda: bs.Exact().press(HIP, force=1e3).displacement(30), "angle = 30 is .* 30 degrees are 0.5236 radians$"),
         (lambda: bs.Exact().press(HIP, half_angle=40), "half_angle = 40 is .*; 40 degrees are 0.6981 radians$"),

@@ -51,12 +51,6 @@ def test_a_cup_that_opens_downwards_has_its_load_in_the_body(tmp_path):
     assert given[1] is None
 
 
-@pytest.mark.long
-def test_models_without_a_rim_are_invalid_near_it():
-    results = answered("hip-36", *COARSE, "--force", "3kN", "--tilt", "60", "--model", "sphere", "--model", "refined")
-    assert (results["sphere"]["valid"], results["refined"]["valid"]) == (True, False)
-
-
 def test_a_load_out_of_the_bore_gives_status_3_and_its_tilt():
     done = run("press", "hip-36", "--force", "3kN", "--tilt", "120", *COARSE)
     assert done.returncode == 3
@@ -73,7 +67,7 @@ def test_the_terminal_shows_the_position_of_the_contact():
     assert "sphere: load 36.5° from the cup's axis, contact 0.7 mm from the rim, largest pressure 37" in inside
     assert "° from the axis; rings of 4°, " in inside
     assert " s; error of the rings: d ±0.2 %, ε ±0.9 %, pmax ±0.2 %" in inside
-    assert "mm at the rim, largest pressure 8" in over
+    assert re.search(r"contact cut off by \d\.\d mm at the rim, largest pressure 8", over)
     assert "mm at the rim, pressure unbounded there; rings of 4°" in dug
 
 

@@ -30,15 +30,6 @@ def test_a_contact_is_summarised_for_json():
     assert bs.Exact().press(HIP, force=3000.0).summary()["error"]["force"] < 1e-3
 
 
-def test_contacts_are_printed_with_the_range_of_their_points():
-    text = repr(PRESSED)
-    assert f"{PRESSED.area:.6g} mm²" in text
-    assert f"{PRESSED.utilisation:.3g}" in text
-    contact = bs.Bartel().press(HIP, force=np.array([1000.0, 3000.0, 1e13]))
-    assert "{:.5g} to {:.5g} mm".format(*contact.indentation[:2]) in repr(contact)
-    assert "2 of 3" in repr(contact)
-
-
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated(), bs.Hertz(), bs.Exact()], ids=lambda one: one.name)
 def test_a_finished_contact_is_independent_of_the_arrays_of_the_caller(model):
     radius, young, force = np.array([14.0, 16.0]), np.array([800.0, 900.0]), np.array([100.0, 200.0])

@@ -12,7 +12,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.contact import strength
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, von_mises_ratio
-from ballsocket.contact.verdict import StrengthUse, assess_strength, strength_uses
+from ballsocket.contact.verdict import assess_strength, strength_uses
 from ballsocket.elasticity.exact import subsurface
 
 from ..extent import some
@@ -304,12 +304,6 @@ def test_uses_of_strengths_are_stresses_over_strengths_with_the_largest_first():
     assert pressed.ratio == pytest.approx(contact.max_pressure / 20.0)
     assert stressed.ratio == pytest.approx(contact.utilisation)
     assert ball.stress == pytest.approx(strength.ball_stress_ratio(bs.COCR.poisson) * contact.max_pressure)
-
-
-def test_uses_are_printed_in_percent_or_as_a_multiple():
-    use = StrengthUse(part="ball", strength="yield_stress", stress=100.0, allowed=100.0)
-    assert str(use) == "100 % of the yield stress of the ball"
-    assert str(replace(use, stress=123.456)) == "1.23 times the yield stress of the ball"
 
 
 @pytest.mark.parametrize(

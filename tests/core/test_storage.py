@@ -2,6 +2,7 @@
 
 import os
 import stat
+import struct
 from hashlib import sha256
 from pathlib import Path
 
@@ -96,25 +97,30 @@ def test_arrays_are_read_as_they_were_written(tmp_path):
     assert (int(arrays["count"]), str(arrays["text"]), arrays["empty"].shape) == (3, "µ", (0, 2))
 
 
-def damaged(content):
-    """Return damaged forms of the content of a file."""
-    end = len(content) - 22
-    return {
-        "empty": b"",
-        "cut": content[:-5],
-        "half": content[: len(content) // 2],
-        "changed": content[:100] + bytes([content[100] ^ 255]) + content[101:],
-        "more members": content[: end + 10] + b"\x03" + content[end + 11 :],
-        "fewer members": content[: end + 10] + b"\x01" + content[end + 11 :],
-        "no archive": b"PK" + bytes(100),
-    }
+def without_a_member(content):
+    """Return an archive whose directory does not list its first member."""
+    size, begin = struct.unpack("<LL", content[-10:-2])
+    entry = 46 + sum(struct.unpack("<HHH", content[begin + 28 : begin + 34]))
+    return content[:-10] + struct.pack("<LL", size - entry, begin + entry) + content[-2:]
 
 
-@pytest.mark.parametrize("damage", damaged(bytes(200)))
+DAMAGE = {
+    "empty": lambda content: b"",
+    "cut": lambda content: content[:-5],
+    "half": lambda content: content[: len(content) // 2],
+    "changed": lambda content: content[:100] + bytes([content[100] ^ 255]) + content[101:],
+    "more members": lambda content: content[:-12] + b"\x03" + content[-11:],
+    "fewer members": lambda content: content[:-12] + b"\x01" + content[-11:],
+    "member not listed": without_a_member,
+    "no archive": lambda content: b"PK" + bytes(100),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damaged_arrays_and_objects_are_refused(tmp_path, damage):
     path = tmp_path / "a.npz"
     write_arrays(path, x=np.arange(9.0), y=np.ones(2))
-    path.write_bytes(damaged(path.read_bytes())[damage])
+    path.write_bytes(damage(path.read_bytes()))
     with pytest.raises((ValueError, OSError)):
         read_arrays(path)
     np.savez(path, x=np.array([{}], dtype=object))

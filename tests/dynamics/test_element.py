@@ -1,7 +1,6 @@
 """Force element: gradient of its energy, equal and opposite loads on both bodies, and non-negative dissipation."""
 
 import json
-import logging
 from dataclasses import replace
 from itertools import product
 from math import inf, nan, pi, radians
@@ -234,22 +233,6 @@ def test_status_reports_overflow_and_nan_of_rates_and_bristles(rates, friction):
     assert several.status.tolist() == [ContactState.CONTACT, ContactState.NO_NUMBER]
     if isinstance(friction, Bristles):
         assert element((0.0, 0.0, 0.12), deflection=(nan, 0.0, 0.0, 0.0)).status is ContactState.NO_NUMBER
-
-
-def test_validity_warning_is_logged_once(caplog):
-    element = bs.ForceElement(bs.Hertz(), HIP)
-    array = replace(element)
-    with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
-        element((0.0, 0.0, C + 1e-5))
-        element((0.0, 0.0, C + 1.01 * element.wall))  # has no result
-        assert caplog.messages == []
-        for depth in (0.05, 0.06):
-            element((0.0, 0.0, C + depth))
-            element(np.array([[0.0, 0.0, C + depth]]))
-        (message,) = caplog.messages
-        array(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05]]))
-    assert message.startswith("hertz at an indentation of 0.05 mm: outside ε")
-    assert caplog.messages == [message] * 2
 
 
 def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():

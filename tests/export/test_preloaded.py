@@ -96,19 +96,3 @@ def test_the_commands_export_an_interference_but_not_as_a_table(tmp_path):
     refused = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "rod", folder=tmp_path)
     assert refused.returncode == 2
     assert re.fullmatch("ballsocket: .*export c, drake, modelica or mujoco.*\n", refused.stderr)
-
-
-@pytest.mark.long
-def test_the_commands_export_an_interference(tmp_path):
-    finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
-    assert finished.returncode == 0, finished.stderr
-    assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
-    assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
-
-
-@pytest.mark.long
-def test_a_table_of_a_preloaded_joint_is_refused(tmp_path):
-    finished = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "rod", folder=tmp_path)
-    assert finished.returncode == 2
-    assert "export c, drake, modelica or mujoco" in finished.stderr
-    assert finished.stderr.count("\n") == 1

@@ -10,24 +10,9 @@ from ballsocket.core import arrays
 from ballsocket.export.c_text import c_number, c_statements
 from ballsocket.export.recorder import FUNCTIONS, Recorded, Tape, directional_derivatives, where
 
-OPERATORS = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "==": operator.eq,
-    "!=": operator.ne,
-    "&": operator.and_,
-    "|": operator.or_,
-    "neg": operator.neg,
-    "not": operator.not_,
-    "pow": operator.pow,
-    "fabs": abs,
-}
+NAMES = {"+": "add", "-": "sub", "*": "mul", "/": "truediv", "<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq"}
+NAMES |= {"!=": "ne", "&": "and_", "|": "or_", "neg": "neg", "not": "not_", "pow": "pow", "fabs": "abs"}
+OPERATORS = {sign: getattr(operator, name) for sign, name in NAMES.items()}
 
 
 def evaluate(part, inputs):
