@@ -1,6 +1,5 @@
 """Pages on clusters: the submit script of SLURM by a dry run, and the manifest of Kubernetes."""
 
-import ast
 import os
 import re
 import stat
@@ -24,13 +23,6 @@ def blocks(page, language):
 
 
 SLURM_PROGRAM = blocks("slurm.md", "text")[0]
-
-
-def slurm_options():
-    """Return the options of the cluster in the program of the page."""
-    calls = [node for node in ast.walk(ast.parse(SLURM_PROGRAM)) if isinstance(node, ast.Call)]
-    call = next(call for call in calls if getattr(call.func, "id", "") == "SLURMCluster")
-    return {keyword.arg: ast.literal_eval(keyword.value) for keyword in call.keywords}
 
 
 PROGRAMS = {

@@ -6,7 +6,6 @@ import shlex
 import shutil
 from importlib import import_module
 from importlib.util import find_spec
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -142,17 +141,11 @@ def test_a_figure_has_a_light_and_a_dark_palette(monkeypatch):
     assert np.allclose(on_black[0, :4], [black, white, (0.4, 0.4, 0.4), blue])
 
 
-def test_the_picture_of_the_rooms_has_every_floor_and_the_data_flow(monkeypatch, tmp_path):
-    """The names in the picture are the rooms of the package in their order, then the steps from a joint to a figure."""
+def test_the_picture_of_the_rooms_has_every_floor_and_the_data_flow(monkeypatch):
     monkeypatch.syspath_prepend(DOCS / "_ext")
     import rooms
 
-    titles = ["joint", "model", "contact", "study", "figure"]
     names = [room for level in rooms.floors() for room in level]
     modules = [path for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()]
     assert {*names} == {path.stem for path in modules} - {"__init__", "__main__", "version"}
-    assert [step.title for step in rooms.data_flow()] == titles
-    rooms.write_pictures(tmp_path)
-    for theme in rooms.THEMES:
-        texts = ElementTree.parse(tmp_path / f"rooms.{theme}.svg").iter("{http://www.w3.org/2000/svg}text")
-        assert [element.text for element in texts if element.get("font-weight") == "600"] == names + titles
+    assert [step.title for step in rooms.data_flow()] == ["joint", "model", "contact", "study", "figure"]

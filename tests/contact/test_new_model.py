@@ -5,14 +5,11 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
 
 import ballsocket as bs
-from ballsocket.paper.accuracy import accuracies, paper_joints
-from ballsocket.reports import accuracy_results
 
 from ..places import CONTRIBUTING, ROOT
 
@@ -21,11 +18,11 @@ FILE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "contact/test_models.py")
 
 
-@pytest.fixture(scope="module")
-def package(tmp_path_factory):
-    """Copy the package into a folder and add the model of the page."""
-    folder = tmp_path_factory.mktemp("added")
-    added = folder / "ballsocket"
+@pytest.mark.long
+def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(tmp_path):
+    """The model of the page is added to a copy of the package."""
+    assert FILE.count("\n") <= 48
+    added = tmp_path / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, added, ignore=shutil.ignore_patterns("__pycache__"))
     (added / "models" / "mattress.py").write_text(FILE, encoding="utf-8")
     catalogue = (added / "catalogue.py").read_text("utf-8")
@@ -34,27 +31,12 @@ def package(tmp_path_factory):
         assert before in catalogue
         catalogue = catalogue.replace(before, line + before, 1)
     (added / "catalogue.py").write_text(catalogue, encoding="utf-8")
-    shutil.copy(ROOT / "pyproject.toml", folder)
-    return folder
-
-
-@pytest.mark.long
-def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
-    assert FILE.count("\n") <= 48
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     places = [str(ROOT / "tests" / name) for name in CONTRACT]
     options = ("-n", "0", "--long", "-o", "pythonpath=", "-p", "no:cacheprovider", "-k", "mattress")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    environment |= {"PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"}
+    environment |= {"PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
     command = [sys.executable, "-m", "pytest", "-v", *options, *places]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8", check=False, env=environment)
     assert done.returncode == 0, done.stdout
     assert int(re.search(r"(\d+) passed", done.stdout)[1]) >= 30
-
-
-def test_a_new_model_has_a_row_of_the_accuracy_table(package, monkeypatch):
-    place = spec_from_file_location("ballsocket.models.mattress", package / "ballsocket" / "models" / "mattress.py")
-    monkeypatch.setitem(sys.modules, place.name, module := module_from_spec(place))
-    place.loader.exec_module(module)
-    joints = paper_joints(16)
-    rows = accuracies({"mattress": module.Mattress(), "hertz": bs.Hertz()}, joints, joints)
-    assert "| `mattress` | " in accuracy_results.markdown([row.summary() for row in rows])

@@ -44,26 +44,6 @@ def test_roots_of_numbers_and_arrays(law, target, low, high, start, root):
     np.testing.assert_allclose(values, root, rtol=tolerance)
 
 
-@pytest.mark.parametrize("case", ["cube", "steep", "below the bracket", "above the bracket", "negative"])
-def test_number_takes_the_steps_of_an_array(case):
-    law, target, low, high, start, _ = CASES[case]
-    numbers, values = [], []
-
-    def of_numbers(x):
-        numbers.append(float(x))
-        return law(x)
-
-    def of_arrays(x):
-        values.append(float(x[0]))
-        return law(x)
-
-    increasing_root(of_numbers, target, low, high, start, steps=12)
-    increasing_root(of_arrays, *(np.full(1, value) for value in (target, low, high, start)), steps=12)
-    count = min(len(numbers), len(values))
-    assert abs(len(numbers) - len(values)) <= 1
-    np.testing.assert_allclose(numbers[:count], values[:count], rtol=1e-12)
-
-
 def test_roots_of_different_targets_converge_together():
     targets = np.array([1e-6, 1.0, 27.0, 64.0, 1e3])
     roots = increasing_root(cube, targets, np.zeros(5), np.full(5, 20.0), np.full(5, 5.0))

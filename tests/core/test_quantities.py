@@ -136,10 +136,7 @@ def test_allowed_ranges_end_at_the_stated_limits(name, inside, outside):
     assert not any(map(allows, outside))
 
 
-def test_an_angle_in_degrees_gets_a_hint_in_radians():
-    for angle, name in ((45.0, "half_angle"), (np.array([1.0, 45.0]), r"half_angle\[1\]")):
-        with pytest.raises(ValueError, match=f"{name} = 45 is not .*; 45 degrees are 0.7854 radians"):
-            QUANTITIES["half_angle"].check(angle)
+def test_only_a_number_that_may_be_an_angle_in_degrees_gets_a_hint_in_radians():
     assert QUANTITIES["half_angle"].radian_hint(100.0) == QUANTITIES["force"].radian_hint(1.0) == ""
 
 

@@ -235,6 +235,21 @@ def test_status_reports_overflow_and_nan_of_rates_and_bristles(rates, friction):
         assert element((0.0, 0.0, 0.12), deflection=(nan, 0.0, 0.0, 0.0)).status is ContactState.NO_NUMBER
 
 
+def test_each_element_warns_once_that_its_model_is_not_valid(caplog):
+    element = bs.ForceElement(bs.Hertz(), HIP)
+    array = replace(element)
+    element((0.0, 0.0, C + 1.01 * element.wall))  # has no result
+    element((0.0, 0.0, C + 1e-5))
+    assert caplog.messages == []
+    for depth in (0.05, 0.06):
+        element((0.0, 0.0, C + depth))
+        element(np.array([[0.0, 0.0, C + depth]]))
+    array(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05]]))
+    first, second = caplog.messages
+    assert first == second
+    assert first.startswith("hertz at an indentation of 0.05 mm: outside ε")
+
+
 def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():
     element = bs.ForceElement(bs.HessForsbach(), HIP)
     for depth in (1e-7, 1e-6, 1e-3, 0.05, 1.0):

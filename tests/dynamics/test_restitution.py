@@ -7,15 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import (
-    Damping,
-    Flores,
-    damping_from_restitution,
-    from_bounces,
-    from_restitution,
-    relations,
-    simulate,
-)
+from ballsocket.dynamics import Damping, Flores, damping_from_restitution, relations, simulate
+from ballsocket.dynamics.damping import from_bounces, from_restitution
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..joints import HIP

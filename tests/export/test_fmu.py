@@ -70,16 +70,6 @@ def test_a_missing_compiler_is_reported_and_the_sources_are_written(version, tmp
         assert not any(name.startswith("binaries") for name in archive.namelist())
 
 
-def test_both_versions_list_their_sources(folder):
-    kinds = [description(folder / "hip2.fmu").find(kind) for kind in ("ModelExchange", "CoSimulation")]
-    for kind in kinds:
-        assert {each.get("name") for each in kind.find("SourceFiles")} == {"hip.c", "fmi2.c"}
-        assert kind.get("modelIdentifier") == "hip"
-    with zipfile.ZipFile(folder / "hip3.fmu") as archive:
-        build = fromstring(archive.read("sources/buildDescription.xml"))
-    assert {each.get("name") for each in build.iter("SourceFile")} == {"hip.c", "fmi3.c"}
-
-
 @pytest.mark.parametrize(("version", "tag", "key"), [(2, "Unknown", "index"), (3, "Output", "valueReference")])
 def test_loads_depend_on_the_state_and_the_contact_on_the_position(version, tag, key, folder):
     root = description(folder / f"hip{version}.fmu")
