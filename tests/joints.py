@@ -14,9 +14,7 @@ def floats(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(low, high, allow_nan=False, allow_infinity=False)
 
 
-materials = st.builds(
-    lambda log_young, poisson: bs.Material(young=10.0**log_young, poisson=poisson), floats(0, 5), floats(-0.5, 0.49)
-)
+materials = st.builds(lambda power, nu: bs.Material(young=10.0**power, poisson=nu), floats(0, 5), floats(-0.5, 0.49))
 joints = st.builds(
     lambda radius, clearance, thickness, liner, ball: bs.Joint(
         ball_radius=radius,

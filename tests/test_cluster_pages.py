@@ -43,9 +43,7 @@ def encrypted(folder):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("program", "protocol"), [(lambda _: SLURM_PROGRAM, "tcp://"), (encrypted, "tls://")], ids=["plain", "encrypted"]
-)
+@pytest.mark.parametrize(("program", "protocol"), [(lambda _: SLURM_PROGRAM, "tcp://"), (encrypted, "tls://")])
 def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program, protocol):
     """A job starts at once, as a process of this machine, with one core and few points."""
     pytest.importorskip("dask_jobqueue")

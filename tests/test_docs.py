@@ -98,10 +98,9 @@ def test_commands_of_a_page_print_the_output_shown(path, folder):
             pytest.skip("no C compiler")
         assert (done.returncode, done.stderr) == (0, "")
         printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
-        expected, got = (
-            re.sub(r"\b\d+\.\d\d s\b", "0.00 s", text) for text in (shown, with_numbers_of(shown, printed))
-        )
-        assert got.splitlines() == expected.splitlines()
+        texts = shown, with_numbers_of(shown, printed)
+        expected, got = (re.sub(r"\b\d+\.\d\d s\b", "0.00 s", text).splitlines() for text in texts)
+        assert got == expected
 
 
 def test_python_blocks_of_a_page_are_examples_with_output():

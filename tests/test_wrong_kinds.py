@@ -29,26 +29,20 @@ def matrix(*values):
 
 
 @pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        (DataFrame(), "got a DataFrame: take one of its columns"),
-        (matrix(1.0, 2.0), "got a numpy.matrix: use numpy.asarray"),
-        (matrix(-1.0), "got a numpy.matrix: use numpy.asarray"),
-    ],
+    ("value", "hint"),
+    [(DataFrame(), "a DataFrame: take one of its columns"), (matrix(-1.0), "a numpy.matrix: use numpy.a")],
 )
-def test_data_frames_and_matrices_are_refused(value, message):
-    with pytest.raises(TypeError, match=f"force must be a number or an array .* {message}"):
+def test_data_frames_and_matrices_are_refused(value, hint):
+    with pytest.raises(TypeError, match=f"force must be a number or an array .* got {hint}"):
         bs.HessForsbach().press(HIP, force=value)
-    with pytest.raises(TypeError, match=f"ball_radius must be a number or an array .* {message}"):
+    with pytest.raises(TypeError, match=f"ball_radius must be a number or an array .* got {hint}"):
         bs.Joint(ball_radius=value, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
 
 
 COMPLEX = (numpy.float64(0.0), numpy.complex128(0.1j), numpy.float64(0.2))
 
 
-@pytest.mark.parametrize(
-    "position", [(0.0, 0.0, 0.2j), [0, 0, 0.2 + 1e-9j], COMPLEX, (0, 0, 10**400), (None, 0.0, 0.0)], ids=range(5)
-)
+@pytest.mark.parametrize("position", [(0, 0, 0.2j), [0, 0, 0.2 + 1e-9j], COMPLEX, (0, 0, 10**400), (None, 0.0, 0.0)])
 def test_positions_have_three_real_components(position):
     with pytest.raises(ValueError, match="a state must have three components, x, y and z, all real numbers"):
         ELEMENT(position)

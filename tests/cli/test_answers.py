@@ -87,7 +87,7 @@ def test_an_answer_has_validity_sources_and_next_steps(name, folder):
 
 
 @pytest.mark.parametrize(
-    "command", [pytest.param(name, marks=pytest.mark.long if name in SLOW else ()) for name in TABLES]
+    "command", [pytest.param(key, marks=pytest.mark.long if key in SLOW else ()) for key in TABLES]
 )
 def test_tables_fit_narrow_terminals_without_cut_numbers(command, folder):
     for columns in some((60, 80), 1):

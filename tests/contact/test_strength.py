@@ -181,13 +181,6 @@ def test_a_ball_without_a_yield_stress_is_noted_above_a_strain():
     assert note.startswith("strength of the ball not checked")
 
 
-def test_a_comparison_lists_a_note_once_with_its_models():
-    comparison = bs.compare(replace(HIP, liner=BARE, ball=None), force=3000.0)
-    told = [note for note in comparison.notes() if NOT_CHECKED in note]
-    assert len(told) == 1
-    assert "exact" in told[0].split(":")[0]
-
-
 @EACH_PROMISING
 def test_the_proportional_limit_is_noted_between_itself_and_yield(model):
     force = np.array([1e3, 12e3, 1e5])

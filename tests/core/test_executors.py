@@ -281,14 +281,8 @@ def write_certificate(folder):
     from cryptography.hazmat.primitives.asymmetric import ec
 
     key, name = ec.generate_private_key(ec.SECP256R1()), x509.Name([])
-    builder = x509.CertificateBuilder(
-        issuer_name=name,
-        subject_name=name,
-        public_key=key.public_key(),
-        serial_number=x509.random_serial_number(),
-        not_valid_before=datetime(2000, 1, 1),
-        not_valid_after=datetime(2100, 1, 1),
-    )
+    dates = datetime(2000, 1, 1), datetime(2100, 1, 1)
+    builder = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number(), *dates)
     names = x509.SubjectAlternativeName([x509.IPAddress(ip_address("127.0.0.1"))])
     certificate = builder.add_extension(names, critical=False).sign(key, hashes.SHA256())
     private = serialization.PrivateFormat.PKCS8, serialization.NoEncryption()

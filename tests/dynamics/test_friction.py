@@ -20,9 +20,7 @@ SMOOTH = bs.ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0
 HELD = replace(SMOOTH, friction=Bristles(coefficient=0.1, stiffness=20.0, damping=1e-3, static_coefficient=0.15))
 
 
-@pytest.mark.parametrize(
-    ("spin", "axis"), [((0.0, 3.0, 0.0), np.pi / 2), ((0.0, 0.0, 3.0), 0.0)], ids=["turn", "drill"]
-)
+@pytest.mark.parametrize(("spin", "axis"), [((0, 3.0, 0), np.pi / 2), ((0, 0, 3.0), 0.0)], ids=["turn", "drill"])
 def test_friction_moment_equals_the_integral_of_the_contact_pressure(spin, axis):
     for depth in (0.002, 0.04, 0.2):
         contact = bs.HessForsbach().press(HIP, indentation=depth)

@@ -52,9 +52,7 @@ def solved_film(case, method):
 FAST = pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long)
 
 
-@pytest.mark.parametrize(
-    ("rate", "central", "least", "meridians", "error"), [(10.0, 515.2, 433.0, 24, 0.016), FAST], ids=["slow", "fast"]
-)
+@pytest.mark.parametrize(("rate", "central", "least", "meridians", "error"), [(10.0, 515.2, 433.0, 24, 0.016), FAST])
 def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch):
     """Values of quadratic finite elements, `galerkin_film.py`; the error of few meridians is of order two."""
     monkeypatch.setattr(film_problem, "_ON_SPRINGS", replace(film_problem._ON_SPRINGS, meridians=meridians))
