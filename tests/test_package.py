@@ -39,7 +39,6 @@ def test_studies_exports_its_functions_and_suggests_similar_names():
 def test_a_press_of_the_package_names_that_of_the_models():
     with pytest.raises(AttributeError, match=r"no attribute 'press'; .* bs\.Exact\(\)\.press.*; bs\.compare"):
         bs.press  # noqa: B018
-    assert bs.Exact().press(HIP, force=3000.0).force == bs.compare(HIP, force=3000.0)["exact"].force
 
 
 def test_every_named_material_is_a_constant():

@@ -77,7 +77,6 @@ def test_models_of_a_file_press_as_in_python(name, folder):
         ("wrong.py:x", "model file wrong.py failed in line 1: SyntaxError"),
         ("leaves.py:x", "model file leaves.py failed in line 1: SystemExit: 3"),
         ("json.py:x", "rename json.py: its name must be new"),
-        ("winkle", "model 'winkle' is not known"),
     ],
 )
 def test_what_is_no_model_is_refused_in_one_sentence(value, message, folder):

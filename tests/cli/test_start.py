@@ -44,7 +44,6 @@ def modules_after(*words):
         (("--help",), set()),
         (("pres",), set()),
     ],
-    ids=["press", "options with units", "models", "help", "unknown"],
 )
 def test_a_command_imports_its_own_modules_and_no_heavy_package(words, modules):
     loaded = modules_after(*words)

@@ -249,7 +249,6 @@ def test_a_piece_is_a_task_of_dask_and_nothing_is_left_after_the_run(scheduler):
 
 
 def wait_until(condition):
-    """Wait until a condition is met, at most half a minute."""
     end = time.monotonic() + 30
     while not condition() and time.monotonic() < end:
         time.sleep(0.05)

@@ -30,7 +30,6 @@ def test_files_are_read_as_they_were_written(folder):
 
 
 def write_draft(path):
-    """Write a folder with a label and an array."""
     (path / "array").mkdir(parents=True)
     (path / "label").write_text("label", encoding="utf-8")
     (path / "array" / "part").write_text("part", encoding="utf-8")

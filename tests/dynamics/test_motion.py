@@ -220,11 +220,9 @@ def test_steps_are_shortened_to_fill_the_duration(duration, step, steps):
     assert motion.position[-1, 0] == pytest.approx(duration, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    "friction", [Friction(coefficient=0.5, transition_speed=1.0), Friction(coefficient=0, viscous=1)]
-)
-def test_steps_with_friction_stiffer_than_inertia_converge(friction):
-    element = replace(FREE, friction=friction, damping=Damping(hysteresis=0.01, time=1e-3))
+@pytest.mark.parametrize("law", [Friction(coefficient=0.5, transition_speed=1.0), Friction(coefficient=0, viscous=1)])
+def test_steps_with_friction_stiffer_than_inertia_converge(law):
+    element = replace(FREE, friction=law, damping=Damping(hysteresis=0.01, time=1e-3))
     thrown = {"mass": 0.1, "position": (0.0, 0.02, HIP.clearance + 0.03), "duration": 2e-3, "step": 1e-4}
     motion = simulate(element, velocity=(30.0, -20.0, 5.0), spin=(3.0, 2.0, -4.0), pull=(0, 0, 800.0), **thrown)
     assert motion.end_reason == ""
