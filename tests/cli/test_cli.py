@@ -14,7 +14,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import cli
-from ballsocket.cli import root
+from ballsocket.cli import elasticity_options, root
 from ballsocket.cli.json_answers import echo_json
 from ballsocket.cli.press_files import ReportOptions
 from ballsocket.files.joint_file import JointFile
@@ -311,7 +311,6 @@ def test_lists_references_and_version_are_printed():
     for words in (*bs.catalogue, "pin-in-hole", "ν 0.3 to 0.49", "Heß & Forsbach 2021"):
         assert words in models
     assert "hip-28" in presets
-    assert "cocr" in presets
     assert "@phdthesis{persson1964" in cited
     assert run("cite", "hertz").stdout.startswith("@article{hertz1882,")
     assert "@article{plank2007," in run("cite", "hip-28").stdout
@@ -379,6 +378,12 @@ def test_imperial_units_show_inches_and_pounds():
     expected |= {"dF/dd": contact.stiffness / 175.1268, "K": contact.foundation_modulus / 0.2714471}
     assert {name: values[name] for name in expected} == pytest.approx(expected, rel=1e-3)  # four digits are printed
     assert answer(*words, "--units", "imperial") == answer(*words)
+
+
+@pytest.mark.parametrize(("distance", "clearance", "text"), [(0.2, 0.0, "cut off by 0.0 mm at"), (-9.4, -0.1, "up to")])
+def test_a_contact_at_the_rim_has_no_negative_distance_and_a_preloaded_one_has_none(distance, clearance, text):
+    contact = SimpleNamespace(edge_distance=distance, edge_loaded=True, joint=SimpleNamespace(clearance=clearance))
+    assert elasticity_options._rim_text(contact) == f"contact {text} the rim"
 
 
 @pytest.mark.parametrize("load", [{"indentation": 0.04}, {"half_angle": 0.7}, {"force": 0.0}])

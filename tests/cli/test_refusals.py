@@ -32,6 +32,7 @@ press '' --force 1 => the joint's name is empty
 press {hip} --model herz => model 'herz' is not known; did you mean 'hertz'?
 press {hip} --figure a.jpg => figure 'a.jpg' must end in .png, .svg, .pdf
 press no/joint.toml => 'no/joint.toml' does not exist: there is no folder 'no'
+map {hip} --figure no/a.png => cannot write a.png: 'no' is not a folder
 study {hip} --out no/a.csv => cannot write a.csv: 'no' is not a folder
 press {hip} --model fem --vtk no/a.vtu => cannot write a.vtu: 'no' is not a folder
 map {hip} --points 1 => points = 1 is not allowed: an axis has 2 values or more
@@ -58,6 +59,7 @@ press {hip-36} --liner uhmwpe,pom => 'uhmwpe,pom' are several, and one is needed
 optimise {hip-36} --vary clearance=0..1 --vary liner=uhmwpe,pom --figure a.png => two axes, and 1 numbers vary
 build-tables --out no/a.npz => no/a.npz: No such file or directory
 schema hipp => kind of file 'hipp' is not known; did you mean 'hip'?
+cite herz => model, material or joint 'herz' is not known; did you mean 'hertz'?
 cite titanium => no known publication is named in the source of titanium
 
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem

@@ -25,7 +25,6 @@ NAMES = [*COMMANDS]
 
 
 def modules_after(*words):
-    """Names of the modules that a process has loaded after a command."""
     code = (
         f"import sys; sys.argv = ['ballsocket', *{words!r}]\n"
         "from ballsocket.cli import main\n"

@@ -67,8 +67,12 @@ def test_the_number_of_evaluations_is_limited():
     assert len(calls) <= 5
     assert loose == pytest.approx(5.0 ** (1 / 3), rel=0.02)
     calls.clear()
-    increasing_root(counted, np.full(2, 5.0), np.zeros(2), np.full(2, 4.0), np.full(2, 4.0), steps=2)
+    many = np.full(2, 5.0), np.zeros(2), np.full(2, 4.0), np.full(2, 4.0)
+    increasing_root(counted, *many, steps=2)
     assert len(calls) == 2
+    calls.clear()
+    increasing_root(counted, *many)
+    assert len(calls) <= 8
 
 
 @pytest.mark.parametrize("steps", [2, 60], ids=["unrolled", "loop"])

@@ -47,8 +47,10 @@ def work(*, progress):
     return progress
 
 
+find = renamed_names(__name__, {"Socket": "Cup", "Old": "ballsocket.problem.cup.Cup"})
+
+
 def test_renamed_names_attributes_and_arguments_warn():
-    find = renamed_names(__name__, {"Socket": "Cup", "Old": "ballsocket.problem.cup.Cup"})
     with pytest.warns(DeprecationWarning, match=r"test_deprecation.Socket is deprecated: use Cup; removed in 2.0"):
         assert find("Socket") is Cup
     with pytest.warns(DeprecationWarning, match="use ballsocket.problem.cup.Cup"):
@@ -69,14 +71,7 @@ def test_renamed_names_attributes_and_arguments_warn():
 
 
 @pytest.mark.parametrize(
-    "use",
-    [
-        lambda: renamed_names(__name__, {"Socket": "Cup"})("Socket"),
-        lambda: Cup().old,
-        lambda: work(listen=1),
-        lambda: Note(told="loose"),
-    ],
-    ids=["name", "attribute", "argument", "field"],
+    "use", [lambda: find("Socket"), lambda: Cup().old, lambda: work(listen=1), lambda: Note(told="loose")]
 )
 def test_a_warning_points_to_the_line_that_uses_the_old_name(use):
     with pytest.warns(DeprecationWarning, match="is deprecated: use") as caught:

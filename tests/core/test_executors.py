@@ -208,8 +208,6 @@ def test_a_worker_ends_with_its_parent(before):
     assert not is_running(worker)
 
 
-# Dask
-
 CLUSTER = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50, "processes": False}
 
 

@@ -62,7 +62,6 @@ def test_units_have_the_stated_factors_and_keys_of_angles_end_in_degrees(quantit
     for unit in (quantity.written, quantity.shown):
         there = inside.to((unit.text or "1").replace("°", "deg").replace("²", "**2"))
         assert there.magnitude == pytest.approx(unit.factor, rel=1e-15)
-
     assert (quantity.written.text == "°") == (quantity.unit == "rad") == quantity.key.endswith("_deg")
 
 
