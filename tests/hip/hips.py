@@ -43,8 +43,9 @@ WEAR_DATA = '[[data]]\nquantity = "volume"\nvalues = "38 mm^3/Mc"\nrate = "mean"
 
 def hip(diameter=28.0, liner=8.0, clearance=0.1, **words):
     """Return a hip of another program's material; equal arguments give the same object."""
+    oriented = getattr(words.get("cup"), "oriented", None)  # equal cups differ where only one has stated angles
     try:
-        return _cached_hip(diameter, liner, clearance, *words.items())
+        return _cached_hip(oriented, diameter, liner, clearance, *words.items())
     except TypeError:  # an argument without a hash
         return _make_hip(diameter, liner, clearance, *words.items())
 
@@ -56,7 +57,9 @@ def _make_hip(diameter, liner, clearance, *words):
     return HipSimulation(joint=joint, **(usual | dict(words)))
 
 
-_cached_hip = cache(_make_hip)
+@cache
+def _cached_hip(oriented, *arguments):
+    return _make_hip(*arguments)
 
 
 @cache

@@ -34,9 +34,8 @@ def test_a_cup_with_an_explicit_zero_angle_is_upright():
         use = hip(cup=bs.Cup(**words))
         assert tilt_of(use) == 0
         assert not any("standard requires" in note for note in use.notes)
-    assert tilt_of(hip(cup=bs.Cup(arc_of_cover=2.8))) == 30
-    tilts, untilted = {"tilt": Normal(mean=0.2, deviation=0.05)}, replace(hip(), cup=bs.Cup())
-    scatter = PatientVariability(use=untilted, distributions=tilts)
+    assert tilt_of(hip(cup=bs.Cup())) == 30
+    scatter = PatientVariability(use=hip(cup=bs.Cup()), distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
     assert [tilt_of(scatter.patient(sample).use) for sample in ({"tilt": 0.0}, {})] == [0, 30]
 
 
@@ -56,14 +55,10 @@ def test_a_file_with_an_explicit_zero_angle_has_an_upright_cup(tmp_path):
 def test_a_cup_records_that_an_angle_was_set():
     stated, default = bs.Cup(inclination=0.0), bs.Cup()
     assert stated == default
+    assert stated.oriented
+    assert default.tilted(0.0).oriented
     copies = pickle.loads(pickle.dumps(default)), replace(default, chamfer=0.0)
-    assert [cup.oriented for cup in (stated, default.tilted(0.0), default, *copies)] == [
-        True,
-        True,
-        False,
-        False,
-        False,
-    ]
+    assert not any(cup.oriented for cup in (default, *copies))
     assert cup_table(default).keys() == {"arc_of_cover", "chamfer", "interface"}
     assert cup_table(replace(default, side=bs.Side.LEFT))["side"] == "left"
     assert "inclination" in cup_table(stated)

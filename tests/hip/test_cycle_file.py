@@ -373,14 +373,10 @@ def test_tables_beside_a_hip_file(tmp_path):
     cycle = parsed(tmp_path, **words)
     assert cycle.forces == pytest.approx(read_cycle(files, options=LEFT).forces, abs=0)
     assert cycle.name == "ik"
-    for key, value, message in (
-        ("from", 0.5, "does not close"),
-        ("to", 0.5, "does not close"),
-        ("closing", 0.6, "closing = 0.6 is not allowed"),
-        ("side", "lef", "side = 'lef' is not known; did you mean 'left'"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            parsed(tmp_path, **words | {key: value})
+    for key in ("from", "to"):
+        refuses("does not close", parsed, tmp_path, **words | {key: 0.5})
+    refuses("closing = 0.6 is not allowed", parsed, tmp_path, **words, closing=0.6)
+    refuses("side = 'lef' is not known; did you mean 'left'", parsed, tmp_path, **words | {"side": "lef"})
 
 
 def test_parameters_of_simulators_have_units():

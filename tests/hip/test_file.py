@@ -119,12 +119,7 @@ def test_a_report_has_figures_and_results_and_stands_alone(solved_file):
     folder, answer = solved_file
     page = (folder / "hip.html").read_text(encoding="utf-8")
     assert page.count("data:image/png;base64") == 7
-    for text in (
-        "<h1>Wear of a hip: hip in use</h1>",
-        "<dd>Acme &lt;Ortho&gt;</dd>",
-        "<img class='logo'",
-        "Cross-shear",
-    ):
+    for text in ("<h1>Wear of a hip: hip in use</h1>", "<dd>Acme &lt;Ortho&gt;</dd>", "<img class='logo'"):
         assert text in page
     assert not re.search(r"(src|href)='http", page)
     assert (folder / "store" / "hip_in_use.npz").exists()
@@ -246,18 +241,11 @@ def test_a_bore_worn_to_the_rim_is_no_edge_loading(short_film):
     (note,) = (note for note in worn.notes if "rim" in note)
     assert note.startswith("worn to the rim: after 1e+06 cycles the worn bore fits the ball")
     assert "this is not edge loading" in note
-    steep = hip(cup=bs.Cup(inclination=radians(80.0)), **QUICK).after(1e4)
-    assert steep.worst.kind == "edge loading"
-    assert steep.summary()["history"][-1]["edge"]["instants_edge_loaded"] > 0
-    assert any(note.startswith("edge loading: in the first cycle the contact reaches the rim") for note in steep.notes)
 
 
 def test_edge_loading_is_a_load_near_the_rim_or_the_largest_pressure_there():
-    distances = ([0.0, 0.0, 1.0], 5.0), ([1.0, 0.0, 2.0], 0.0)
-    at_rim, clear = (
-        RimDistance(distance=np.array(distance), azimuth=np.zeros(3), pressure=np.full(3, pressure))
-        for distance, pressure in distances
-    )
+    at_rim = RimDistance(distance=np.array([0.0, 0.0, 1.0]), azimuth=np.zeros(3), pressure=np.full(3, 5.0))
+    clear = replace(at_rim, distance=np.array([1.0, 0.0, 2.0]), pressure=np.zeros(3))
     assert mask_edge_loading(at_rim, clear, 9.0).tolist() == [False, True, False]
     assert mask_edge_loading(at_rim, clear, 5.0).tolist() == [True, True, False]
 

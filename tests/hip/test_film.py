@@ -144,11 +144,13 @@ def test_edge_distance_equals_the_closed_form():
 def test_contact_at_the_rim_is_noted_with_its_instant(short_film):
     history = hip(cycle=iso_14242_1(36), ring_width=radians(4.0), cup=bs.Cup(inclination=radians(60.0))).after(1e5)
     assert history.last.edge_distance.min() == 0
+    assert history.worst.kind == "edge loading"
     note = next(note for note in history.notes if note.startswith("edge loading: in the first cycle"))
     assert "of 36 instants, most at 12.5 % of the cycle, 0° from the cup's uppermost point" in note
     edge = history.summary()["history"][-1]["edge"]
     assert (edge["distance_mm"], edge["place_deg"]) == (0.0, pytest.approx(0.0, abs=0.1))
     assert 0 < edge["pressure_at_rim_MPa"] < history.last.max_pressure
+    assert edge["instants_edge_loaded"] > 0
     first = history.summary()["cycle"]["edge"]["pressure_at_rim_MPa"]
     assert f"the pressure in the outermost ring is at most {first:.3g} MPa" in note
 
@@ -205,12 +207,8 @@ def worn(use, cycles=2e5):
     return WearIntegrator(setup=use).run_until(cycles, lambda count: None)
 
 
-LAWS = [
-    {},
-    {"wear": ContactAreaWear(coefficient=1e-9)},
-    {"wear": CrossShear(straight=K, circular=2 * K, exponent=-0.3)},
-    {"ball_wear": ContactAreaWear(coefficient=1e-9)},
-]
+AREA = ContactAreaWear(coefficient=1e-9)
+LAWS = [{}, {"wear": AREA}, {"wear": CrossShear(straight=K, circular=2 * K, exponent=-0.3)}, {"ball_wear": AREA}]
 
 
 @pytest.mark.parametrize("words", LAWS)

@@ -82,13 +82,11 @@ WORN_BALL = {"ball_wear": bh.Archard(coefficient=K)}
 VALUES = [
     # wear and creep laws
     *each(lambda value: bh.Archard(coefficient=value), (-1e-9, inf, nan), "coefficient = .*at least 0, and finite"),
-    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=10.0), "friction = 10 is not allowed: .*below 10"),
-    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=-0.1), "friction = -0.1 is not allowed"),
+    *each(lambda value: bh.FrictionEnergyWear(coefficient=1, friction=value), (-0.1, 10.0), "friction = .*below 10"),
     (lambda: bh.ContactAreaWear(coefficient=-1.0), "coefficient = -1 is not allowed"),
     (lambda: bh.CrossShear(straight=-1.0, circular=1.0), "straight = -1 is not allowed"),
     (lambda: bh.CrossShear(straight=1.0, circular=-1.0), "circular = -1 is not allowed"),
-    (lambda: bh.CrossShear(straight=1, circular=1, exponent=-1.0), "exponent = -1 .*above -1, and below 3"),
-    (lambda: bh.CrossShear(straight=1, circular=1, exponent=3.0), "exponent = 3 is not allowed"),
+    *each(lambda value: bh.CrossShear(straight=1, circular=1, exponent=value), (-1.0, 3.0), "above -1, and below 3"),
     (lambda: bh.CrossShear(straight=1, circular=1, reference=0.0), "reference = 0 .*MPa.* above 0, and"),
     (lambda: with_coefficient(bh.CrossShear(straight=0.0, circular=1e-6), 1e-6), "on a straight track is positive"),
     (lambda: with_coefficient(CUSTOM, 1e-6), "the wear law has no coefficient"),
@@ -121,16 +119,12 @@ VALUES = [
     (lambda: hip(liner=inf, creep=bh.logarithmic()), "liner_thickness = inf is not allowed: creep needs a liner of"),
     (lambda: hip(**WORN_BALL, creep=bh.logarithmic()), "ball_wear needs surface=Springs.. and no"),
     (lambda: hip(**WORN_BALL, surface=bs.ClosedShell()), "ball_wear needs surface=Springs.. and"),
-    (
-        lambda: hip(cycle=cycle_of(thrown), cup=bs.Cup()),
-        r"dislocated at 40\.5 % .*: the load of 1000 N points 90\.\d° fr",
-    ),
+    (lambda: hip(cycle=cycle_of(thrown), cup=bs.Cup()), r"dislocated at 40\.5 % .*: the load of 1000 N points 90\.\d°"),
     (lambda: hip(cup=replace(TILTED, arc_of_cover=radians(50.0))), r"dislocated at .*, and the bore ends at 25\.0°"),
     (lambda: hip(cycle=mix(STAIRS), cup=cup(45.0, 60.0)), r"dislocated at \d\.\d % of stairs-up"),
     (lambda: hip(cycle=bh.iso_14242_4(50, mismatch=8.0), cup=cup(80.0, 150.0)), "dislocated at .* % of the cycle"),
     *each(lambda value: hip().after(value), (0.0, nan), "cycles = .* is not allowed"),
-    (lambda: hip().after(1e6, [2e6]), "report_at = 2e.06 is not allowed"),
-    (lambda: hip().after(5.0, [-1]), "report_at = -1 is not allowed"),
+    *each(lambda value: hip().after(1e6, [value]), (2e6, -1), "report_at = .* is not allowed"),
     (lambda: hip().after(1e12), r"1e\+12 cycles at the rate of the first one would wear [.\d]+e\+05 mm away"),
     # film
     *each(lambda name: bh.Lubricant(**{name: -1.0}), LUBRICANT, "[a-z_]+ = -1 is not allowed"),
@@ -159,9 +153,7 @@ VALUES = [
     *each(lambda count: mix(WALK, count), (0.0, inf), "per_year = .* is not allowed"),
     (lambda: TableOptions(frame="thigh"), "frame 'thigh' is not known"),
     (lambda: TableOptions(force_on="bone"), "force_on 'bone' is not known"),
-    *each(
-        lambda value: TableOptions(closing=value), (0.51, -0.01), "closing = .* is not allowed: 0 to 0.5 of the range"
-    ),
+    *each(lambda value: TableOptions(closing=value), (0.51, -0.01), "closing = .* is not allowed: 0 to 0.5 of the"),
     # patients
     *each(sample, (0, 1_000_001), "patients = .* is not allowed: it must be 1 to"),
     (lambda: sample(1, -1), "seed = -1 is not allowed: it must be at least 0"),

@@ -102,19 +102,12 @@ def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(tmp_path):
 
 def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
     use = hip()
-    others = [
-        use,
-        hip(diameter=32.0),
-        hip(clearance=0.2),
-        hip(creep=logarithmic()),
-        hip(ball_wear=Archard(coefficient=K)),
-        hip(cycle=use.cycle.scaled(1.1)),
-        replace(use, ring_width=0.06),
-        replace(use, tolerance=1e-3),
-        *(replace(use, film_limit=FilmLimit(ratio=ratio)) for ratio in (1.0, 2.0)),
-        replace(use, seconds_per_cycle=2.0),
-        replace(use, cup=use.cup.tilted(0.1)),
-    ]
+    hips = {"diameter": 32.0, "clearance": 0.2, "creep": logarithmic(), "ball_wear": Archard(coefficient=K)}
+    settings = {"ring_width": 0.06, "tolerance": 1e-3, "seconds_per_cycle": 2.0, "cup": use.cup.tilted(0.1)}
+    settings |= {"cycle": use.cycle.scaled(1.1), "film_limit": FilmLimit(ratio=1.0)}
+    others = [use, replace(use, film_limit=FilmLimit(ratio=2.0))]
+    others += [hip(**{name: value}) for name, value in hips.items()]
+    others += [replace(use, **{name: value}) for name, value in settings.items()]
     identities = {make_checkpoint(other, tmp_path).identity for other in others}
     assert len(identities) == len(others)
     assert {len(identity) for identity in identities} == {64}

@@ -71,17 +71,10 @@ def closest_approach():
 def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
     assert RIM.closest_index(loading(900.0, 100.0, 200.0, 800.0)) == 2
     assert RIM.closest_index(loading(900.0, 300.0, 200.0, 800.0)) == 1
-    closest = closest_approach()
-    assert closest.location == "55.0 % of the cycle, 30° from the cup's uppermost point"
-    assert closest.summary() == {
-        "distance_mm": 0.0,
-        "at": "55.0 % of the cycle",
-        "place_deg": pytest.approx(-30.0),
-        "instants_at_rim": 2,
-        "pressure_at_rim_MPa": 5.0,
-        "kind": "edge loading",
-        "instants_edge_loaded": 2,
-    }
+    assert closest_approach().location == "55.0 % of the cycle, 30° from the cup's uppermost point"
+    step = {"at": "55.0 % of the cycle", "distance_mm": 0.0, "place_deg": pytest.approx(-30.0)}
+    cycle = {"instants_at_rim": 2, "pressure_at_rim_MPa": 5.0, "kind": "edge loading", "instants_edge_loaded": 2}
+    assert closest_approach().summary() == step | cycle
     empty = RimDistance(distance=np.zeros(0), azimuth=np.zeros(0), pressure=np.zeros(0))
     assert empty.closest_index(loading()) is None
     assert empty.closest_approach(loading()) is None

@@ -33,14 +33,10 @@ def test_a_rate_of_38_mm3_gives_three_coefficients():
 
 
 @pytest.mark.parametrize(
-    ("quantity", "words"),
-    [
-        ("volume", {}),
-        pytest.param("depth", {}, marks=pytest.mark.long),
-        pytest.param("penetration", {"creep": logarithmic()}, marks=pytest.mark.long),
-    ],
+    "quantity", ["volume", *(pytest.param(name, marks=pytest.mark.long) for name in ("depth", "penetration"))]
 )
-def test_simulated_totals_give_the_coefficient_back(quantity, words):
+def test_simulated_totals_give_the_coefficient_back(quantity):
+    words = {"creep": logarithmic()} if quantity == "penetration" else {}
     values = simulated(quantity, **words)
     measured = MeasuredWear(quantity=quantity, values=values, cycles=REPORTS, uncertainty=0.05 * values)
     fit = fit_wear_coefficient(hip(wear=Archard(coefficient=3e-6), **QUICK, **words), measured)
