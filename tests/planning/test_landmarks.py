@@ -72,6 +72,13 @@ def test_pelvic_tilt_to_the_front_reduces_the_operative_anteversion_by_its_own_s
     assert angles(found.cup(upright=False)) == pytest.approx((45.0, 15.0), abs=1e-9)
 
 
+def test_a_symphysis_beside_the_middle_leaves_the_pelvic_plane():
+    names, points = scans.pelvis(turn=scans.rotated(roll=6.0, yaw=-9.0))
+    middle = oriented(names, points).frame.axes
+    points[names.index("pubic symphysis")] += 3.0 * middle[0]
+    np.testing.assert_allclose(oriented(names, points).frame.axes, middle, atol=1e-9)
+
+
 def test_pelvic_obliquity_adds_to_the_inclination_of_the_higher_side():
     names, points = scans.pelvis(45.0, 0.0, turn=scans.rotated(roll=5.0))
     raised = oriented(names, points, vertical=(0.0, 0.0, 1.0))
