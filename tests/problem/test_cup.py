@@ -165,7 +165,7 @@ def from_angles(**words):
         (bs.Cup, {"anteversion": "15 deg"}, "anteversion must be a number"),
         (bs.Cup, {"side": "left"}, "side must be Side.RIGHT or Side.LEFT, got 'left'"),
         (bs.Cup, {"interface": True}, "interface must be Interface.BONDED or Interface.SLIDING, got True"),
-        (bs.Cup().tilt, {"direction": (0.0, 0.0, 0.0)}, "the length of direction = 0 is not allowed: a direction poin"),
+        (bs.Cup().tilt, {"direction": (0.0, 0.0, 0.0)}, "the length of direction = 0 is not allowed: a direction"),
         (bs.Cup().tilt, {"direction": [UP, (0.0, 0.0, 0.0)]}, r"the length of direction\[1\] = 0 is not allowed"),
         (bs.Cup().tilt, {"direction": (1.0, 0.0)}, "a direction has three components"),
         (bs.Cup().tilt, {"direction": 1.0}, "a direction has three components"),

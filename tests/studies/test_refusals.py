@@ -78,7 +78,7 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: scattered(count=1), "count = 1 is not allowed: the number of samples is 2 to"),
         (lambda: scattered(confidence=1.0), "a confidence level is between 0 and 1"),
         (lambda: scattered(BOTH, second_order=True, correlation={tuple(BOTH): 0.5}), "second-order indices need indep"),
-        (lambda: scattered(model=bs.HessForsbach(), quantities=["force"], count=64), "force does not change with clea"),
+        (lambda: scattered(model=bs.HessForsbach(), quantities=["force"], count=64), "force does not change with"),
         (lambda: finite_differences(bs.Hertz(), HIP, ("area",), {"force": 0.0}), "force = 0 is first contact"),
         (lambda: shapley_effects(abs, NORMAL * 11, np.eye(11), 2, 0, None), "parameters = 11 .* ones are at most"),
         (lambda: off_axis(3000.0, force=tolerance(2000.0, 600.0)), "force = 3000 N lies outside its tolerance"),
