@@ -70,7 +70,7 @@ press {hip} --model fem --element-size '0.0005 mm' => GiB of memory
 press {hip} --model fem --vtk a.txt => 'a.txt' must end in .vtu, .vtk
 
 deck {hip} --out a --steps 0 => --steps
-deck {hip} --out a --steps 1000000 => less than or equal to 1000
+deck {hip} --out a --steps 1000000 => --steps
 deck {hip} --out a --scale 7 => scale = 7 is not allowed
 deck {hip} --out a --force 0 => need a contact under load
 
