@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from collections import defaultdict
+from enum import EnumType
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,11 @@ def present() -> dict[str, Any]:
     return {
         "names of ballsocket": sorted(bs.__all__),
         "names of ballsocket.hip": sorted(bs.hip.__all__),
-        "parameters": {name: _parameters(thing) for name, thing in sorted(things.items()) if callable(thing)},
+        "parameters": {
+            name: _parameters(thing)
+            for name, thing in sorted(things.items())
+            if callable(thing) and not isinstance(thing, EnumType)  # theirs are Python's, and differ by its version
+        },
         "models": sorted([*bs.catalogue, "fem", "sphere"]),
         "presets": {"joints": sorted(bs.joints), "materials": sorted(bs.materials)},
         "units": {each.name: each.unit for each in QUANTITIES.values()},

@@ -77,7 +77,7 @@ def simulate(
     problem = _InitialValueProblem(
         element, force_element, checked_mass, checked_inertia, initial, pull, duration / step_count, step_count
     )
-    if ContactState(force_element(initial[:3], initial[3:6], initial[6:]).status).failed:
+    if ContactState(int(force_element(initial[:3], initial[3:6], initial[6:]).status)).failed:
         return problem.motion_without_steps()
     return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
