@@ -127,16 +127,12 @@ class Preload:
         """
         from scipy.optimize import linprog  # slow to import
 
-        polar, azimuth, _ = self.equilibrium.pressure_map
-        across = numpy.sin(polar)[:, None]
-        height = numpy.broadcast_to(numpy.cos(polar)[:, None], (len(polar), len(azimuth)))
-        directions = numpy.array([across * numpy.cos(azimuth), across * numpy.sin(azimuth), height]).reshape(3, -1)
-        worn = self.model.worn
-        overlap = float(self.joint.interference) - (0.0 if worn is None else worn.depth(directions))
+        gap = self.model.bore_contact(self.joint).gap
+        normals = gap.grid.normals.reshape(3, -1).T
         fitted = linprog(
             [0.0, 0.0, 0.0, 1.0],
-            A_ub=numpy.column_stack([directions.T, -numpy.ones(directions.shape[1])]),
-            b_ub=-overlap * numpy.ones(directions.shape[1]),
+            A_ub=numpy.column_stack([normals, -numpy.ones(len(normals))]),
+            b_ub=-gap.overlap(numpy.zeros((1, 3))).ravel(),
             bounds=[(None, None)] * 3 + [(0.0, None)],
         )
         return float(fitted.x[3])
