@@ -14,8 +14,9 @@ from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
 from ballsocket.hip.jax_springs import join_contacts, solve_patients
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING, grid_neighbours, neighbours_in_subset, spring_foundation
 from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
+from ballsocket.hip.wear_integrator import WearIntegrator
 
-from .hips import socket_force
+from .hips import QUICK, hip, socket_force
 
 CELLS = graded_grid(radians(90.0), radians(6.0))
 SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
@@ -163,6 +164,17 @@ def test_the_compiled_pass_equals_numpy(name, compiled, monkeypatch):
 def test_a_load_that_no_contact_balances_is_not_converged_on_either_path(compiled, monkeypatch):
     for solver in (compiled, solve_in_blocks):
         assert not solved_by(solver, monkeypatch, np.nan * WORN, NO_LATERAL_SPRING, False).converged
+
+
+def test_a_million_cycles_are_the_same_on_both_paths(compiled, monkeypatch):
+    integrators = []
+    for solver in (compiled, solve_in_blocks):
+        monkeypatch.setattr(socket_foundation, "spring_solver", lambda solver=solver: solver)
+        integrators.append(WearIntegrator(setup=hip(**QUICK)).run_until(1e6, lambda cycles: None))
+    one, other = integrators
+    assert one.steps == other.steps
+    assert one.volume == pytest.approx(other.volume, rel=1e-11)
+    np.testing.assert_allclose(one.depth, other.depth, rtol=0, atol=1e-11 * other.depth.max())
 
 
 def test_blocks_of_loads_do_not_change_the_result(monkeypatch):
