@@ -14,7 +14,7 @@ from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import AngleDefinition, Cup, Interface, Side
-from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
+from ..problem.dimensions import resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
@@ -295,8 +295,7 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     if tables.shell is not None:
         if joint.backing:
             raise ValueError("the joint has layers behind its liner already; change them in its file")
-        current = {name: getattr(joint, name) for name in STORED_LENGTHS}
-        shell, remaining = _shell(tables.shell, lengths, changes, current)
+        shell, remaining = _shell(tables.shell, lengths, changes, joint.given_lengths)
         changes = {**remaining, "backing": (shell,)}
     for part, material in (("liner", tables.liner), ("ball", tables.ball)):
         if material is not None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping
+from itertools import combinations
 from math import floor, log10
 from types import MappingProxyType
-from typing import TypedDict
+from typing import Any, TypedDict
 
 from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_names, require
@@ -34,6 +35,19 @@ STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 
 _RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")
 """Lengths of which any two determine the third."""
+
+_BASES = (
+    *(
+        frozenset({*pair, wall})
+        for pair in combinations(_RADIAL_LENGTHS, 2)
+        for wall in ("liner_thickness", "outer_radius")
+    ),
+    frozenset({"clearance", "liner_thickness", "outer_radius"}),
+)
+"""Lengths that determine a joint: two radial ones and one of the wall, or both of the wall and the clearance."""
+
+STORED_AND_OUTER = ("ball_radius", "socket_radius", "clearance", "liner_thickness", "outer_radius")
+"""Lengths without diameters and interference, in the order of messages."""
 
 
 class Lengths(TypedDict, total=False):
@@ -96,27 +110,28 @@ class Dimensions:
         return 2 * self.outer_radius
 
 
-def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """Check given lengths, and derive ball radius, clearance and liner thickness of a joint in mm.
+def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], shell: Array) -> dict[str, Any]:
+    """Check lengths, and derive ball radius, clearance and liner thickness of a joint in mm.
 
     Parameters
     ----------
     lengths : mapping of str to array
         New lengths in mm by their names in `Lengths`.
-    current : mapping of str to array
-        Radius, clearance and thickness of an existing joint, kept if possible; empty for a new joint.
+    given : mapping of str to array
+        Lengths that an existing joint was made from, kept as far as the new ones allow; empty for a new joint.
     shell : array
         Thickness of the shell in mm, see `Dimensions`.
 
     Returns
     -------
     dict of str to array
-        The lengths of `STORED_LENGTHS` in mm.
+        The lengths of `STORED_LENGTHS` in mm, and in `given` the names of those that determine them.
 
     Raises
     ------
     ValueError
-        A length that is not allowed; too few or too many lengths.
+        A length that is not allowed; too few or too many lengths; a given length that would change although nothing
+        says which one.
     TypeError
         A length that is neither a number nor an array.
     """
@@ -125,42 +140,78 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
     try:
         check_unique_lengths(numbers)
     except ValueError as error:
-        raise ValueError(f"{error}{_contradiction(numbers, current, shell)}") from None
-    if not current:
+        raise ValueError(f"{error}{_contradiction(numbers, given, shell)}") from None
+    if not given:
         _check_sufficient_lengths(numbers)
-    stored = derive_lengths(numbers, current, shell)
+    held = held_lengths(numbers, given)
+    stored = derive_lengths({**held, **numbers}, shell)
     for name in ("outer_radius", "outer_diameter"):
-        if name in numbers:
+        if name in numbers or name in held:
             allowed = "it must leave a liner between socket and backing"
-            require(name, numbers[name], stored["liner_thickness"] > 0, allowed)
+            require(name, {**held, **numbers}[name], stored["liner_thickness"] > 0, allowed)
     if "interference" in numbers:
         good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
-    return {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
+    checked = {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
+    return {**checked, "given": (*held, *numbers)}
 
 
-def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> dict[str, Array]:
-    """Derive ball radius, clearance and liner thickness in mm from given lengths, without checks.
+def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str, Array]:
+    """Select the given lengths that stay where others change.
+
+    Three lengths determine a joint. A change of one that is not among the given ones breaks a given one. It is refused
+    unless the changed lengths leave one choice.
+
+    Raises
+    ------
+    ValueError
+        Several choices; the message has each of them.
+    """
+    changed_names = tuple(changed)
+    new = {_EQUIVALENTS.get(name, name) for name in changed_names}
+    old = {_EQUIVALENTS.get(name, name): name for name in given}
+    choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
+    if len(choices) > 1:
+        kept = [[old[name] for name in STORED_AND_OUTER if name in basis - new] for basis in choices]
+        shared = set.intersection(*map(set, kept))
+        ways = " or ".join(
+            " and ".join(f"{name}{_value_text(given[name])}" for name in names if name not in shared) for names in kept
+        )
+        raise ValueError(
+            f"{' and '.join(changed_names)} would change another length that the joint gives: add the one that stays, "
+            f"{ways}"
+        )
+    basis = choices[0] if choices else frozenset(new)
+    return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
+
+
+def _value_text(value: Array) -> str:
+    """Format a length in mm behind its name; empty for an array."""
+    return f" = {value:g} mm" if is_plain_number(value) else ""
+
+
+def derive_lengths(lengths: Mapping[str, Array], shell: Array) -> dict[str, Array]:
+    """Derive ball radius, clearance and liner thickness in mm from the lengths that determine a joint, without checks.
 
     The thickness may be negative.
-
-    Two of radius, socket radius and clearance determine the third. With only one new length, the current ball radius is
-    kept, or else the current clearance. An outer radius determines the thickness of the liner.
     """
-    radii = {DIAMETERS.get(name, name): value / 2 if name in DIAMETERS else value for name, value in lengths.items()}
-    if "interference" in radii:
-        radii["clearance"] = -radii.pop("interference")
-    known = {**current, **radii}
-    if "socket_radius" in radii:
-        if "clearance" in radii:
-            known["ball_radius"] = _subtract_lengths(radii["socket_radius"], radii["clearance"])
+    known = {DIAMETERS.get(name, name): value / 2 if name in DIAMETERS else value for name, value in lengths.items()}
+    if "interference" in known:
+        known["clearance"] = -known.pop("interference")
+    if "ball_radius" in known:
+        R1 = known["ball_radius"]
+        c = known["clearance"] if "clearance" in known else _subtract_lengths(known["socket_radius"], R1)
+        R2 = known.get("socket_radius", R1 + c)
+    else:
+        c = known["clearance"]
+        if "socket_radius" in known:
+            R2 = known["socket_radius"]
         else:
-            known["clearance"] = _subtract_lengths(radii["socket_radius"], known["ball_radius"])
-    if "outer_radius" in radii:
-        socket = radii.get("socket_radius", known["ball_radius"] + known["clearance"])
-        known["liner_thickness"] = _subtract_lengths(radii["outer_radius"], socket + shell)
-    return {name: known[name] for name in STORED_LENGTHS}
+            R2 = _subtract_lengths(known["outer_radius"], known["liner_thickness"] + shell)
+        R1 = _subtract_lengths(R2, c)
+    L = known["liner_thickness"] if "liner_thickness" in known else _subtract_lengths(known["outer_radius"], R2 + shell)
+    return {"ball_radius": R1, "clearance": c, "liner_thickness": L}
 
 
 def check_unique_lengths(names: Iterable[str]) -> None:
@@ -173,20 +224,21 @@ def check_unique_lengths(names: Iterable[str]) -> None:
     radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]
     if len(radial) == len(_RADIAL_LENGTHS):
         raise ValueError(f"{', '.join(radial[:2])} and {radial[2]} are one too many: any two of them fix the third")
-    if "outer_radius" in names_by_length and "liner_thickness" in names_by_length:
+    walls = {"outer_radius", "liner_thickness"} & {*names_by_length}
+    if len(walls) == 2 and len(radial) > 1:
         outer = names_by_length["outer_radius"]
         raise ValueError(f"{outer} and liner_thickness are one too many: either fixes the other")
 
 
-def _contradiction(numbers: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> str:
+def _contradiction(numbers: Mapping[str, Array], given: Mapping[str, Array], shell: Array) -> str:
     """Describe the first of too many lengths that disagrees with the others; empty for arrays."""
-    if not all(map(is_plain_number, (*numbers.values(), *current.values(), shell))):
+    if not all(map(is_plain_number, (*numbers.values(), *given.values(), shell))):
         return ""
     for name, value in numbers.items():
         remaining = {key: number for key, number in numbers.items() if key != name}
         try:
             check_unique_lengths(remaining)
-            implied = _length_of(name, derive_lengths(remaining, current, shell), shell)
+            implied = _length_of(name, derive_lengths({**held_lengths(remaining, given), **remaining}, shell), shell)
         except (ValueError, KeyError):  # the others are too many as well, or too few
             continue
         if abs(implied - value) > _ROUNDING * abs(value):
@@ -205,6 +257,8 @@ def _length_of(name: str, stored: Mapping[str, float], shell: float) -> float:
 def _check_sufficient_lengths(names: Iterable[str]) -> None:
     """Check that the given lengths define a new joint; raise ValueError otherwise."""
     names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
+    if {"clearance", "liner_thickness", "outer_radius"} <= {*names_by_length}:
+        return
     if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):
         raise ValueError("liner_thickness is missing, or outer_radius; liner_thickness = inf is a massive socket")
     radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import reduce
 from itertools import chain
 from math import inf
@@ -60,6 +60,8 @@ class Joint(OneLine, Dimensions):
         infinity in both cases.
     name, source : str
         Name of the joint, and source of its numbers.
+    given : tuple of str
+        Names of the three lengths that determine the joint, those of the call by default. `replace` keeps them.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class Joint(OneLine, Dimensions):
     support: Support = Support.FIXED
     name: str = ""
     source: str = ""
+    given: tuple[str, ...] = field(default=(), compare=False)
 
     def __init__(
         self,
@@ -98,6 +101,7 @@ class Joint(OneLine, Dimensions):
         support: Support = Support.FIXED,
         name: str = "",
         source: str = "",
+        given: tuple[str, ...] = (),
         **lengths: Unpack[Lengths],
     ) -> None:
         """Check the parts, and derive radius, clearance and thickness from the lengths."""
@@ -109,6 +113,9 @@ class Joint(OneLine, Dimensions):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _check_backing(backing)
         set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
+        if given:
+            check_names(given, LENGTHS, "among the given lengths of a joint")
+            set_fields(self, given=tuple(given))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._named_thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
@@ -163,6 +170,11 @@ class Joint(OneLine, Dimensions):
             compliance = compliance + (1 - self.ball.poisson**2) / self.ball.young
         return 1 / compliance
 
+    @property
+    def given_lengths(self) -> dict[str, Array]:
+        """Lengths in mm that the joint was made from, by their names."""
+        return {name: getattr(self, name) for name in self.given or STORED_LENGTHS}
+
     def numbers(self) -> tuple[Array, ...]:
         """List all lengths and elastic constants of the joint, in a fixed order.
 
@@ -206,13 +218,15 @@ class Joint(OneLine, Dimensions):
             support=self.support,
             name=self.name,
             source=self.source,
+            given=self.given,
         )
 
     def replace(self, **changes: Any) -> Joint:
         """Return a copy of the joint with other lengths, materials, layers or another name.
 
-        Radius, clearance and thickness stay the same unless the changes determine them. For example, another head
-        diameter keeps the clearance and the thickness of the liner. The name of a changed joint ends in ", varied".
+        The joint keeps the lengths that it was made from, `given`. Another head diameter keeps the clearance, and the
+        thickness of the liner or the outer diameter, whichever was given. A change that breaks a given length needs
+        the lengths that stay beside it. The name of a changed joint ends in ", varied".
 
         Parameters
         ----------
@@ -232,13 +246,12 @@ class Joint(OneLine, Dimensions):
         >>> print(bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0).dimensions)
         R1 16 mm, clearance 0.1 mm, liner 5 mm
         """
-        attributes = [field.name for field in fields(self) if field.name not in STORED_LENGTHS]
+        attributes = [one.name for one in fields(self) if one.name not in (*STORED_LENGTHS, "given")]
         check_names(changes, (*LENGTHS, *attributes), "in a joint")
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
         new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
-        current = {name: getattr(self, name) for name in STORED_LENGTHS}
         shell = _shell_thickness(_check_backing(new_attributes.get("backing", self.backing)))
-        stored = resolve_lengths(lengths, current, shell)
+        stored = resolve_lengths(lengths, self.given_lengths, shell)
         if is_plain_number(stored["clearance"]) and stored["clearance"] < 0:
             stored["interference"] = -stored.pop("clearance")
         varied_name = f"{self.name.removesuffix(_VARIED)}{_VARIED}"

@@ -12,7 +12,7 @@ from ..core.arrays import Array, where
 from ..core.deprecation import renamed_names
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
-from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, check_unique_lengths, derive_lengths
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, check_unique_lengths, derive_lengths, held_lengths
 
 __getattr__ = renamed_names(
     __name__,
@@ -76,7 +76,7 @@ def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]
         raise ValueError(f"the ball of this joint is rigid: it has no {ball_names[0]}")
     dimensions = {name: value for name, value in values.items() if name in JOINT}
     radius_names = {DIAMETERS.get(name, name) for name in dimensions}
-    lengths = derive_lengths(dimensions, {name: getattr(joint, name) for name in STORED_LENGTHS}, joint.shell)
+    lengths = derive_lengths({**held_lengths(dimensions, joint.given_lengths), **dimensions}, joint.shell)
     radius, clearance, thickness = (lengths[name] for name in STORED_LENGTHS)
     possible = (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
     varied_joint = replace(
