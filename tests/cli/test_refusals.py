@@ -39,7 +39,8 @@ map {hip} --points 1 => points = 1 is not allowed: an axis has 2 values or more
 map {hip} --limit area=3 => 'area=3' is not a limit: it needs <= or >=, such as 'outer_radius<=26
 press {hip} --liner uhmpe => liner material 'uhmpe' is not known; did you mean 'uhmwpe'?
 press {hip} --ball-radius 9 --head-diameter 18 => ball_radius and head_diameter are one too
-press hip-36 --outer-diameter 30 => outer_diameter = '30' is not allowed: it must leave a liner
+press hip-36 --head-diameter 36 --outer-diameter 30 => outer_diameter = '30' is not allowed: it must leave a liner
+press hip-36 --outer-diameter 48 => add the one that stays, ball_radius = 18 mm or liner_thickness = 5 mm
 press . --force 1 => is a folder; a joint file is needed
 press --ball-radius 16 --clearance 0.1 --young 1GPa --poisson 0.4 --force 3kN => liner_thickness is missing
 press {sizes} --force 1 => the liner needs a material, or young and poisson

@@ -85,7 +85,7 @@ def test_numbers_of_a_case_are_those_of_a_single_press_in_the_cup(pack):
 
 
 def test_impossible_joints_have_a_status_and_no_numbers(tmp_path):
-    question = question_of(tmp_path, (CLEARANCE, 'outer_diameter = ["36.1 mm", "48 mm"]'))
+    question = question_of(tmp_path, (CLEARANCE, 'head_diameter = "36 mm"\nouter_diameter = ["36.1 mm", "48 mm"]'))
     rows = matrix.compute_rows(question, list_cases(question))
     assert [(row.status, row.valid) for row in rows] == [("NO_JOINT", False)] * 2 + [("OK", True)] * 2
     assert rows[0].summary()["numbers"]["max_pressure"] is None

@@ -141,7 +141,7 @@ def test_a_value_of_zero_is_read_below_the_zero_of_the_machine(quantity, complia
 
 def test_a_point_without_a_joint_or_a_result_is_nan_and_costs_infinitely_much():
     data = (measured("indentation"), Measured(quantity="clearance", values=0.1, uncertainty=0.1))
-    rows = forward(*data, names=("outer_radius",)).results_at(np.array([[15.0], [22.1]]))
+    rows = forward(*data, names=("outer_radius", "ball_radius")).results_at(np.array([[15.0, 16.0], [22.1, 16.0]]))
     assert np.isnan(rows).tolist() == [[True] * 4, [False] * 4]
     tabulated = forward(*data, names=("liner_thickness",), model=bs.Tabulated())
     assert np.isnan(tabulated.results_at(np.array([[0.01], [5.0]]))).tolist() == [[True] * 3 + [False], [False] * 4]

@@ -78,7 +78,7 @@ def test_a_changed_joint_keeps_its_other_numbers():
     varied = hip.replace(liner=bs.UHMWPE, head_diameter=32)
     assert varied == replace(hip, ball_radius=16, liner=bs.UHMWPE, name="hip-36, varied", source="")
     assert varied.replace(clearance=0.2).name == "hip-36, varied"
-    assert hip.replace(outer_diameter=48.0).liner_thickness == pytest.approx(5.9)
+    assert hip.replace(outer_diameter=48.0, head_diameter=36.0).liner_thickness == pytest.approx(5.9)
     assert hip.replace(name="mine").name == "mine"
     assert hip.replace() == hip
     with pytest.raises(ValueError, match="'linr' in a joint is not known; did you mean 'liner'"):
@@ -186,17 +186,45 @@ def test_outer_radius_includes_the_shell_but_no_infinite_layer():
     np.testing.assert_array_equal(several.shell, [2.0, 0.0])
 
 
-def test_replaced_lengths_keep_the_others():
-    current = {"ball_radius": 17.0, "clearance": 0.25, "liner_thickness": 5.5}
-    for changes, shell, expected in (
-        ({"head_diameter": 36.0}, 0.0, (18.0, 0.25, 5.5)),
-        ({"socket_radius": 17.5}, 0.0, (17.0, 0.5, 5.5)),
-        ({"diametral_clearance": 0.2}, 0.0, (17.0, 0.1, 5.5)),
-        ({"outer_radius": 23.25}, 0.0, (17.0, 0.25, 6.0)),
-        ({"interference": 0.05}, 0.0, (17.0, -0.05, 5.5)),
-        ({"socket_radius": 18.0, "clearance": 0.1, "outer_radius": 24.0}, 1.0, (17.9, 0.1, 5.0)),
-    ):
-        assert tuple(derive_lengths(changes, current, shell).values()) == pytest.approx(expected, rel=1e-13)
+THICK = {"ball_radius": 17.0, "clearance": 0.25, "liner_thickness": 5.5}
+OUTER = {"head_diameter": 34.0, "diametral_clearance": 0.5, "outer_diameter": 45.5}
+SHELLED = bs.Layer(thickness=1.0, material=bs.TITANIUM)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "changes", "expected"),
+    [
+        (THICK, {"head_diameter": 36.0}, (18.0, 0.25, 5.5)),
+        (THICK, {"diametral_clearance": 0.2}, (17.0, 0.1, 5.5)),
+        (THICK, {"interference": 0.05}, (17.0, -0.05, 5.5)),
+        (THICK, {"socket_radius": 17.5, "ball_radius": 17.0}, (17.0, 0.5, 5.5)),
+        (THICK, {"outer_radius": 23.25, "ball_radius": 17.0}, (17.0, 0.25, 6.0)),
+        (THICK, {"socket_radius": 18.0, "clearance": 0.1, "outer_radius": 24.0}, (17.9, 0.1, 6.0)),
+        (OUTER, {"head_diameter": 36.0}, (18.0, 0.25, 4.5)),
+        (OUTER, {"clearance": 0.1}, (17.0, 0.1, 5.65)),
+        (OUTER, {"liner_thickness": 4.0, "head_diameter": 34.0}, (17.0, 0.25, 4.0)),
+        (OUTER, {"liner_thickness": 4.0, "outer_diameter": 45.5}, (18.5, 0.25, 4.0)),
+        (OUTER, {"backing": (SHELLED,)}, (17.0, 0.25, 4.5)),
+        (THICK, {"backing": (SHELLED,)}, (17.0, 0.25, 5.5)),
+    ],
+)
+def test_a_changed_joint_keeps_the_lengths_that_it_was_made_from(lengths, changes, expected):
+    joint = bs.Joint(**lengths, liner=bs.UHMWPE).replace(**changes)
+    assert (joint.ball_radius, joint.clearance, joint.liner_thickness) == pytest.approx(expected, rel=1e-13)
+    assert joint.replace(liner=bs.POM).given_lengths == joint.given_lengths
+
+
+@pytest.mark.parametrize(
+    ("lengths", "changes", "ways"),
+    [
+        (THICK, {"outer_diameter": 52.0}, "ball_radius = 17 mm or liner_thickness = 5.5 mm"),
+        (THICK, {"socket_radius": 17.5}, "ball_radius = 17 mm or clearance = 0.25 mm"),
+        (OUTER, {"liner_thickness": 4.0}, "head_diameter = 34 mm or outer_diameter = 45.5 mm"),
+    ],
+)
+def test_a_change_that_breaks_a_given_length_is_refused_with_both_ways(lengths, changes, ways):
+    with pytest.raises(ValueError, match=f"another length that the joint gives: add the one that stays, {ways}"):
+        bs.Joint(**lengths, liner=bs.UHMWPE).replace(**changes)
 
 
 @pytest.mark.parametrize(
@@ -206,10 +234,10 @@ def test_replaced_lengths_keep_the_others():
 def test_difference_of_two_radii_has_their_digits(ball, socket, clearance):
     """Rounding errors of the difference, as in 0.9 - 0.8 = 0.09999999999999998, are removed at every size."""
     thickness = {"liner_thickness": 5.0}
-    lengths = derive_lengths({"ball_radius": ball, "socket_radius": socket}, thickness, 0.0)
+    lengths = derive_lengths({"ball_radius": ball, "socket_radius": socket, **thickness}, 0.0)
     assert lengths == {"ball_radius": ball, "clearance": clearance, **thickness}
-    assert derive_lengths({"socket_radius": socket, "clearance": clearance}, thickness, 0.0)["ball_radius"] == ball
-    thin = derive_lengths({"ball_radius": 1234.5, "socket_radius": 1234.50000001, **thickness}, {}, 0.0)
+    assert derive_lengths({"socket_radius": socket, "clearance": clearance, **thickness}, 0.0)["ball_radius"] == ball
+    thin = derive_lengths({"ball_radius": 1234.5, "socket_radius": 1234.50000001, **thickness}, 0.0)
     assert thin["clearance"] == pytest.approx(1e-8, rel=1e-4)
 
 

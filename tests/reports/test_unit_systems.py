@@ -96,7 +96,9 @@ def test_a_map_says_what_it_shows_and_names_its_limits():
     figure = study_plots.design_map(space, limits, best={"ball_radius": 19.6, "liner_thickness": 6.3})
     titles = ["largest pressure pmax [MPa]", "contact area A [mm²]", "half angle ε [°]"]
     assert [axes.get_title() for axes in figure.axes] == titles
-    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; model hess-forsbach"
+    assert (
+        figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; radial clearance = 0.1 mm; model hess-forsbach"
+    )
     shown = {text.get_text() for text in figure.axes[0].texts}
     assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= shown
     (alone,) = study_plots.design_map(space, limits, ["max_pressure"]).axes

@@ -23,7 +23,7 @@ from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_c
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
 from .widgets.fields import Field, in_words_of, segments
-from .widgets.joint_fields import joint_inputs, layer_fields, layer_list, layers_edited
+from .widgets.joint_fields import joint_inputs, joint_words, layer_fields, layers_edited
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
@@ -272,7 +272,7 @@ class Page:
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
         self.channel.put("order", list(self.inputs))
-        self.channel.put("#behind", layer_list(self.screen.file.joint))
+        self.channel.put("#behind", joint_words(self.screen.file.joint))
         self.channel.put("view", self.screen.view)
         self.channel.put("link", self.screen.link)
 

@@ -100,13 +100,11 @@ class JointPartOptions:
     ] = None
     outer_radius: Annotated[
         str | None,
-        typer.Option(help="Outer radius of liner or shell in mm: '24 mm'. Beside --liner-thickness only with --shell."),
+        typer.Option(help="Outer radius of liner or shell in mm: '24 mm'."),
     ] = None
     outer_diameter: Annotated[
         str | None,
-        typer.Option(
-            help="Outer diameter of liner or shell in mm: '52 mm'. Beside --liner-thickness only with --shell."
-        ),
+        typer.Option(help="Outer diameter of liner or shell in mm: '52 mm'."),
     ] = None
     shell: Annotated[
         str | None,

@@ -16,8 +16,8 @@ from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Results, fingerprint
 from ..problem import Material
-from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
-from ..studies.parameters import press_arguments
+from ..problem.dimensions import DIAMETERS, EQUIVALENTS, STORED_LENGTHS
+from ..studies.parameters import hold, press_arguments
 from .comparators import applicability, question_ranges
 from .credibility import assess, model_risk
 from .credibility_levels import Record
@@ -76,6 +76,7 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         "risk": model_risk(question.influence, question.consequence),
         "required": {"accuracy": question.accuracy, "limits": [str(limit) for limit in question.limits]},
         "inputs": list_inputs(question),
+        "held": hold(question.file.joint, (*question.axes, *question.tolerances)),
         "recentred": [entry.summary() for entry in question.recentred],
         "model": {"name": question.model.name, "call": _CALL},
         "matrix": [row.summary() for row in rows],
@@ -135,10 +136,19 @@ def _accuracy(record: Record) -> dict[str, Any]:
     return {"largest": largest, "required": required, "holds": largest is not None and largest <= required}
 
 
+FOLLOWS = "follows from the other lengths"
+"""Source of a length that the joint does not give."""
+
+
 def list_inputs(question: Question) -> list[dict[str, Any]]:
     """List every number of the input, with unit, tolerance and source."""
     joint = question.file.joint
-    rows = [("joint", name, getattr(joint, name), JOINT[name].written.text, joint.source) for name in STORED_LENGTHS]
+    given = {EQUIVALENTS.get(name, name) for name in joint.given_lengths}
+    lengths = dict.fromkeys((*STORED_LENGTHS, *(name for name in JOINT if name in given)))
+    rows = [
+        ("joint" if name in given else "", name, getattr(joint, name), "mm", joint.source if name in given else FOLLOWS)
+        for name in lengths
+    ]
     rows += _material_inputs("liner", joint.liner) + _material_inputs("ball", joint.ball)
     for number, layer in enumerate(joint.backing):
         rows.append(("backing", f"backing[{number}].thickness", layer.thickness, "mm", joint.source))

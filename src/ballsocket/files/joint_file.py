@@ -14,7 +14,7 @@ from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import AngleDefinition, Cup, Interface, Side
-from ..problem.dimensions import resolve_lengths
+from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
@@ -276,7 +276,14 @@ def describe_joint(tables: JointTables, name: str = "", source: str = "") -> Joi
         backing = (shell, *backing)
     with as_given(written_in(lengths)):
         joint = Joint(
-            **numbers, liner=liner, ball=ball, backing=backing, support=lengths.support, name=name, source=source
+            **numbers,
+            liner=liner,
+            ball=ball,
+            backing=backing,
+            support=lengths.support,
+            name=name,
+            source=source,
+            given=tuple(quantities_of(lengths)),
         )
     return JointFile(joint, {}, cup_of(tables.cup or CupTable()))
 
@@ -396,6 +403,7 @@ def _shell(
             stored = resolve_lengths(remaining, current, 0.0)
         inner = stored["ball_radius"] + stored["clearance"] + stored["liner_thickness"]
         thickness = round(radius - inner, 12)
+        remaining |= {name: stored[name] for name in STORED_LENGTHS} if current else {}
         if not thickness > 0:
             least = inner * (2 if outer == "outer_diameter" else 1)
             raise ValueError(

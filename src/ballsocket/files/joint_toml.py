@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.arrays import is_plain_number
-from ..problem import Layer, Material
+from ..problem import Joint, Layer, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
 from .joint_file import (
@@ -70,10 +70,7 @@ def _file_table(file: JointFile) -> JointFileTable:
         report=ReportTable(**_details(file.report)) if file.report != ReportDetails() else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(
-            ball_radius=Length(joint.ball_radius),
-            clearance=Length(joint.clearance) if joint.clearance >= 0 else None,
-            interference=Length(-joint.clearance) if joint.clearance < 0 else None,
-            liner_thickness=Length(joint.liner_thickness),
+            **{name: Length(value) for name, value in _lengths(joint).items()},
             support=joint.support,
         ),
         liner=MaterialTable(**_material(joint.liner)),
@@ -82,6 +79,16 @@ def _file_table(file: JointFile) -> JointFileTable:
         cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
         load=_load(file) if file.load or file.aim else None,
     )
+
+
+def _lengths(joint: Joint) -> dict[str, float]:
+    """Return the lengths in mm that a joint gives, without the thickness of the liner if all walls are given."""
+    lengths = dict(joint.given_lengths)
+    if joint.clearance < 0 and "clearance" in lengths:
+        lengths["interference"] = -lengths.pop("clearance")
+    if "liner_thickness" in lengths and ("outer_radius" in lengths or "outer_diameter" in lengths) and len(lengths) > 3:
+        del lengths["liner_thickness"]  # the layers of the file have their thickness
+    return lengths
 
 
 def _details(details: ReportDetails) -> dict[str, Text]:

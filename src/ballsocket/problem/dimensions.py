@@ -21,7 +21,7 @@ DIAMETERS = MappingProxyType(
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
 
-_EQUIVALENTS = MappingProxyType({**DIAMETERS, "interference": "clearance"})
+EQUIVALENTS = MappingProxyType({**DIAMETERS, "interference": "clearance"})
 """Equivalent length of each diameter and of the interference."""
 
 _MAX_INTERFERENCE = 0.1
@@ -36,12 +36,11 @@ STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 _RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")
 """Lengths of which any two determine the third."""
 
+_WALLS = ("liner_thickness", "outer_radius")
+"""Lengths of which one determines the wall behind a socket."""
+
 _BASES = (
-    *(
-        frozenset({*pair, wall})
-        for pair in combinations(_RADIAL_LENGTHS, 2)
-        for wall in ("liner_thickness", "outer_radius")
-    ),
+    *(frozenset({*pair, wall}) for pair in combinations(_RADIAL_LENGTHS, 2) for wall in _WALLS),
     frozenset({"clearance", "liner_thickness", "outer_radius"}),
 )
 """Lengths that determine a joint: two radial ones and one of the wall, or both of the wall and the clearance."""
@@ -169,8 +168,8 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
         Several choices; the message has each of them.
     """
     changed_names = tuple(changed)
-    new = {_EQUIVALENTS.get(name, name) for name in changed_names}
-    old = {_EQUIVALENTS.get(name, name): name for name in given}
+    new = {EQUIVALENTS.get(name, name) for name in changed_names}
+    old = {EQUIVALENTS.get(name, name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:
         kept = [[old[name] for name in STORED_AND_OUTER if name in basis - new] for basis in choices]
@@ -184,6 +183,21 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
         )
     basis = choices[0] if choices else frozenset(new)
     return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
+
+
+def give(name: str, given: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of the lengths that determine a joint once one more is given.
+
+    It takes the place of its diameter or radius, of the other length of the wall, or of one of three radial lengths: of
+    the socket's radius, or else of the clearance.
+    """
+    new = EQUIVALENTS.get(name, name)
+    others = {EQUIVALENTS.get(other, other): other for other in given}
+    others.pop(new, None)
+    for rivals in (_WALLS, _RADIAL_LENGTHS):
+        if new in rivals and {*rivals} <= {new, *others}:
+            del others[next(name for name in ("socket_radius", "clearance", *_WALLS) if name in rivals and name != new)]
+    return (*others.values(), name)
 
 
 def _value_text(value: Array) -> str:
@@ -216,16 +230,15 @@ def derive_lengths(lengths: Mapping[str, Array], shell: Array) -> dict[str, Arra
 
 def check_unique_lengths(names: Iterable[str]) -> None:
     """Check that no given length follows from the others; raise ValueError otherwise."""
-    names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
+    names_by_length = {EQUIVALENTS.get(name, name): name for name in names}
     for name in names:
-        duplicate = names_by_length[_EQUIVALENTS.get(name, name)]
+        duplicate = names_by_length[EQUIVALENTS.get(name, name)]
         if duplicate != name:
             raise ValueError(f"{name} and {duplicate} are one too many: either fixes the other")
     radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]
     if len(radial) == len(_RADIAL_LENGTHS):
         raise ValueError(f"{', '.join(radial[:2])} and {radial[2]} are one too many: any two of them fix the third")
-    walls = {"outer_radius", "liner_thickness"} & {*names_by_length}
-    if len(walls) == 2 and len(radial) > 1:
+    if {*_WALLS} <= {*names_by_length} and len(radial) > 1:
         outer = names_by_length["outer_radius"]
         raise ValueError(f"{outer} and liner_thickness are one too many: either fixes the other")
 
@@ -234,7 +247,7 @@ def _contradiction(numbers: Mapping[str, Array], given: Mapping[str, Array], she
     """Describe the first of too many lengths that disagrees with the others; empty for arrays."""
     if not all(map(is_plain_number, (*numbers.values(), *given.values(), shell))):
         return ""
-    for name, value in numbers.items():
+    for name, value in sorted(numbers.items(), key=lambda item: EQUIVALENTS.get(item[0], item[0]) in _RADIAL_LENGTHS):
         remaining = {key: number for key, number in numbers.items() if key != name}
         try:
             check_unique_lengths(remaining)
@@ -256,7 +269,7 @@ def _length_of(name: str, stored: Mapping[str, float], shell: float) -> float:
 
 def _check_sufficient_lengths(names: Iterable[str]) -> None:
     """Check that the given lengths define a new joint; raise ValueError otherwise."""
-    names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
+    names_by_length = {EQUIVALENTS.get(name, name): name for name in names}
     if {"clearance", "liner_thickness", "outer_radius"} <= {*names_by_length}:
         return
     if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):

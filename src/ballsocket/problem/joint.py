@@ -273,6 +273,7 @@ class Joint(OneLine, Dimensions):
         return {
             "name": self.name,
             **{name: to_list(getattr(self, name)) for name in lengths},
+            "given": list(self.given_lengths),
             "liner": self.liner.summary(),
             "ball": None if self.ball is None else self.ball.summary(),
             "backing": [layer.summary() for layer in self.backing],
@@ -299,8 +300,14 @@ class Joint(OneLine, Dimensions):
         head = f"{self.name}: " if self.name else ""
         behind = "".join(f" on {layer}" for layer in self.backing)
         free = ", free outside" if self.support is Support.FREE else ""
-        return f"{head}{self.dimensions} of {self.liner}{behind}{free}; ball {ball}"
+        outside = next(
+            (f", {JOINT[name].title} {short_text(getattr(self, name))} mm" for name in _OUTSIDES & {*self.given}), ""
+        )
+        return f"{head}{self.dimensions} of {self.liner}{behind}{free}{outside}; ball {ball}"
 
+
+_OUTSIDES = frozenset({"outer_radius", "outer_diameter"})
+"""Lengths of the outside, named in the text of a joint that was made from one."""
 
 _VARIED = ", varied"
 """End of the name of a changed joint."""

@@ -26,6 +26,7 @@ from .evidence_parts import (
 )
 from .figure_files import default_style
 from .pages import render_page, svg_address
+from .study_tables import held_text
 
 _SECTIONS = MappingProxyType(
     {
@@ -116,6 +117,7 @@ def _matrix(record: Record) -> dict[str, Any]:
     """Return limits and worst cases, the figures of the joint and of the matrix, and all cases."""
     worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
     return {
+        "held": held_text(record["held"]),
         "limits": [
             (limit_text(limit), limit["verdict"], *(str(limit[key]) for key in ("beyond", "unknown", "near")))
             for limit in record["limits"]

@@ -20,6 +20,7 @@ from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..core.validity import Status
 from ..studies.export import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, refusal_reason
+from ..studies.metadata import held_in
 from ..studies.parameters import MATERIAL_PARTS
 from .terminal import print_columns
 from .unit_systems import Units
@@ -93,6 +94,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
     quantities = {name: _ends_of(study, name, report) for name in report.ends}
     return {
         "model": study.attrs["model"],
+        "held": held_in(study),
         "points": size,
         "valid": report.valid == size,
         "notes": [f"{count} of {size}: {status.sentence}" for status, count in report.failed.items() if count],
@@ -143,6 +145,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
     return {
         "model": study.attrs["model"],
+        "held": held_in(study),
         "limits": [str(limit) for limit in limits],
         "valid": bool(study.valid.where(good, True).all()),
         "quantities": quantities,
@@ -152,13 +155,18 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
 def front_summary(front: xarray.Dataset) -> dict[str, Any]:
     """Summarise a Pareto front as lists of numbers."""
     names = [str(name) for name in (*front.coords, *front.data_vars) if front[name].dims]
-    return {"model": front.attrs["model"], "points": {name: to_list(front[name].values) for name in names}}
+    return {
+        "model": front.attrs["model"],
+        "held": held_in(front),
+        "points": {name: to_list(front[name].values) for name in names},
+    }
 
 
 def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
     """Summarise the shares of the variance with their intervals, and elasticities, by quantity and parameter."""
     names = [str(name) for name, values in indices.data_vars.items() if values.dims == ("quantity", "parameter")]
     summary: dict[str, Any] = {
+        "held": held_in(indices),
         "samples": indices.attrs["samples"],
         "quantities": {
             quantity: {
@@ -236,6 +244,20 @@ def varying_parameters(study: xarray.Dataset) -> list[str]:
     ]
 
 
+def held_text(held: Mapping[str, float], units: Units = Units.SI) -> str:
+    """List lengths that are held while others vary, with titles and units."""
+    return ", ".join(
+        f"{QUANTITIES[name].title} {_value_text(name, value, units)} {_unit(name, units)}"
+        for name, value in held.items()
+    )
+
+
+def _print_held(held: Mapping[str, float], units: Units = Units.SI) -> None:
+    """Print a line with the lengths that a study holds, if there are any."""
+    if held:
+        Console().print(f"held: {held_text(held, units)}", highlight=False)
+
+
 def result_names(study: xarray.Dataset) -> list[str]:
     """Return the names of the results of a study."""
     return [str(name) for name in study.data_vars if name not in ("status", "valid")]
@@ -256,6 +278,7 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
     """Print least, median and largest value of each result, with the coordinates of the ends."""
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
+    _print_held(held_in(study), units)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
     report = StudyReport.of(study)
     for name, (low, high) in report.ends.items():
@@ -287,6 +310,7 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     Console().print(
         f"{100 * share:.3g} % of the map is allowed" + "".join(f", {limit}" for limit in limits), highlight=False
     )
+    _print_held(held_in(study))
 
 
 def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
@@ -310,6 +334,7 @@ def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
         table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
     print_columns(Console(), table)
     Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
+    _print_held(held_in(front))
 
 
 def print_optimum(best: Optimum) -> None:
@@ -327,6 +352,7 @@ def print_optimum(best: Optimum) -> None:
     for part, material in best.materials.items():
         table.add_row(part, material, "", "-")
     print_columns(console, table)
+    _print_held(best.held)
     if not best.valid:
         console.print("the model is not valid there: use another model", highlight=False)
     if best.active:
@@ -354,6 +380,7 @@ def print_sensitivity(indices: xarray.Dataset) -> None:
             for pair in content["pairs"]:
                 pairs.add_row(" x ".join(pair["parameters"]), _interval_text(pair, "second_order"))
             print_columns(console, pairs)
+    _print_held(held_in(indices))
     if "correlation" in indices.attrs:
         console.print(f"rank correlations: {indices.attrs['correlation']}", highlight=False)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import prod
 from pathlib import Path
 from types import MappingProxyType
@@ -15,7 +15,7 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
 from ..core.storage.atomic_files import check_local
 from ..files.columns import read_columns
-from ..problem import Material
+from ..problem import Joint, Material
 from .axes import (
     MAX_COUNT,
     Axis,
@@ -28,13 +28,20 @@ from .axes import (
     parameter_values,
 )
 from .distributions import Correlation, Distribution, copula_matrix
-from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions
+from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions, hold
 from .sampling import MAX_SOBOL_COUNT, Method
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
     """Points of a study: all combinations of its axes, with fixed parameters.
+
+    Attributes
+    ----------
+    axes : tuple of Axis
+    fixed : mapping of str to float
+    held : mapping of str to float
+        Lengths of the joint that stay while others vary, see `holding`.
 
     Raises
     ------
@@ -44,6 +51,7 @@ class Design:
 
     axes: tuple[Axis, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
+    held: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         names = self.names
@@ -63,6 +71,15 @@ class Design:
             raise ValueError(f"{duplicates[0]} is given twice; one is needed")
         return Design(self.axes + other.axes, {**self.fixed, **other.fixed})
 
+    def holding(self, joint: Joint) -> Design:
+        """Return the design with the lengths of a joint that stay while others vary; raise ValueError as `hold`."""
+        return replace(self, held=hold(joint, self.names))
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Parameters that do not vary, fixed or held."""
+        return {**self.fixed, **self.held}
+
     @property
     def dims(self) -> tuple[str, ...]:
         """Names of the axes."""
@@ -80,8 +97,8 @@ class Design:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the varied and the fixed parameters."""
-        return (*(name for axis in self.axes for name in axis.names), *self.fixed)
+        """Names of the varied, the fixed and the held parameters."""
+        return (*(name for axis in self.axes for name in axis.names), *self.constants)
 
     def values_in(self, box: Sequence[slice]) -> dict[str, Numbers]:
         """Return the values of all parameters in a box of points.
@@ -96,7 +113,7 @@ class Design:
         dict of str to array
             Arrays with one dimension per axis, which broadcast against each other.
         """
-        arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.fixed.items()}
+        arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.constants.items()}
         for dimension, (axis, section) in enumerate(zip(self.axes, box, strict=True)):
             shape = [1] * len(self.axes)
             for name, values in axis.values_in(section).items():

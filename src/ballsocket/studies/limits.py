@@ -136,7 +136,7 @@ def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _Leng
     varied = {str(name): study[name] for name in study.coords if name in JOINT}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
     shell = thickness if thickness < inf else 0.0
-    lengths = derive_lengths(varied, {name: float(joint[name]) for name in STORED_LENGTHS}, shell)
+    lengths = derive_lengths(varied or {name: float(joint[name]) for name in STORED_LENGTHS}, shell)
     return _LengthDimensions(**lengths, shell_thickness=shell)
 
 

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 _PARAMETERS = "parameters"
 """Attribute with the names of varied and fixed parameters, in the order of the design."""
 
+HELD = "held"
+"""Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
+
 _LABELS = "labels"
 """Attribute with the names of materials by axis, as JSON."""
 
@@ -66,16 +69,23 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "design": json.dumps(describe_axes(task.design)),
         "source": f"ballsocket {fingerprint()}",
         _PARAMETERS: " ".join(_parameter_order(task.design)),
+        HELD: json.dumps(task.design.held),
         "Conventions": "CF-1.10",
         **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
+
+
+def held_in(result: xarray.Dataset) -> dict[str, float]:
+    """Return the lengths of the joint in mm that a study or a sensitivity holds while others vary."""
+    held: dict[str, float] = json.loads(result.attrs.get(HELD, "{}"))
+    return held
 
 
 def parameter_coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:
     """Return dimensions and values of each varied or fixed parameter."""
     varying = {name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()}
     fixed: dict[str, tuple[tuple[str, ...], Numbers]] = {
-        name: ((), numpy.asarray(value)) for name, value in design.fixed.items()
+        name: ((), numpy.asarray(value)) for name, value in design.constants.items()
     }
     return {**varying, **fixed}
 
@@ -110,7 +120,7 @@ def order_coordinates(study: xarray.Dataset) -> xarray.Dataset:
 def _parameter_order(design: Design) -> tuple[str, ...]:
     """Return the names of all parameters; the name of a material axis comes before its properties."""
     axes = ((*([axis.name] if axis.labels else []), *axis.names) for axis in design.axes)
-    return (*chain.from_iterable(axes), *design.fixed)
+    return (*chain.from_iterable(axes), *design.constants)
 
 
 def study_identity(task: Task) -> dict[str, Any]:
@@ -120,7 +130,7 @@ def study_identity(task: Task) -> dict[str, Any]:
         "model": _as_plain_data(task.model),
         "joint": _as_plain_data(task.joint),
         "axes": describe_axes(task.design),
-        "fixed": dict(task.design.fixed),
+        "fixed": task.design.constants,
         "quantities": list(task.quantities),
         "block": list(task.blocks.size),
     }

@@ -19,7 +19,7 @@ from .derivatives import DerivativeFunction, finite_differences
 from .design import Design, grid, sample
 from .distributions import Rectangular
 from .limits import EDGE_DISTANCE, Limit, allowed, refusal_reason
-from .parameters import LOADS, MATERIAL_PARTS, PARAMETERS, vary_joint
+from .parameters import LOADS, MATERIAL_PARTS, PARAMETERS, hold, vary_joint
 from .run import study
 from .task import QUANTITIES
 
@@ -68,6 +68,8 @@ class Optimum:
         Number of joints in the search for starts.
     materials : dict of str to str
         Names of the chosen materials, by part.
+    held : dict of str to float
+        Lengths of the joint in mm that stay while others vary.
     """
 
     minimise: str
@@ -79,6 +81,7 @@ class Optimum:
     valid: bool
     searched: int
     materials: dict[str, str] = field(default_factory=dict)
+    held: dict[str, float] = field(default_factory=dict)
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the optimum for JSON."""
@@ -87,6 +90,7 @@ class Optimum:
             "value": self.value,
             "point": self.point,
             "materials": self.materials,
+            "held": self.held,
             "active": list(self.active),
             "slopes": self.slopes,
             "joint": self.joint.summary(),
@@ -307,6 +311,7 @@ class _Problem:
             slopes=dict(zip(ranges, (gradient / widths).tolist(), strict=True)),
             valid=bool(self.study(grid(**point)).valid),
             searched=searched,
+            held=hold(self.joint, point),
         )
 
 

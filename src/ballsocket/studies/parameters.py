@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 from ..contact import Model
 from ..core import quantities
@@ -12,7 +13,7 @@ from ..core.arrays import Array, where
 from ..core.deprecation import renamed_names
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
-from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, check_unique_lengths, derive_lengths, held_lengths
+from ..problem.dimensions import EQUIVALENTS, STORED_LENGTHS, check_unique_lengths, derive_lengths, held_lengths
 
 __getattr__ = renamed_names(
     __name__,
@@ -46,10 +47,8 @@ _ROUNDING = 1e-12
 def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:
     """Replace dimensions and material properties of a joint, and mark possible joints.
 
-    Two of `ball_radius`, `socket_radius`, `clearance` determine the third. With one of them, the ball radius of `joint`
-    is used, or else its clearance. `outer_radius`, of the shell if there is one, replaces `liner_thickness`. A diameter
-    replaces its radius. A combination without liner thickness or clearance is impossible; it gets placeholder
-    dimensions.
+    The joint keeps the lengths that it was made from, see `hold`. A combination without a ball, clearance or thickness
+    of the liner is impossible; it gets placeholder dimensions.
 
     Parameters
     ----------
@@ -68,26 +67,55 @@ def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]
     Raises
     ------
     ValueError
-        A number outside its range, or names that contradict each other.
+        A number outside its range, names that contradict each other, or lengths of which several could stay.
     """
     check_contradictions(values)
     ball_names = [name for name in PARTS if name.startswith("ball_") and name in values]
     if joint.ball is None and ball_names and not all(f"ball_{number}" in values for number in MATERIAL):
         raise ValueError(f"the ball of this joint is rigid: it has no {ball_names[0]}")
-    dimensions = {name: value for name, value in values.items() if name in JOINT}
-    radius_names = {DIAMETERS.get(name, name) for name in dimensions}
-    lengths = derive_lengths({**held_lengths(dimensions, joint.given_lengths), **dimensions}, joint.shell)
-    radius, clearance, thickness = (lengths[name] for name in STORED_LENGTHS)
-    possible = (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
+    lengths, possible = _vary_lengths(joint, {name: value for name, value in values.items() if name in JOINT})
     varied_joint = replace(
         joint,
-        ball_radius=radius,
-        clearance=where(possible & (clearance > 0), clearance, 0.0) if "socket_radius" in radius_names else clearance,
-        liner_thickness=where(possible, thickness, 1.0) if "outer_radius" in radius_names else thickness,
+        **lengths,
         liner=_vary_material(joint.liner, values, "liner") or joint.liner,
         ball=_vary_material(joint.ball, values, "ball"),
     )
     return varied_joint, possible
+
+
+def hold(joint: Joint, names: Iterable[str]) -> dict[str, float]:
+    """Return the lengths in mm of a joint that stay while others vary; empty if none varies.
+
+    Three lengths determine a joint. It keeps those that it was made from, as far as the varied ones allow.
+
+    Raises
+    ------
+    ValueError
+        Several of them could stay.
+    """
+    varied = [name for name in names if name in JOINT]
+    held = held_lengths(varied, joint.given_lengths) if varied else {}
+    if "interference" in held:
+        held["clearance"] = -held.pop("interference")
+    return held
+
+
+def _vary_lengths(joint: Joint, varied: Mapping[str, Array]) -> tuple[dict[str, Any], Array]:
+    """Return the lengths of a varied joint, and a mask of possible joints; the others have placeholders."""
+    lengths = {**hold(joint, varied), **varied}
+    if not varied:
+        return {}, True
+    stored = derive_lengths(lengths, joint.shell)
+    radius, clearance, thickness = (stored[name] for name in STORED_LENGTHS)
+    possible = (radius > 0) & (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
+    usable = {
+        "ball_radius": where(possible, radius, 1.0),
+        "clearance": where(possible & (clearance > 0), clearance, 0.0),
+        "liner_thickness": where(possible, thickness, 1.0),
+    }
+    stated = {EQUIVALENTS.get(name, name) for name in lengths}
+    made = {name: stored[name] if name in stated else usable[name] for name in STORED_LENGTHS}
+    return {**made, "given": tuple(lengths)}, possible
 
 
 def _vary_material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:

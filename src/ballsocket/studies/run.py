@@ -172,7 +172,7 @@ def _create_task(
     model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]
 ) -> Task:
     """Create the task of a study; raise ValueError for names and numbers that are not allowed."""
-    points = grid(**axes) if design is None else design * grid(**axes)
+    points = (grid(**axes) if design is None else design * grid(**axes)).holding(joint)
     loads = [name for name in LOADS if name in points.names]
     if not loads:
         raise ValueError(f"one load is needed, as an axis or a number: {', '.join(LOADS)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -16,8 +17,8 @@ from ..core.deprecation import renamed_names
 from ..problem import Joint
 from .derivatives import elasticities, press_quantities
 from .distributions import Correlation, Distribution, copula_matrix, correlation_text
-from .metadata import variable_attributes
-from .parameters import PARAMETERS, check_contradictions
+from .metadata import HELD, variable_attributes
+from .parameters import PARAMETERS, check_contradictions, hold
 from .task import QUANTITIES
 from .variance_indices import check_sample_memory, shapley_effects, sobol_indices
 
@@ -116,7 +117,8 @@ def sensitivity(
     local = elasticities(model, joint, names, {**medians, **fixed})
     samples = numpy.concatenate(evaluate.tables, axis=1)
     dims = ("quantity", "parameter", "other_parameter")
-    attributes: dict[str, Any] = {"model": model.name, "samples": count}
+    held = hold(joint, (*distributions, *fixed))
+    attributes: dict[str, Any] = {"model": model.name, "samples": count, HELD: json.dumps(held)}
     attributes |= {} if confidence is None else {"confidence": confidence}
     attributes |= {"correlation": correlation_text(correlation)} if correlation else {}
     return xarray.Dataset(

@@ -219,7 +219,7 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     codec: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
     attributes: Any = {**study_attributes(task), _IDENTITY: identity, "coordinates": " ".join(task.design.names)}
     group = zarr.create_group(path, attributes=attributes)
-    for name, value in task.design.fixed.items():
+    for name, value in task.design.constants.items():
         group.create_array(name, shape=(), dtype="float64", attributes=variable_attributes(name))[...] = value
     for axis in task.design.axes:
         _write_axis(group, axis)

@@ -15,6 +15,7 @@ from ...files.joint_file import JointFile, joint_of, read_aim
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
 from ...problem.cup import UP
+from ...problem.dimensions import LENGTHS, give
 from ...problem.presets import joints, materials
 from ..pressing import same_load, tilt_of
 from ..state.screen import Screen
@@ -25,6 +26,9 @@ _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
 _MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
 _CHANGED = " (changed)"
+_LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")
+"""Lengths of the joint with an input."""
+
 _MAX_NAME = 80
 """Characters of a design's name."""
 
@@ -43,7 +47,7 @@ def joint_inputs(screen: Screen) -> dict[str, JointInput]:
     listed = [
         JointInput(words("name", "Design", file.joint.name), partial(_with_name, file)),
         _preset_input(file),
-        *_number_inputs(screen, tables, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
+        *_number_inputs(screen, tables, _LENGTHS),
         *_solid_inputs(file),
         *_load_inputs(screen, tables),
         _material_input(file, "liner", "Liner", _chosen(tables["liner"]), _MATERIALS),
@@ -78,8 +82,10 @@ def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list
 
 
 def _numbers_of(joint: Joint, tables: Tables) -> Tables:
-    """Return the tables of a joint with the numbers that they only name: outer radius, and those of materials."""
-    numbers: Tables = {"joint": {**tables["joint"], "outer_radius": float(joint.outer_radius)}}
+    """Return the tables of a joint with the numbers that they do not have: lengths, and those of materials."""
+    numbers: Tables = {"joint": {name: float(getattr(joint, name)) for name in _LENGTHS}}
+    if joint.clearance < 0:
+        del numbers["joint"]["clearance"]
     for part in ("liner", "ball"):
         material = getattr(joint, part)
         if material is not None:
@@ -98,9 +104,18 @@ def _number_input(screen: Screen, name: str, spec: Number, value: float) -> Join
 
 
 def _set_number(tables: Tables, spec: Number, value: float) -> None:
-    if spec.key == "outer_radius":  # in place of the thickness that it fixes
-        tables["joint"].pop("liner_thickness")
-    tables.setdefault(spec.table, {})[spec.key] = value
+    if spec.table == "joint":
+        _set_length(tables["joint"], spec.key, value)
+    else:
+        tables.setdefault(spec.table, {})[spec.key] = value
+
+
+def _set_length(lengths: Tables, name: str, value: float) -> None:
+    """Set a length of the table [joint]; it takes the place of the one that would follow from it."""
+    kept = give(name, [key for key in lengths if key in LENGTHS])
+    for key in [key for key in lengths if key in LENGTHS and key not in kept]:
+        del lengths[key]
+    lengths[name] = value
 
 
 def _solid_inputs(file: JointFile) -> list[JointInput]:
@@ -156,10 +171,12 @@ def _chosen(table: Tables) -> str:
     return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
 
 
-def layer_list(joint: Joint) -> str:
-    """List the layers behind the liner as HTML."""
+def joint_words(joint: Joint) -> str:
+    """List the lengths that stay while others change, and the layers behind the liner, as HTML."""
+    given = ", ".join(LENGTHS[name].title for name in joint.given_lengths)
     layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
-    return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
+    behind = f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
+    return f"<p>Held while other lengths change: {given}.</p>{behind}"
 
 
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
@@ -202,7 +219,7 @@ def _with_solid_socket(file: JointFile, value: Any) -> JointFile:
     if not isinstance(value, bool):
         raise ValueError(f"massive = {shown(value)} must be true or false")
     thickness = inf if value else round(float(file.joint.socket_radius) / 3, 1)
-    return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
+    return _changed(file, lambda tables: _set_length(tables["joint"], "liner_thickness", thickness))
 
 
 def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from html import escape
@@ -15,13 +15,14 @@ from ....catalogue import catalogue
 from ....compare import THIN_LINER_RATIO
 from ....contact import Model
 from ....core.kinds import Kind
-from ....core.quantities import QUANTITIES
+from ....core.quantities import JOINT, QUANTITIES
 from ....core.validity import OutsideDomainError, check_domain
 from ....files.joint_file import JointFile
 from ....problem import Joint
-from ....problem.dimensions import DIAMETERS
+from ....problem.dimensions import DIAMETERS, give
 from ....studies.design import Span, grid
 from ....studies.limits import Limit, allowed, margin_on_plane
+from ....studies.metadata import held_in
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
 from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
@@ -34,13 +35,16 @@ _SOLVED_POINTS = 17
 
 
 @lru_cache(maxsize=16)
-def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str) -> Any:
+def _mapped(
+    joint: Joint, given: tuple[str, ...], load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str
+) -> Any:
+    """Press the joint over a map, with the lengths that it gives, which joints of equal numbers may differ in."""
     chosen = _map_model(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
     count = _SOLVED_POINTS if chosen.name not in QUICK else _POINTS
     axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
-    return study(chosen, joint, design, quantities=MAPPED)
+    return study(chosen, replace(joint, given=given), design, quantities=MAPPED)
 
 
 def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
@@ -76,7 +80,16 @@ def _in_domain(name: str, joint: Joint) -> bool:
 
 def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
     """Compute the study behind a map."""
-    return _mapped(file.joint, tuple(file.load.items()), across, up, model)
+    joint = _joint_on(file.joint, (across.name, up.name))
+    return _mapped(joint, joint.given, tuple(file.load.items()), across, up, model)
+
+
+def _joint_on(joint: Joint, names: Iterable[str]) -> Joint:
+    """Return a joint whose given lengths make way for those that vary on a map."""
+    given = tuple(joint.given_lengths)
+    for name in names:
+        given = give(name, given) if name in JOINT else given
+    return replace(joint, given=given)
 
 
 def limits_of(screen: Screen) -> tuple[Limit, ...]:
@@ -127,6 +140,8 @@ def map_summary(results: Any, screen: Screen) -> str:
         within = " within the limits" if screen.limits else ""
         title = QUANTITIES[screen.quantity].title
         words.append(f"Minimum of the {title}{within}: <b>{smallest}</b> at {escape(position)}.")
+    if held := held_in(results):
+        words.append(f"Held: {', '.join(_with_title(name, value, reading) for name, value in held.items())}.")
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
@@ -149,7 +164,7 @@ def default_axis(name: str, middle: float) -> MapAxis:
 def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     """Return the joint at a point of the map, rounded to four digits, with its load."""
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
-    made, load, possible = press_arguments(file.joint, rounded)
+    made, load, possible = press_arguments(_joint_on(file.joint, rounded), rounded)
     if not bool(possible):
         raise ValueError("invalid geometry: the clearance would be negative, or the liner would have no thickness")
     plain = replace(

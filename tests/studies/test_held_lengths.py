@@ -1,0 +1,106 @@
+"""Lengths that a joint gives stay while others vary, in every kind of study."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.app.state.screen import Screen
+from ballsocket.app.widgets.joint_fields import joint_inputs
+from ballsocket.files.joint_file import joint_of, parse_joint
+from ballsocket.files.joint_toml import toml_of
+from ballsocket.studies.distributions import Rectangular
+from ballsocket.studies.limits import joint_dimension
+from ballsocket.studies.optimisation import optimise
+from ballsocket.studies.sensitivity import sensitivity
+from tests.cli.command import run
+
+SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
+LINER = {"liner": bs.UHMWPE, "backing": (SHELL,)}
+CUP = bs.Joint(head_diameter=28.0, clearance=0.1, outer_diameter=52.0, **LINER)
+HEADS = [22.0, 28.0, 32.0, 36.0, 40.0]
+BY_HAND = [bs.Joint(ball_radius=d / 2, clearance=0.1, liner_thickness=21.9 - d / 2, **LINER) for d in HEADS]
+FILE = """
+[joint]
+head_diameter = "28 mm"
+clearance = "0.1 mm"
+outer_diameter = "52 mm"
+[liner]
+material = "uhmwpe"
+[shell]
+material = "titanium"
+thickness = "4 mm"
+"""
+
+
+def pressures(model, joints):
+    return np.array([model.press(joint, force=3000.0).max_pressure for joint in joints])
+
+
+def test_heads_of_one_cup_share_its_outside():
+    model = bs.Exact()
+    found = bs.study(model, CUP, head_diameter=HEADS, force=3000.0)
+    expected = pressures(model, BY_HAND)
+    np.testing.assert_allclose(found.max_pressure, expected, rtol=1e-9)
+    assert HEADS[expected.argmin()] == 32.0
+    assert (found.outer_diameter.item(), found.clearance.item()) == (52.0, 0.1)
+    np.testing.assert_allclose(joint_dimension(found, "liner_thickness"), [joint.liner_thickness for joint in BY_HAND])
+    assert json.loads(found.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0}
+
+
+def test_the_best_head_and_its_scatter_hold_the_outside():
+    best = optimise(bs.Exact(), CUP, {}, choices={"head_diameter": HEADS}, load={"force": 3000.0})
+    assert best.point == {"head_diameter": 32.0}
+    assert (best.joint.outer_diameter, best.held["outer_diameter"]) == pytest.approx((52.0, 52.0))
+    spread = sensitivity(
+        bs.HessForsbach(), CUP, {"head_diameter": Rectangular(low=27.9, high=28.1)}, load={"force": 3000.0}, count=8
+    )
+    thicker, thinner = (bs.HessForsbach().press(CUP.replace(head_diameter=d), force=3e3) for d in (27.9, 28.1))
+    slope = np.log(thinner.max_pressure / thicker.max_pressure) / np.log(28.1 / 27.9)
+    assert spread.elasticity.sel(quantity="max_pressure").item() == pytest.approx(slope, rel=1e-3)
+    assert json.loads(spread.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0}
+
+
+def test_a_varied_wall_needs_the_length_that_stays():
+    with pytest.raises(ValueError, match="add the one that stays, head_diameter = 28 mm or outer_diameter = 52 mm"):
+        bs.study(bs.Hertz(), CUP, liner_thickness=[4.0, 6.0], force=3000.0)
+    by_head = bs.study(bs.HessForsbach(), CUP, liner_thickness=[4.0, 6.0], head_diameter=28.0, force=3000.0)
+    by_outside = bs.study(bs.HessForsbach(), CUP, liner_thickness=[4.0, 6.0], outer_diameter=52.0, force=3000.0)
+    np.testing.assert_allclose(joint_dimension(by_head, "outer_diameter"), [44.2, 48.2])
+    np.testing.assert_allclose(joint_dimension(by_outside, "head_diameter"), [35.8, 31.8])
+
+
+def test_files_keep_what_they_give_through_the_shell_and_the_explorer(tmp_path):
+    file = parse_joint(FILE.encode(), "cup")
+    assert file.joint == CUP
+    again = parse_joint(toml_of(file).encode(), "cup")
+    assert again.joint.given_lengths == file.joint.given_lengths
+    inputs = joint_inputs(Screen(file=replace(again, load={"force": 3000.0})))
+    bigger = inputs["ball_radius"].edit("32").joint  # the explorer shows diameters
+    assert bigger.liner_thickness == pytest.approx(5.9)
+    thinner = inputs["liner_thickness"].edit("5").joint
+    assert (thinner.head_diameter, thinner.outer_diameter) == pytest.approx((28.0, 46.2))
+    (tmp_path / "cup.toml").write_text(FILE, encoding="utf-8")
+    out = tmp_path / "heads.csv"
+    (tmp_path / "heads.toml").write_text(
+        'joint = "cup.toml"\nmodel = "exact"\n[axes]\nforce = "3 kN"\nhead_diameter = ["28 mm", "40 mm"]'
+    )
+    printed = run("study", "heads.toml", f"--out={out}", folder=tmp_path).stdout
+    assert "held: radial clearance 0.1 mm, outer diameter 52 mm" in printed
+    rows = np.genfromtxt(out, delimiter=",", names=True)
+    np.testing.assert_allclose(rows["outer_diameter_mm"], 52.0)
+    np.testing.assert_allclose(rows["max_pressure_MPa"], pressures(bs.Exact(), (BY_HAND[1], BY_HAND[-1])), rtol=1e-6)
+    pressed = run("press", "cup.toml", "--head-diameter=40", "--force=3 kN", folder=tmp_path).stdout
+    assert "liner 1.9 mm" in pressed
+    assert "outer diameter 52 mm" in pressed
+
+
+def test_a_shell_that_follows_from_the_outside_leaves_the_wall_open():
+    tables = {"joint": {"head_diameter": 28, "clearance": 0.1, "liner_thickness": 7.9, "outer_diameter": 52}}
+    joint = joint_of({**tables, "liner": {"material": "uhmwpe"}, "shell": {"material": "titanium"}}).joint
+    assert joint.shell == pytest.approx(4.0)
+    with pytest.raises(ValueError, match="liner_thickness = 7.9 mm or outer_diameter = 52 mm"):
+        joint.replace(head_diameter=32)
+    assert joint.replace(head_diameter=32, outer_diameter=52).liner_thickness == pytest.approx(5.9)
