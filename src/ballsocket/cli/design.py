@@ -117,9 +117,11 @@ def design_map(
     file = joint_options.read(joint)
     limits = _limits(limit, file.cup)
     ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
-    load, model = press_options.load(file, ends), press_options.choose_model(file, ends)
+    stated = joint_options.stated(file, ends)
+    sizes = {name: [value] for name, value in stated.items()}
+    load, model = press_options.load(file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
-    result = study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
+    result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits))
     output.print(lambda: study_tables.map_summary(result, limits), lambda: study_tables.print_map(result, limits))
     output.draw(lambda: study_plots.design_map(result, limits))
 
@@ -158,6 +160,7 @@ def optimise(
     choices = _unique(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
     ranges = _unique((name, (low, high)) for name, low, high in map(parse_range, phrases))
+    choices |= {name: [value] for name, value in joint_options.stated(file, {**ranges, **choices}).items()}
     if output.figure is not None and len(goals) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
     load = press_options.load(file, {**ranges, **choices})
@@ -258,7 +261,9 @@ def sensitivity(
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     file = joint_options.read(joint)
     distributions = _unique(map(parse_distribution, spread))
+    stated = joint_options.stated(file, distributions)
     means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
+    means |= {name: [value] for name, value in stated.items()}
     load, model = press_options.load(file, distributions), press_options.choose_model(file, means)
     result = find_sensitivity(
         model,
@@ -268,7 +273,7 @@ def sensitivity(
         count=count,
         seed=seed,
         confidence=0.95 if intervals is IntervalMethod.BOOTSTRAP else None,
-        load=load,
+        load={**load, **stated},
         second_order=second_order,
         correlation=parse_correlations(correlation or ()),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
 from inspect import Parameter, Signature, signature
@@ -14,8 +14,9 @@ import typer
 from ..catalogue import listed_models
 from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
+from ..core.quantities import JOINT
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
-from ..problem.dimensions import LENGTHS
+from ..problem.dimensions import LENGTHS, fit_beside
 from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
@@ -166,6 +167,11 @@ class JointPartOptions:
         if name is None:
             return joint_of(tables)
         return varied(named_joint(name), tables) if tables else named_joint(name)
+
+    def stated(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
+        """Return the lengths in mm that the options state beside those that vary, for a study to hold."""
+        lengths = self.tables().get("joint", {})
+        return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths) if name in JOINT}
 
 
 _IN_FILE = "Default: as in [cup] of the joint file"

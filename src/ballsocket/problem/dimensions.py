@@ -185,6 +185,18 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
 
 
+def fit_beside(varied: Iterable[str], stated: Iterable[str]) -> list[str]:
+    """Select the stated lengths that can stay where others vary, in their order; none if no length varies."""
+    taken = {EQUIVALENTS.get(name, name) for name in varied if name in LENGTHS}
+    fitting: list[str] = []
+    for name in stated if taken else ():
+        length = EQUIVALENTS.get(name, name)
+        if length not in taken and any({length, *taken} <= basis for basis in _BASES):
+            fitting.append(name)
+            taken.add(length)
+    return fitting
+
+
 def give(name: str, given: Iterable[str]) -> tuple[str, ...]:
     """Return the names of the lengths that determine a joint once one more is given.
 
