@@ -59,6 +59,7 @@ def test_columns_below_a_metric_unit_are_converted():
 
 
 STUDY = """
+model = "tabulated"
 joint = {ball_radius = "14 mm", clearance = "0.1 mm", liner_thickness = "8 mm"}
 liner = {material = "uhmwpe"}
 [axes]

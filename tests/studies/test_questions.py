@@ -25,6 +25,7 @@ from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.pareto import pareto
 from ballsocket.studies.run import default_model
 from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies.task import OUTCOMES
 
 from ..cli.command import answer, run
 from ..extent import either, some
@@ -306,7 +307,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
     assert given.design.shape == (8, 5, 2)
     assert given.store == tmp_path / "out" / "s.zarr"
     found = bs.study(given.model, given.joint, given.design, quantities=given.quantities, store=given.store)
-    assert set(found.data_vars) == {"max_pressure", "stiffness", "status", "valid"}
+    assert set(found.data_vars) == {"max_pressure", "stiffness", *OUTCOMES}
     assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
     (tmp_path / "rows.csv").write_text("liner_thickness\n5\n6\n")
     correlated = read_study(write_study("seed = 3", 'correlation = ["clearance, liner_young = 0.5"]'))

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from importlib import import_module
 from subprocess import DEVNULL
 
@@ -16,6 +17,7 @@ from pyarrow import parquet
 
 import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial
+from ballsocket.reports.study_tables import study_summary
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
@@ -72,6 +74,49 @@ def test_equal_radii_are_a_joint_without_clearance():
     assert joint.clearance.tolist() == pytest.approx([0.0, 0.0, 0.1])
     assert joint.clearance[0] == 0.0
     assert possible.tolist() == [True, False, True]
+
+
+def test_a_material_keeps_its_strength_while_its_elastic_constants_vary():
+    hip = bs.joints["hip-28"]
+    found = bs.study(
+        bs.Exact(),
+        hip,
+        quantities=["utilisation"],
+        force=3000.0,
+        liner_young=[1000.0, 700.0],
+        liner_poisson=[0.4, 0.45],
+    )
+    for young in (1000.0, 700.0):
+        for poisson in (0.4, 0.45):
+            liner = replace(bs.UHMWPE, young=young, poisson=poisson)
+            expected = bs.Exact().press(hip.replace(liner=liner), force=3000.0).utilisation
+            got = found.utilisation.sel(liner_young=young, liner_poisson=poisson).item()
+            assert got == pytest.approx(expected, rel=1e-9)
+    unknown = bs.study(bs.Hertz(), hip, quantities=["utilisation"], force=1.0, liner=[bs.UHMWPE, bs.ALUMINA])
+    assert "utilisation is that of the ball alone" in study_summary(unknown)["notes"][-1]
+    rigid = bs.study(bs.Hertz(), replace(hip, ball=None), quantities=["utilisation"], force=1.0, liner=bs.ALUMINA)
+    assert np.isnan(rigid.utilisation.item())
+    assert study_summary(rigid)["notes"][-1] == "utilisation: strength not checked: the liner has no yield stress"
+
+
+def test_each_point_that_is_not_valid_has_its_reason(tmp_path):
+    hip = bs.joints["hip-28"].replace(liner=bs.Material(young=1000.0, poisson=0.4))
+    found = bs.study(
+        bs.Hertz(), hip, quantities=["max_pressure", "utilisation"], clearance=[0.01, 3.0], force=[1.0, 3000.0]
+    )
+    export(found, tmp_path / "hertz.csv")
+    with (tmp_path / "hertz.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    joints = [hip.replace(clearance=float(row["clearance_mm"])) for row in rows]
+    pressed = [bs.Hertz().press(joint, force=float(row["force_N"])) for joint, row in zip(joints, rows, strict=True)]
+    for row, contact in zip(rows, pressed, strict=True):
+        assert (row["valid"] == "1") == contact.valid == (row["why_not_valid"] == "")
+        assert row["why_not_valid"] in ("", *contact.notes)
+    reasons = [row["why_not_valid"] for row in rows if row["why_not_valid"]]
+    notes = study_summary(found)["notes"]
+    assert sum(int(note.split(" of ")[0]) for note in notes if " of 4: " in note) == len(reasons)
+    assert all(any(reason in note for note in notes) for reason in reasons)
+    assert any(note.startswith("utilisation: ") and "no yield stress" in note for note in notes)
 
 
 def test_diameters_are_axes():

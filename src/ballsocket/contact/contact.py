@@ -124,7 +124,7 @@ class Contact(Outcome):
         It is NaN if neither has a yield stress.
 
         From 1 on the material yields somewhere. A linear result is invalid above 1.38
-        (`strength.MAX_ELASTIC_UTILISATION`).
+        (`strength.MAXELASTIC_UTILISATION`).
         """
         materials = (self.joint.liner, self.joint.ball)
         has_limit = any(material is not None and material.yield_stress is not None for material in materials)
@@ -172,7 +172,7 @@ class Contact(Outcome):
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
         """Ranges of quantities in which a contact is valid, with the elastic limit if a strength is known."""
-        return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
+        return (*self.model.validity, ELASTIC) if self.joint.strengths() else self.model.validity
 
     @property
     def quick_notes(self) -> tuple[str, ...]:
@@ -422,7 +422,8 @@ class Contact(Outcome):
         return describe.to_html(self)
 
 
-_ELASTIC = strength.ElasticLimit()
+ELASTIC = strength.ElasticLimit()
+"""Range of the utilisation in which the result of a material with a strength is valid."""
 
 _EDGE_ARC = 1e-5
 """Distance from the edge at which the rise of the pressure is read, relative to the half angle."""

@@ -105,11 +105,19 @@ class Outcome(ABC):
     @cached_property
     def valid(self) -> Array:
         """Mask of the valid points: joint and result lie inside the model's validity."""
-        valid_mask = self.status == int(Status.OK)
-        for limit in self._validity_ranges:
-            valid_mask = valid_mask & limit.holds(self)
-        valid_mask = arrays.broadcast(valid_mask, self._load) if hasattr(valid_mask, "shape") else valid_mask
-        return bool(valid_mask) if self._is_plain else arrays.read_only(valid_mask)
+        mask = (self.status == int(Status.OK)) & (self.broken_limit == 0)
+        return mask if self._is_plain else arrays.read_only(arrays.broadcast(mask, self._load))
+
+    @cached_property
+    def broken_limit(self) -> Array:
+        """Number of the first range of the validity that a point lies outside of, from 1; 0 inside of all."""
+        limits = list(enumerate(self._validity_ranges, 1))
+        if self._is_plain:
+            return next((number for number, limit in limits if not limit.holds(self)), 0)
+        broken = 0 * self.status
+        for number, limit in reversed(limits):
+            broken = arrays.where(limit.holds(self), broken, number)
+        return arrays.read_only(broken)
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:

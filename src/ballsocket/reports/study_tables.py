@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -17,11 +18,11 @@ from rich.text import Text
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..core.validity import Status
 from ..studies.export import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, refusal_reason
-from ..studies.metadata import held_in
+from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
+from ..studies.task import OUTCOMES
 from .terminal import print_columns
 from .unit_systems import Units
 
@@ -44,7 +45,7 @@ class StudyReport:
 
     ends: dict[str, tuple[End, End]]
     sampled: dict[str, list[numpy.ndarray]]
-    failed: dict[Status, int]
+    invalid: Counter[tuple[int, int]]
     valid: int = 0
 
     @classmethod
@@ -55,17 +56,28 @@ class StudyReport:
         report = cls(
             dict.fromkeys(names, nothing),
             {name: [] for name in names},
-            {status: 0 for status in Status if status.failed},
+            Counter(),
         )
         first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
         for part in iterate_chunks(study):
             for name in names:
                 report._add(name, part[name].values.ravel(), first, stride)
-            for status in report.failed:
-                report.failed[status] += int((part.status.values == int(status)).sum())
+            bad = ~part.valid.values
+            codes = numpy.stack([part.status.values[bad], part.broken_limit.values[bad]], axis=-1)
+            kinds, counts = numpy.unique(codes, axis=0, return_counts=True)
+            report.invalid.update(dict(zip(map(tuple, kinds.tolist()), counts.tolist(), strict=True)))
             report.valid += int(part.valid.values.sum())
             first += part.status.size
         return report
+
+    def notes(self, study: xarray.Dataset) -> list[str]:
+        """List the reasons why points are not valid, with their number, and those of quantities without an answer."""
+        reasons, counts = invalid_reasons(study), Counter[str]()
+        for kind, count in self.invalid.items():
+            counts[reasons[kind]] += count
+        n_points = int(study.status.size)
+        invalid = [f"{count} of {n_points}: {reason}" for reason, count in counts.most_common()]
+        return invalid + [f"{name}: {reason}" for name, reason in missing_reasons(study).items()]
 
     def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
         """Add the values of one part of a result."""
@@ -97,7 +109,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
         "held": held_in(study),
         "points": size,
         "valid": report.valid == size,
-        "notes": [f"{count} of {size}: {status.sentence}" for status, count in report.failed.items() if count],
+        "notes": report.notes(study),
         "quantities": quantities,
         "values": _values(study) if size <= _MAX_LISTED else None,
     }
@@ -260,7 +272,7 @@ def _print_held(held: Mapping[str, float], units: Units = Units.SI) -> None:
 
 def result_names(study: xarray.Dataset) -> list[str]:
     """Return the names of the results of a study."""
-    return [str(name) for name in study.data_vars if name not in ("status", "valid")]
+    return [str(name) for name in study.data_vars if name not in OUTCOMES]
 
 
 def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
@@ -295,8 +307,9 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
             _point_text(study, high.place, units),
         )
     print_columns(Console(), table)
-    failed = "".join(f"; {count} {status.sentence}" for status, count in report.failed.items() if count)
-    Console().print(f"{study.status.size} points, {report.valid} of them valid{failed}", highlight=False)
+    Console().print(f"{study.status.size} points, {report.valid} of them valid", highlight=False)
+    for note in report.notes(study):
+        Console().print(f"  {note}", highlight=False)
 
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:

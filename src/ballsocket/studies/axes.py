@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
-from math import inf
+from math import inf, nan
 
 import numpy
 
@@ -118,6 +118,8 @@ class Span:
 class MaterialAxis(Axis):
     """Axis of materials of the "liner" or the "ball", whose properties vary together.
 
+    The yield stress is NaN unless all of them have one.
+
     Raises
     ------
     ValueError
@@ -135,21 +137,15 @@ class MaterialAxis(Axis):
                 raise ValueError(f"{self.name} has {label} twice")
 
     @property
-    def _properties(self) -> tuple[str, ...]:
-        """Names of the properties that all materials have."""
-        known = all(material.yield_stress is not None for material in self.materials)
-        return (*MATERIAL, *(["yield_stress"] if known else []))
-
-    @property
     def names(self) -> tuple[str, ...]:
-        return tuple(f"{self.name}_{number}" for number in self._properties)
+        return tuple(self.values)
 
     @property
     def values(self) -> Mapping[str, Numbers]:
-        return {
-            f"{self.name}_{number}": numpy.array([float(getattr(material, number)) for material in self.materials])
-            for number in self._properties
-        }
+        yields = [nan if material.yield_stress is None else float(material.yield_stress) for material in self.materials]
+        numbers = {name: [float(getattr(material, name)) for material in self.materials] for name in MATERIAL}
+        numbers["yield_stress"] = [nan] * len(yields) if numpy.isnan(yields).any() else yields
+        return {f"{self.name}_{name}": numpy.array(column) for name, column in numbers.items()}
 
     @property
     def labels(self) -> tuple[str, ...]:

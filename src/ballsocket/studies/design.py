@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import prod
+from math import isnan, prod
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -165,6 +165,8 @@ def check_values(design: Design) -> None:
         A value is not allowed; the message has the first one.
     """
     for axis in design.axes:
+        if isinstance(axis, MaterialAxis):  # checked when they were made
+            continue
         if isinstance(axis, SampleAxis):
             _check_samples(axis)
             continue
@@ -172,6 +174,8 @@ def check_values(design: Design) -> None:
         for name, values in ends.items():
             _check_allowed(name, values)
     for name, value in design.fixed.items():
+        if isnan(value):  # an unknown yield stress of a material
+            continue
         _check_allowed(name, numpy.array([value]))
 
 

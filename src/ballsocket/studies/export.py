@@ -13,6 +13,7 @@ from ..core.checks import needs
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from ..core.storage.folders import folder_at, open_address
+from .metadata import invalid_reasons
 from .task import Blocks
 
 if TYPE_CHECKING:
@@ -77,8 +78,9 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
     """Write a study to a NetCDF (.nc), CSV (.csv), Parquet (.parquet) or Zarr (.zarr) file, in chunks.
 
     The file appears when it is complete. CSV and Parquet have a row for each point: first the parameters in the order
-    of the design, then the quantities. Column names end in their units: `ball_radius_mm`, `max_pressure_MPa`,
-    `half_angle_deg`. NetCDF and Zarr have the labelled arrays of the study in mm, N, MPa, rad.
+    of the design, then the quantities, and `why_not_valid`, the reason of an invalid point. Column names end in
+    their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have the labelled arrays of the
+    study in mm, N, MPa, rad.
 
     Parameters
     ----------
@@ -170,11 +172,15 @@ def _write_parquet(study: xarray.Dataset, path: Path) -> None:
 def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]]:
     """Yield the columns of each chunk by their heads, in the units of files."""
     names = [str(name) for name in (*study.coords, *study.data_vars)]
-    dims = dimension_names(study)
+    dims, reasons = dimension_names(study), invalid_reasons(study)
     for chunk in iterate_chunks(study):
         variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
         columns = (variable.transpose(*dims).values.ravel() for variable in variables)
-        yield {_column_head(name): _in_written_unit(name, column) for name, column in zip(names, columns, strict=True)}
+        values = dict(zip(names, columns, strict=True))
+        kinds = zip(values["status"].tolist(), values.pop("broken_limit").tolist(), strict=True)
+        why = [reasons.get(kind, "") for kind in kinds]
+        heads = {_column_head(name): _in_written_unit(name, column) for name, column in values.items()}
+        yield {**heads, "why_not_valid": numpy.array(why)}
 
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:

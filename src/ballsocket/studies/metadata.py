@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from hashlib import sha256
 from itertools import chain
@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact.contact import ELASTIC
+from ..contact.strength import unchecked_strength_reason
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
 from ..core.validity import Status
-from .axes import Axis, SampleAxis
+from .axes import Axis, MaterialAxis, SampleAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
 from .task import Task
@@ -31,6 +33,12 @@ _PARAMETERS = "parameters"
 
 HELD = "held"
 """Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
+
+_LIMITS = "limits"
+"""Attribute with the sentences of the limits of the model's validity, as JSON."""
+
+_MISSING = "missing"
+"""Attribute with the reason why a quantity is missing at every point, by its name, as JSON."""
 
 _LABELS = "labels"
 """Attribute with the names of materials by axis, as JSON."""
@@ -52,6 +60,8 @@ def variable_attributes(name: str) -> dict[str, Any]:
         }
     if name == "valid":
         return {"long_name": "joint and answer lie where the model can be trusted"}
+    if name == "broken_limit":
+        return {"long_name": "number of the first of the limits of the model, from 1, that a point breaks; 0 for none"}
     if name in MATERIAL_PARTS:
         return {"long_name": f"material of the {name}"}
     quantity = QUANTITIES[name]
@@ -70,6 +80,8 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "source": f"ballsocket {fingerprint()}",
         _PARAMETERS: " ".join(_parameter_order(task.design)),
         HELD: json.dumps(task.design.held),
+        _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
+        _MISSING: json.dumps(_missing_reasons(task), ensure_ascii=False),
         "Conventions": "CF-1.10",
         **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
@@ -79,6 +91,38 @@ def held_in(result: xarray.Dataset) -> dict[str, float]:
     """Return the lengths of the joint in mm that a study or a sensitivity holds while others vary."""
     held: dict[str, float] = json.loads(result.attrs.get(HELD, "{}"))
     return held
+
+
+def invalid_reasons(study: xarray.Dataset) -> dict[tuple[int, int], str]:
+    """Return the sentences on points that are not valid, by their status and their broken limit."""
+    limits = json.loads(study.attrs[_LIMITS])
+    by_limit = {(int(Status.OK), number): sentence for number, sentence in enumerate(limits, 1)}
+    return by_limit | {
+        (int(status), number): status.sentence
+        for status in Status
+        if status is not Status.OK
+        for number in range(len(limits) + 1)
+    }
+
+
+def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
+    """Return the reason why a quantity is missing at every point of a study, by its name."""
+    reasons: dict[str, str] = json.loads(study.attrs[_MISSING])
+    return reasons
+
+
+def _missing_reasons(task: Task) -> dict[str, str]:
+    """Return the reason why a quantity is missing at every point of a study, by its name."""
+    liner, name = task.joint.liner, "liner_yield_stress"
+    by_material = [
+        axis.values[name] for axis in task.design.axes if isinstance(axis, MaterialAxis) and name in axis.names
+    ]
+    stated = [*by_material, *(numpy.asarray(value) for key, value in task.design.fixed.items() if key == name)]
+    varied = name in task.design.names
+    unknown = any(numpy.isnan(values).any() for values in stated) if varied else liner.yield_stress is None
+    if "utilisation" not in task.quantities or not unknown:
+        return {}
+    return {"utilisation": unchecked_strength_reason(replace(task.joint, liner=liner.without_strengths()))}
 
 
 def parameter_coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..contact import Model
 from ..core import quantities
-from ..core.arrays import Array, where
+from ..core.arrays import Array, all_true, where
 from ..core.deprecation import renamed_names
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
@@ -121,13 +121,17 @@ def _vary_lengths(joint: Joint, varied: Mapping[str, Array]) -> tuple[dict[str, 
 def _vary_material(material: Material | None, values: Mapping[str, Array], part: str) -> Material | None:
     """Replace properties of a part's material.
 
-    A material with all its elastic properties replaced is another material: its strength is only that in `values`.
+    It keeps its strength, unless its yield stress is replaced together with its elastic properties: that is another
+    material. A yield stress of NaN is unknown.
     """
     names = (*MATERIAL, "yield_stress")
     replaced = {number: values[f"{part}_{number}"] for number in names if f"{part}_{number}" in values}
     if not replaced:
         return material
-    limits = dict.fromkeys(STRESS_LIMITS) if all(number in replaced for number in MATERIAL) else {}
+    limits = dict.fromkeys(STRESS_LIMITS) if all(number in replaced for number in names) else {}
+    stress = replaced.get("yield_stress")
+    if stress is not None and all_true(stress == stress) is False:
+        del replaced["yield_stress"]
     return Material(**replaced) if material is None else replace(material, **{**limits, **replaced})
 
 

@@ -31,10 +31,14 @@ EDGE_DISTANCE = "edge_distance"
 DEFAULT_QUANTITIES = ("indentation", "half_angle", "max_pressure", "area")
 """Quantities of a study by default, with the force unless it is the load."""
 
+OUTCOMES = ("status", "valid", "broken_limit")
+"""Variables of every study beside its quantities."""
+
 DTYPES: dict[str, Any] = {
     **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE), numpy.float64),
     "status": numpy.int8,
     "valid": numpy.bool_,
+    "broken_limit": numpy.int8,
 }
 """Types of the arrays of a study."""
 
@@ -134,8 +138,8 @@ class Task:
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Names of the computed arrays: the quantities, `status` and `valid`."""
-        return (*self.quantities, "status", "valid")
+        """Names of the computed arrays: the quantities, `status`, `valid` and `broken_limit`."""
+        return (*self.quantities, *OUTCOMES)
 
     def __call__(self, number: int) -> dict[str, Numbers]:
         """Compute the variables of one block, each of the block's shape.
@@ -166,7 +170,7 @@ class Task:
             contact = self.model.press(joint, **load)
         except OutsideDomainError:
             status = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
-            return {**dict.fromkeys(self.quantities, numpy.nan), "status": status, "valid": False}
+            return {**dict.fromkeys(self.quantities, numpy.nan), "status": status, "valid": False, "broken_limit": 0}
         results = {name: getattr(contact, name) for name in self.variables}
         if possible.all():
             return results
@@ -174,6 +178,7 @@ class Task:
             results[name] = numpy.where(possible, results[name], numpy.nan)
         results["status"] = numpy.where(possible, results["status"], int(Status.NO_JOINT))
         results["valid"] = results["valid"] & possible
+        results["broken_limit"] = numpy.where(possible, results["broken_limit"], 0)
         return results
 
 
