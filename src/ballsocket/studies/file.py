@@ -39,6 +39,7 @@ from .distributions import Distribution, LogNormal, Normal, Rectangular, toleran
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
 from .sampling import Method
+from .task import EDGE_DISTANCE, QUANTITIES
 
 Read = Callable[[str, Any], float]
 """Function from name and value of a number in a file to the number."""
@@ -241,11 +242,13 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     """Create the study of a file in a folder."""
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
+    model = named_models[tables.model].in_cup(file.cup)
+    everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
-        model=named_models[tables.model].in_cup(file.cup),
+        model=model,
         joint=file.joint,
         design=_design(tables, content, folder),
-        quantities=tuple(map(str, tables.quantities or ())),
+        quantities=tuple(map(str, tables.quantities or everything)),
         store=None if tables.store is None else _store(tables.store, folder),
         engine=_engine(tables.engine),
     )
