@@ -133,7 +133,7 @@ def test_files_have_the_joint_and_reports_its_inputs_and_no_machine(view):
     text = saved(page, "HTML").decode()
     for part in ("Drawing", "Inputs", "head diameter", "SHA-256", "In the explorer: <code>/?"):
         assert part in text, part
-    assert ("<span class='holds'>Passes: " in text) == (view == "press")
+    assert ("<span class='holds'>Kept: " in text) == (view == "press")
     assert "data:image/png;base64" in text
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
@@ -217,9 +217,9 @@ def test_six_designs_are_compared_by_the_checks_of_contact():
     checks = checks_of(contact, Cup(), float(contact.von_mises))
     (check,) = [row for row in checks if "stress in the liner" in row.title]
     row = re.search(rf"<th scope='row'>{check.title} / {check.limit}</th><td class='\w*'>(.*?)</td>", table)
-    assert row[1] == f"✓ {100 * check.ratio:.0f} %"
+    assert row[1] == f"✓ {100 * check.ratio.value:.0f} %"
     does(page, "choose", name="view", value="press")
-    assert f"{100 * check.ratio:.0f} %" in page.channel.shown_value("#press-numbers")
+    assert f"{100 * check.ratio.value:.0f} %" in page.channel.shown_value("#press-numbers")
     does(page, "choose", name="view", value="compare")
     edits(page, "compare.keep", True)
     assert "6 designs are compared with this one already" in trouble(page)

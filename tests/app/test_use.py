@@ -138,7 +138,7 @@ def test_rim_contact_is_named_and_red(page):
     share = f"Rim contact in {100 * (edge <= 0).mean():.0f} % of the cycle (9 to 19 %, 44 to 53 %)"
     assert f"<p class='trust no'>✗ {share}" in numbers
     assert told(page, "gait-courses").count('class="flagged"') == 2
-    assert numbers.index("✗ Fails: reach of the contact") < numbers.index("✓ passes")
+    assert numbers.index("✗ Exceeded: reach of the contact") < numbers.index("✓ kept")
     assert played(page)["rim"] == (edge <= 0).tolist()
     free = opened(LINK.replace("inclination=45", "inclination=30"))
     assert "✓ No rim contact" in told(free, "gait-numbers")

@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 from itertools import product
-from math import inf, isnan, radians
+from math import inf, isnan, nan, radians
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +12,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.contact import strength
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, von_mises_ratio
-from ballsocket.contact.verdict import assess_strength, strength_uses
+from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, strength_uses
 from ballsocket.elasticity.exact import subsurface
 
 from ..extent import some
@@ -288,23 +288,58 @@ def test_uses_of_strengths_are_stresses_over_strengths_with_the_largest_first():
     assert (pressed.part, pressed.strength) == ("liner", "allowable_pressure")
     assert (stressed.part, stressed.strength) == ("liner", "yield_stress")
     assert (ball.part, ball.strength) == ("ball", "yield_stress")
-    assert pressed.ratio == pytest.approx(contact.max_pressure / 20.0)
-    assert stressed.ratio == pytest.approx(contact.utilisation)
-    assert ball.stress == pytest.approx(strength.ball_stress_ratio(bs.COCR.poisson) * contact.max_pressure)
+    assert pressed.ratio.value == pytest.approx(contact.max_pressure / 20.0)
+    assert stressed.ratio.value == pytest.approx(contact.utilisation)
+    assert ball.stress.value == pytest.approx(strength.ball_stress_ratio(bs.COCR.poisson) * contact.max_pressure)
 
 
 @pytest.mark.parametrize(
-    ("contact", "bears", "words"),
+    ("contact", "state", "words"),
     [
-        (bs.Exact().press(HIP, force=3000.0), True, r"within its strength: \d+ % of the yield stress of the liner"),
-        (bs.Exact().press(HIP, force=30e3), False, r"overloaded: [\d.]+ times the yield stress of the liner"),
-        (bs.Hertz().press(HIP, force=3000.0), None, "result not valid: outside ε ≤ 7°"),
-        (bs.Exact().press(HIP, half_angle=1.55), None, "no answer"),
-        (bs.HessForsbach().press(replace(HIP, liner=BARE, ball=None), force=3000.0), None, NOT_CHECKED),
-        (bs.HessForsbach().press(replace(HIP, liner=BARE, ball=bs.COCR), force=3000.0), None, NOT_CHECKED),
+        (bs.Exact().press(HIP, force=3000.0), "kept", r"\d+ % of the yield stress of the liner"),
+        (bs.Exact().press(HIP, force=30e3), "exceeded", r"[\d.]+ times the yield stress of the liner"),
+        (bs.Hertz().press(HIP, force=3000.0), "undecided", "result not valid: outside ε ≤ 7°"),
+        (bs.Exact().press(HIP, half_angle=1.55), "undecided", "no answer"),
+        (
+            bs.HessForsbach().press(replace(HIP, liner=BARE, ball=None), force=3000.0),
+            "undecided",
+            NOT_CHECKED,
+        ),
+        (
+            bs.HessForsbach().press(replace(HIP, liner=BARE, ball=bs.COCR), force=3000.0),
+            "undecided",
+            NOT_CHECKED,
+        ),
     ],
 )
-def test_verdicts_state_their_reason(contact, bears, words):
+def test_verdicts_state_their_reason(contact, state, words):
     verdict = assess_strength(contact)
-    assert verdict.bears is bears
-    assert re.match(words, verdict.words)
+    assert verdict.verdict.word == state
+    assert re.match(f"{state}: {words}", verdict.words)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "state"),
+    [
+        (18.0, 20.0, Verdict.KEPT),  # a limit is allowed
+        (19.9, 20.1, Verdict.UNDECIDED),
+        (20.1, 22.0, Verdict.EXCEEDED),
+        (4.0, 4.9, Verdict.EXCEEDED),
+        (4.0, 22.0, Verdict.UNDECIDED),
+        (0.0, inf, Verdict.UNDECIDED),
+        (nan, nan, Verdict.UNDECIDED),
+    ],
+)
+def test_a_limit_is_kept_or_exceeded_only_by_the_whole_error_bar(low, high, state):
+    bar = Bounded((low + high) / 2, low, high)
+    assert bar.verdict(low=5.0, high=20.0) is state
+    assert Bounded(*np.tile(bar, (3, 1)).T).decide(low=5.0, high=20.0).tolist() == [state] * 3
+
+
+def test_the_bar_of_a_number_is_the_error_that_its_result_states():
+    fem, springs = (model.press(HIP, force=3000.0) for model in (bs.FiniteElement(), bs.HessForsbach()))
+    for contact, error in ((fem, fem.error["max_pressure"]), (springs, 0.15)):  # the promise of the springs
+        value, low, high = error_bar(contact, "max_pressure")
+        assert (low, high) == pytest.approx((value * (1 - error), value * (1 + error)), rel=1e-12)
+        von_mises = error_bar(contact, "von_mises")
+        assert von_mises.low <= (1 - error) * contact.von_mises < (1 + error) * contact.von_mises <= von_mises.high

@@ -14,7 +14,7 @@ from math import radians
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact.verdict import assess_strength
+from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.check_table import checks_at, checks_html, checks_of, verdict_of, wear_check
 from ballsocket.reports.pages import table, write_page
@@ -42,7 +42,7 @@ def pages():
 def test_the_page_has_the_verdict_the_drawing_and_every_input_in_the_units_that_are_chosen(pages):
     text = unescape(pages[0][Units.SI])
     assert re.search(r"<strong>11\.1\d MPa</strong> largest pressure under 3000 N, by the model exact", text)
-    assert re.search(r"Passes: reach of the contact is \d+ % of the arc from pole to rim, the highest ratio", text)
+    assert re.search(r"Kept: reach of the contact is \d+ % of the arc from pole to rim, the highest ratio", text)
     for cell in ("36 mm", "36.2 mm", "0.2 mm", "5 mm", "171.9°", "Young's modulus 750 MPa", "2026-01-02"):
         assert cell in text, cell
     assert text.count("data:image/svg+xml;base64,") == 2
@@ -59,8 +59,8 @@ def test_one_verdict_is_about_all_checks():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     wide, narrow = (unescape(press_lede(contact, bs.Cup(arc_of_cover=arc))) for arc in (3.0, 1.0))
     share = f"{100 * contact.half_angle / 1.5:.0f} %"
-    assert f"<span class='holds'>Passes: reach of the contact is {share} of the arc from pole to rim" in wide
-    assert re.search(r"class='fails'>Fails: reach of the contact is [\d.]+ times the arc from pole to rim", narrow)
+    assert f"<span class='holds'>Kept: reach of the contact is {share} of the arc from pole to rim" in wide
+    assert re.search(r"class='fails'>Exceeded: reach of the contact is [\d.]+ times the arc from pole to rim", narrow)
     assert "holds" not in narrow
 
 
@@ -230,7 +230,7 @@ def test_a_tilted_load_and_a_ball_above_its_first_touch_are_drawn_in_the_cup(tmp
     assert sentence in text
 
 
-HIP_28, DEFAULT = bs.joints["hip-28"], bs.Cup()
+HIP_28, DEFAULT, UNDECIDED = bs.joints["hip-28"], bs.Cup(), Verdict.UNDECIDED
 WRITE = Units.SI.text_of
 
 
@@ -246,12 +246,10 @@ def test_pressure_and_von_mises_stress_have_rows_of_their_own():
     contact = bs.Exact().press(HIP_28, force=3000.0)
     rows = by_title(checks_of(contact, DEFAULT, contact.von_mises))
     liner_stress, pressure = rows["von Mises stress in the liner"], rows["pressure on the liner"]
-    assert (liner_stress.demand, liner_stress.capacity) == (contact.von_mises, 21.0)
-    assert liner_stress.ratio == pytest.approx(contact.utilisation)
+    assert (liner_stress.demand.value, liner_stress.capacity) == (contact.von_mises, 21.0)
+    assert liner_stress.ratio.value == pytest.approx(contact.utilisation)
     assert liner_stress.source == "UHMWPE, yield: least of ASTM F648 type 1 (unverified)"
-    estimate = by_title(checks_of(contact, DEFAULT))["von Mises stress in the liner"]
-    assert estimate.source == f"{liner_stress.source}; stress estimated from pressure and half angle"
-    assert (pressure.demand, pressure.capacity, pressure.passes) == (contact.max_pressure, None, None)
+    assert (pressure.demand.value, pressure.capacity, pressure.verdict) == (contact.max_pressure, None, UNDECIDED)
     assert pressure.source == "no allowable pressure of the liner is known"
     assert rows["von Mises stress in the ball"].capacity == HIP_28.ball.yield_stress
 
@@ -261,49 +259,52 @@ def test_pressure_and_von_mises_stress_have_rows_of_their_own():
 def test_the_verdict_is_that_of_the_strength_alone_where_the_rim_is_far(strengths, force):
     contact = bs.Exact().press(liner(**strengths), force=force)
     rows = checks_of(contact, bs.Cup(arc_of_cover=radians(340.0)), contact.von_mises)
-    assert verdict_of(rows)[0] is assess_strength(contact).bears
+    assert verdict_of(rows)[0] is assess_strength(contact).verdict
 
 
 def test_a_contact_outside_the_range_of_its_model_has_no_verdict_but_may_fail():
     doubtful = bs.Hertz().press(liner(allowable_pressure=1e3), force=3000.0)
     assert verdict_of(checks_of(doubtful, DEFAULT)) == (
-        None,
-        "No verdict: this result is outside the range of its model",
+        UNDECIDED,
+        "Undecided: this result is outside the range of its model",
     )
     overloaded = bs.Hertz().press(liner(allowable_pressure=4.0), force=3000.0)
-    passes, sentence = verdict_of(checks_of(overloaded, DEFAULT))
-    assert passes is False
-    assert sentence.endswith(f"{overloaded.max_pressure / 4:.3g} times the allowable pressure")
+    verdict, sentence = verdict_of(checks_of(overloaded, DEFAULT))
+    assert verdict is Verdict.EXCEEDED
+    assert "the allowable pressure" in sentence
 
 
 @pytest.mark.parametrize("tilt", [0.0, 45.0, 75.0])
 def test_the_row_of_the_rim_fails_where_the_contact_is_edge_loaded(tilt):
     contact = bs.Sphere(ring_width=radians(4.0)).press(HIP_28, force=3000.0, tilt=radians(tilt))
     row = by_title(checks_of(contact, DEFAULT))["reach of the contact"]
-    assert row.passes is not contact.edge_loaded
-    assert row.capacity - row.demand == pytest.approx(contact.edge_distance)
+    assert row.verdict is (Verdict.EXCEEDED if contact.edge_loaded else Verdict.KEPT)
+    assert row.capacity - row.demand.value == pytest.approx(contact.edge_distance)
 
 
 def test_numbers_of_a_worn_bore_give_the_rows_of_a_contact():
     contact = bs.Exact().press(HIP_28, force=3000.0)
     distance = HIP_28.socket_radius * (DEFAULT.rim - contact.half_angle)
-    rows = checks_at(HIP_28, pressure=contact.max_pressure, half_angle=contact.half_angle, edge=(DEFAULT.rim, distance))
-    assert rows == checks_of(contact, DEFAULT)
+    pressure, von_mises = (error_bar(contact, name) for name in ("max_pressure", "von_mises"))
+    rows = checks_at(HIP_28, pressure=pressure, von_mises=von_mises, edge=(DEFAULT.rim, exact_number(distance)))
+    same = checks_of(contact, DEFAULT, contact.von_mises)
+    assert [(row.title, row.verdict) for row in rows] == [(row.title, row.verdict) for row in same]
     assert pickle.loads(pickle.dumps(rows)) == rows
-    assert [wear_check(HIP_28, depth).passes for depth in (0.5, 6.0)] == [True, False]
+    depths = Bounded(0.5, 0.4, 0.6), Bounded(5.0, 4.9, 5.1), Bounded(6.0, 5.9, 6.1)
+    assert [wear_check(HIP_28, depth).verdict.word for depth in depths] == ["kept", "undecided", "exceeded"]
 
 
 def test_a_preloaded_joint_has_no_row_of_the_rim():
     joint = bs.Joint(ball_radius=14.0, interference=0.05, liner_thickness=5.0, liner=bs.UHMWPE)
-    rows = checks_at(joint, pressure=5.0, half_angle=1.2, edge=(1.5, -0.1))
+    rows = checks_at(joint, pressure=exact_number(5.0), von_mises=exact_number(3.0), edge=(1.5, exact_number(-0.1)))
     assert "reach of the contact" not in by_title(rows)
 
 
 def test_a_failure_stands_first_and_has_a_sign_a_word_and_a_style():
     contact = bs.Exact().press(liner(allowable_pressure=10.0, yield_stress=21.0), force=3000.0)
     html = checks_html(checks_of(contact, DEFAULT), WRITE)
-    assert html.index("✗ fails") < html.index("✓ passes")
+    assert html.index("✗ exceeded") < html.index("✓ kept")
     pressure = f"<td>{contact.max_pressure:.4g} MPa</td>"
-    assert f"<tr class='fails'><th scope='row'>pressure on the liner</th>{pressure}" in html
+    assert f"<tr class='exceeded'><th scope='row'>pressure on the liner</th>{pressure}" in html
     assert f"{10 * contact.max_pressure:.0f} %" in html
     assert "psi" in checks_html(checks_of(contact, DEFAULT), Units.IMPERIAL.text_of)

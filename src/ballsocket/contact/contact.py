@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy
 
@@ -93,6 +93,9 @@ class Contact(Outcome):
     laws: Laws
     force: Array
     indentation: Array
+
+    stress_error: ClassVar[float | None] = None
+    """Relative error of a von Mises stress that is solved for; None for a stress between `von_mises_bounds`."""
 
     half_angle = _quantity_property("half_angle")
     max_pressure = _quantity_property("max_pressure")

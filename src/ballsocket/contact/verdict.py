@@ -1,18 +1,154 @@
-"""Verdict on a contact in one sentence: the load is or is not below the strength of the materials."""
+"""Verdicts: a number with its error bar keeps a limit, exceeds it, or leaves it undecided.
+
+Every comparison with a limit in this package is made here::
+
+    bar = error_bar(contact, "max_pressure")      # value with lower and upper bound
+    bar.verdict(high=25.0)                        # Verdict.KEPT, UNDECIDED or EXCEEDED
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from enum import IntEnum
+from math import inf
+from math import isfinite as is_finite_number
+from typing import Any, NamedTuple
 
+from ..core.arrays import Array, all_true, isfinite
 from ..core.deprecation import renamed_names
 from ..core.quantities import STRENGTH
-from ..problem import Material
+from ..problem import Joint, Material
+from .contact import Contact
 from .strength import joint_ball_stress_ratio, unchecked_strength_reason
 
-if TYPE_CHECKING:
-    from .contact import Contact
+EDGE_DISTANCE = "edge_distance"
+"""Arc from the edge of the contact to the rim; its error is that of the `edge_margin`."""
+
+_BALL_STRESS_ERROR = 0.02
+"""Relative error of the largest von Mises stress in the ball, see `strength.ball_stress_ratio`."""
+
+_AREA_ERRORS = 2.0
+"""Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
+
+_ESTIMATE_WIDTH = 0.02
+"""Width of an error bar, relative to its value, above which the value is an estimate."""
+
+
+class Verdict(IntEnum):
+    """Result of the comparison of a number and its error bar with a limit.
+
+    Arrays of verdicts have the integer codes. The largest of several verdicts holds for all limits together.
+    """
+
+    KEPT = 0
+    UNDECIDED = 1
+    EXCEEDED = 2
+
+    @property
+    def word(self) -> str:
+        """Verdict in one word."""
+        return self.name.lower()
+
+    @property
+    def sign(self) -> str:
+        """Sign that stands before the word, for readers without colours."""
+        return "✓?✗"[self]
+
+
+class Bounded(NamedTuple):
+    """Number, or array of numbers, with a lower and an upper bound: its error bar."""
+
+    value: Any
+    low: Any
+    high: Any
+
+    @property
+    def is_estimate(self) -> bool:
+        """True for a single number whose bar is wider than 2 % of it."""
+        return not self.high - self.low <= _ESTIMATE_WIDTH * abs(self.value)
+
+    def verdict(self, *, low: float = -inf, high: float = inf) -> Verdict:
+        """Compare a single number with a closed range, limits included."""
+        return Verdict(int(self.decide(low=low, high=high)))
+
+    def decide(self, *, low: Any = -inf, high: Any = inf) -> Any:
+        """Compare numbers with a closed range, limits included.
+
+        Returns
+        -------
+        int or array
+            Codes of `Verdict`: kept if the whole bar lies inside the range, exceeded if it lies outside, else
+            undecided. A missing number is undecided.
+        """
+        kept = (self.low >= low) & (self.high <= high)
+        exceeded = (self.high < low) | (self.low > high)
+        return (1 - kept) + exceeded
+
+    def scaled(self, factor: float, error: float = 0.0) -> Bounded:
+        """Multiply a number that is not negative by a positive factor with a relative error."""
+        return Bounded(factor * self.value, factor * (1 - error) * self.low, factor * (1 + error) * self.high)
+
+
+def exact_number(value: Any) -> Bounded:
+    """Return a number without an error, such as a dimension."""
+    return Bounded(value, value, value)
+
+
+def error_bar(contact: Contact, name: str) -> Bounded:
+    """Return a quantity of a contact with its error bar, in internal units.
+
+    The bar of the von Mises stress and the utilisation comes from their bounds, with the error of the pressure. Other
+    quantities have the relative error that the solver states in `contact.error`, else the promise of the model. A
+    quantity without a stated error has no width.
+
+    Parameters
+    ----------
+    contact : Contact
+    name : str
+        Name of a quantity of the contact, such as "max_pressure", "utilisation", "edge_distance".
+    """
+    value = getattr(contact, name)
+    if name == "von_mises":
+        return von_mises_bar(contact, value)
+    if name == "utilisation":
+        return _stress_bar(contact, value, contact.utilisation_bounds)
+    if name == EDGE_DISTANCE:
+        error = contact.error["edge_margin"] * contact.joint.socket_radius  # type: ignore[attr-defined]
+    else:
+        error = relative_error(contact, name) * abs(value)
+    return Bounded(value, value - error, value + error)
+
+
+def von_mises_bar(contact: Contact, solved: Array | None = None) -> Bounded:
+    """Return the largest von Mises stress in the liner in MPa with its error bar.
+
+    Without a `solved` value no stresses are solved for where they have bounds: the value is the mean of the bounds.
+    """
+    low, high = bounds = contact.von_mises_bounds
+    if solved is None and not all_true(isfinite(high)):
+        solved = contact.von_mises
+    if solved is not None:
+        return _stress_bar(contact, solved, bounds)
+    error = relative_error(contact, "max_pressure")
+    return Bounded((low + high) / 2, (1 - error) * low, (1 + error) * high)
+
+
+def _stress_bar(contact: Contact, value: Array, bounds: tuple[Array, Array]) -> Bounded:
+    """Return the bar of a stress that is solved for, or lies between bounds; with the error of the pressure."""
+    low, high = bounds if contact.stress_error is None else (value, value)
+    error = relative_error(contact, "max_pressure") + (contact.stress_error or 0.0)
+    return Bounded(value, (1 - error) * low, (1 + error) * high)
+
+
+def relative_error(contact: Contact, name: str) -> Array:
+    """Return the relative error of a quantity: of its solver, else the promise of the model, else 0."""
+    if name == "area":
+        return _AREA_ERRORS * relative_error(contact, "half_angle")
+    errors, promise = getattr(contact, "error", None) or {}, contact.model.promise
+    if name in errors:
+        return errors[name]
+    return promise.within if promise is not None and name in promise.quantities else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,48 +161,93 @@ class StrengthUse:
         "liner" or "ball".
     strength : str
         Name of the strength.
-    stress, allowed : float
-        Stress of the contact and the strength in MPa.
+    stress : Bounded
+        Stress of the contact in MPa with its error bar.
+    allowed : float
+        Strength in MPa.
     """
 
     part: str
     strength: str
-    stress: float
+    stress: Bounded
     allowed: float
 
     @property
-    def ratio(self) -> float:
+    def ratio(self) -> Bounded:
         """Ratio of stress to strength."""
-        return self.stress / self.allowed
+        return self.stress.scaled(1 / self.allowed)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict on the stress."""
+        return self.ratio.verdict(high=1.0)
 
     def __str__(self) -> str:
-        ratio = f"{100 * self.ratio:.0f} %" if self.ratio <= 1 else f"{self.ratio:.3g} times"
-        return f"{ratio} {'of ' if self.ratio <= 1 else ''}the {STRENGTH[self.strength].title} of the {self.part}"
+        return f"{ratio_text(self.ratio)} the {STRENGTH[self.strength].title} of the {self.part}"
+
+
+def bar_text(bar: Bounded, write: Callable[[float], str]) -> str:
+    """Write the bar of an estimate, such as "estimate, 13.5 MPa to 20.3 MPa"; empty for an accurate number."""
+    if not bar.is_estimate:
+        return ""
+    if not is_finite_number(bar.high):
+        return "estimate without a known bound"
+    return f"estimate, {write(bar.low)} to {write(bar.high)}"
+
+
+def ratio_text(ratio: Bounded) -> str:
+    """Write a ratio of demand to capacity: "81 % of", "1.4 times", "an estimated 95 % (76 to 115 %) of".
+
+    A bar is written if it makes the number an estimate, or contains 1.
+    """
+    words, of = (f"{percent(ratio.value)} %", " of") if ratio.value <= 1 else (f"{ratio.value:.3g} times", "")
+    estimated = "an estimated " if ratio.is_estimate else ""
+    if not estimated and ratio.verdict(high=1.0) is not Verdict.UNDECIDED:
+        return f"{words}{of}"
+    return f"{estimated}{words} ({range_text(ratio)}){of}"
+
+
+def range_text(ratio: Bounded) -> str:
+    """Write the bar of a ratio, such as "76 to 115 %", or "1.2 to 1.6" for a ratio above 1."""
+    if not is_finite_number(ratio.high):
+        return "without a known bound"
+    if ratio.value > 1:
+        return f"{ratio.low:.4g} to {ratio.high:.4g}"
+    return f"{percent(ratio.low)} to {percent(ratio.high)} %"
+
+
+def percent(ratio: float) -> str:
+    """Write a ratio in percent; never 100 for another ratio."""
+    text = f"{100 * ratio:.0f}"
+    return text if text != "100" or ratio == 1 else f"{100 * ratio:.4g}"
 
 
 def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
     """Compare the stresses of a single contact with all strengths of its materials, in descending order of ratio."""
-    return strength_uses_at(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
+    von_mises = error_bar(contact, "von_mises") if contact.joint.liner.strengths else exact_number(0.0)
+    return strength_uses_at(contact.joint, error_bar(contact, "max_pressure"), von_mises)
 
 
-def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
-    """Compare a contact's stresses with all strengths, for a given von Mises stress of the liner in MPa."""
-    joint, pressure = contact.joint, float(contact.max_pressure)
+def strength_uses_at(joint: Joint, pressure: Bounded, von_mises: Bounded) -> tuple[StrengthUse, ...]:
+    """Compare the largest pressure and the largest von Mises stress of the liner, in MPa, with all strengths."""
     uses = list(_compare_with_material_strengths("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
-        uses += _compare_with_material_strengths(
-            "ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure
-        )
-    return tuple(sorted(uses, key=lambda use: -use.ratio))
+        uses += _compare_with_material_strengths("ball", joint.ball, pressure, ball_von_mises(joint, pressure))
+    return tuple(sorted(uses, key=lambda use: -use.ratio.value))
+
+
+def ball_von_mises(joint: Joint, pressure: Bounded) -> Bounded:
+    """Estimate the largest von Mises stress in the ball in MPa from the largest pressure; 0 for a rigid ball."""
+    return pressure.scaled(float(joint_ball_stress_ratio(joint)), _BALL_STRESS_ERROR)
 
 
 def _compare_with_material_strengths(
-    body: str, material: Material, pressure: float, von_mises: float
+    body: str, material: Material, pressure: Bounded, von_mises: Bounded
 ) -> Iterator[StrengthUse]:
     """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
-        yield StrengthUse(part=body, strength=name, stress=float(stress), allowed=float(strength))
+        yield StrengthUse(part=body, strength=name, stress=Bounded(*map(float, stress)), allowed=float(strength))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,20 +256,19 @@ class StrengthVerdict:
 
     Attributes
     ----------
-    bears : bool or None
-        True below all strengths, False above one of them, None without a valid result or a strength of the liner.
+    verdict : Verdict
+        Kept below all strengths, exceeded above one of them. Undecided if an error bar contains a strength, without a
+        valid result, or without a strength of the liner.
     words : str
         Reason in one sentence.
     """
 
-    bears: bool | None
+    verdict: Verdict
     words: str
 
 
 def assess_strength(contact: Contact) -> StrengthVerdict:
     """Decide if the stresses of a single contact are below the strengths of its materials.
-
-    There is no verdict (None) on an invalid result, nor if the strength of the liner is unknown.
 
     Parameters
     ----------
@@ -103,29 +283,31 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     --------
     >>> import ballsocket as bs
     >>> from ballsocket.contact.verdict import assess_strength
-    >>> assess_strength(bs.HessForsbach().press(bs.joints["hip-36"], force=3000.0)).bears
-    True
+    >>> assess_strength(bs.Exact().press(bs.joints["hip-36"], force=2000.0)).verdict.word
+    'kept'
     """
     if contact.status.failed:
-        return StrengthVerdict(bears=None, words=f"no answer: {contact.status.sentence}")
+        return _undecided(f"no answer: {contact.status.sentence}")
     uses = strength_uses(contact)
-    worst = uses[0] if uses else None
-    if worst is not None and worst.ratio > 1:
-        return StrengthVerdict(bears=False, words=f"overloaded: {worst}")
+    worst = max(uses, key=lambda use: (use.verdict, use.ratio.value), default=None)
+    if worst is not None and worst.verdict is Verdict.EXCEEDED:
+        return StrengthVerdict(verdict=Verdict.EXCEEDED, words=f"exceeded: {worst}")
     if not contact.valid:
-        return StrengthVerdict(bears=None, words=f"result not valid: {'; '.join(contact.notes)}")
+        return _undecided(f"result not valid: {'; '.join(contact.notes)}")
     if worst is None or not contact.joint.liner.strengths:
-        return StrengthVerdict(bears=None, words=unchecked_strength_reason(contact.joint))
-    return StrengthVerdict(bears=True, words=f"within its strength: {worst}")
+        return _undecided(unchecked_strength_reason(contact.joint))
+    return StrengthVerdict(verdict=worst.verdict, words=f"{worst.verdict.word}: {worst}")
+
+
+def _undecided(reason: str) -> StrengthVerdict:
+    return StrengthVerdict(verdict=Verdict.UNDECIDED, words=f"undecided: {reason}")
 
 
 __getattr__ = renamed_names(
     __name__,
     {
         "Share": "StrengthUse",
-        "Verdict": "StrengthVerdict",
         "shares": "strength_uses",
-        "shares_of": "strength_uses_at",
         "verdict": "assess_strength",
     },
 )

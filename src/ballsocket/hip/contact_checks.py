@@ -6,7 +6,7 @@ a `Contact` of the matching model. That `Contact` supplies validity, utilisation
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import degrees, isfinite, nan
@@ -15,6 +15,7 @@ from typing import Any
 import numpy
 
 from ..contact import Contact, Model, strength
+from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
 from ..core.validity import Status
 from ..elasticity.exact.model import Exact
@@ -92,10 +93,12 @@ class ContactCheck:
     activity : str
     instant : str
         Instant of the largest pressure, in words.
-    force, max_pressure, half_angle : float
-        Load in N, largest pressure in MPa, half angle in rad of a round contact of the same area.
-    utilisation : float, optional
-        Largest von Mises stress over yield stress; None where no yield stress is known.
+    force, half_angle : float
+        Load in N, half angle in rad of a round contact of the same area.
+    pressure, von_mises : Bounded
+        Largest pressure, and largest von Mises stress in the liner, in MPa with their error bars.
+    utilisation_bar : Bounded
+        Largest von Mises stress over yield stress with its error bar; NaN where no yield stress is known.
     utilisation_note : str
         Reason why the utilisation does not cover the liner; empty where it does.
     valid : bool
@@ -107,12 +110,29 @@ class ContactCheck:
     activity: str
     instant: str
     force: float
-    max_pressure: float
     half_angle: float
-    utilisation: float | None
+    pressure: Bounded
+    von_mises: Bounded
+    utilisation_bar: Bounded
     utilisation_note: str
     valid: bool
     notes: tuple[str, ...]
+
+    @property
+    def max_pressure(self) -> float:
+        """Largest pressure in MPa."""
+        return float(self.pressure.value)
+
+    @property
+    def utilisation(self) -> float | None:
+        """Largest von Mises stress over yield stress; None where no yield stress is known."""
+        return _finite_or_none(self.utilisation_bar.value)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict on the yield stress; undecided where none is known, or outside the validity of the model."""
+        verdict = self.utilisation_bar.verdict(high=1.0)
+        return verdict if self.valid and not self.utilisation_note else max(verdict, Verdict.UNDECIDED)
 
     def summary(self) -> dict[str, Any]:
         """Return the contact check as a dictionary for JSON."""
@@ -123,10 +143,18 @@ class ContactCheck:
             "max_pressure_MPa": self.max_pressure,
             "half_angle_deg": degrees(self.half_angle),
             "utilisation": self.utilisation,
+            "utilisation_low": _finite_or_none(self.utilisation_bar.low),
+            "utilisation_high": _finite_or_none(self.utilisation_bar.high),
+            "verdict": self.verdict.word,
             "utilisation_note": self.utilisation_note or None,
             "valid": self.valid,
             "notes": list(self.notes),
         }
+
+
+def _finite_or_none(value: float) -> float | None:
+    """Return a finite number for JSON, and None for another."""
+    return value if isfinite(value) else None
 
 
 def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
@@ -212,14 +240,17 @@ def check_rows(model: Model, joint: Joint, worst: Numbers) -> Numbers:
 def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:
     """Check validity and strength of the worst contact of one activity, a row of a table."""
     contact = grid_contact(model, joint, worst)
-    utilisation = float(contact.utilisation)
+    pressure, von_mises, utilisation = (
+        Bounded(*map(float, error_bar(contact, name))) for name in ("max_pressure", "von_mises", "utilisation")
+    )
     return ContactCheck(
         activity=activity,
         instant=instant,
         force=float(contact.force),
-        max_pressure=float(contact.max_pressure),
         half_angle=float(contact.half_angle),
-        utilisation=utilisation if isfinite(utilisation) else None,
+        pressure=pressure,
+        von_mises=von_mises,
+        utilisation_bar=utilisation,
         utilisation_note=contact.utilisation_note,
         valid=bool(contact.valid),
         notes=contact.notes,
@@ -229,6 +260,11 @@ def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, ins
 def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
     """Return the largest ratio of von Mises to yield stress of some checks; None if all are unknown."""
     return max((check.utilisation for check in checks if check.utilisation is not None), default=None)
+
+
+def worst_verdict(checks: Iterable[ContactCheck]) -> Verdict:
+    """Return the worst verdict on the yield stress of some checks; undecided without a check."""
+    return max((check.verdict for check in checks), default=Verdict.UNDECIDED)
 
 
 def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy
 
+from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.display import OneLine, html_table, load_plot
 from ..lubrication import Lubricant
-from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
+from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
 from .hip_setup import HipSetup
 from .law_fields import law_summary
 from .rim import ClosestApproach, RimDistance
@@ -203,6 +204,7 @@ class History(OneLine):
                 "edge_pressure_MPa": float(report.edge_pressure.max(initial=0.0)),
                 "edge_loaded_instants": int(report.edge_loaded.sum()),
                 "utilisation": nan if (share := largest_utilisation(checks)) is None else share,
+                "verdict": worst_verdict(checks).word,
                 "valid": report.converged and all(check.valid for check in checks),
             }
             for report, checks in zip(self.reports, self.contact_checks, strict=True)
@@ -244,6 +246,11 @@ class History(OneLine):
     def contact_valid(self) -> bool:
         """True if the worst contacts at the start and at all reports are valid for the contact model."""
         return all(check.valid for check in (*self.use.unworn_checks, *chain(*self.contact_checks)))
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict on the yield stress in the first cycle and at each report."""
+        return worst_verdict((*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def utilisation(self) -> float | None:
@@ -338,6 +345,7 @@ class History(OneLine):
                 "model": self.use.contact_model.name,
                 "valid": self.contact_valid,
                 "utilisation": self.utilisation,
+                "verdict": self.verdict.word,
                 "unworn": [check.summary() for check in self.use.unworn_checks],
             },
             "laws": {
@@ -371,6 +379,7 @@ class History(OneLine):
         contact = {
             "valid": report.converged and all(check.valid for check in checks),
             "utilisation": largest_utilisation(checks),
+            "verdict": worst_verdict(checks).word,
             "contact": [check.summary() for check in checks],
         }
         return {**report.summary(), **radiograph, **years, "edge": _closest_approach_summary(edge), **contact}

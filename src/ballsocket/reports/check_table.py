@@ -2,20 +2,31 @@
 
 Reports and the explorer show the same rows::
 
-    rows = checks_of(contact, cup)                            # a contact of any model in its cup
-    rows = checks_at(joint, pressure=30.1, half_angle=0.6)    # numbers of a cycle or of a worn bore
-    html = checks_html(rows, units.text_of)                   # or reading.with_unit in the explorer
-    passes, sentence = verdict_of(rows)
+    rows = checks_of(contact, cup)                                         # a contact of any model in its cup
+    rows = checks_at(joint, pressure=pressure, von_mises=stress)           # bars of a cycle or of a worn bore
+    html = checks_html(rows, units.text_of)                                # or reading.with_unit in the explorer
+    verdict, sentence = verdict_of(rows)
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from math import nextafter
 from typing import Any
 
 from ..contact import Contact
-from ..contact.strength import joint_ball_stress_ratio, von_mises_ratio
+from ..contact.verdict import (
+    EDGE_DISTANCE,
+    Bounded,
+    Verdict,
+    ball_von_mises,
+    bar_text,
+    error_bar,
+    percent,
+    ratio_text,
+    von_mises_bar,
+)
 from ..core.quantities import QUANTITIES, STRENGTH, Quantity
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..problem import Joint, Material
@@ -38,8 +49,8 @@ class Check:
         Demand in words, such as "pressure on the liner".
     quantity : str
         Name of the quantity of demand and capacity in `QUANTITIES`.
-    demand : float
-        Value in internal units: mm, MPa, rad.
+    demand : Bounded
+        Value with its error bar in internal units: mm, MPa, rad.
     capacity : float or None
         Largest acceptable value; None if it is unknown.
     limit : str
@@ -52,23 +63,35 @@ class Check:
 
     title: str
     quantity: str
-    demand: float
+    demand: Bounded
     capacity: float | None
     limit: str
     source: str
     trusted: bool = True
 
     @property
-    def ratio(self) -> float | None:
+    def ratio(self) -> Bounded | None:
         """Ratio of demand to capacity; None without a capacity."""
-        return None if self.capacity is None else self.demand / self.capacity
+        return None if self.capacity is None else self.demand.scaled(1 / self.capacity)
 
     @property
-    def passes(self) -> bool | None:
-        """True below the capacity; None without a capacity, and for a passing demand outside the range of its model."""
-        if self.ratio is None or self.ratio != self.ratio:
-            return None
-        return False if self.ratio >= 1 else True if self.trusted else None
+    def verdict(self) -> Verdict:
+        """Verdict on the demand; undecided without a capacity, or for a kept one outside the range of its model."""
+        if self.capacity is None:
+            return Verdict.UNDECIDED
+        verdict = self.demand.verdict(high=self.capacity)
+        return verdict if self.trusted else max(verdict, Verdict.UNDECIDED)
+
+    @property
+    def result(self) -> str:
+        """Sign and word of the verdict, with the reason for an undecided one."""
+        reason = ""
+        if self.verdict is Verdict.UNDECIDED:
+            reason = ": limit not known" if self.capacity is None else _UNTRUSTED if not self.trusted else _BAR
+        return f"{self.verdict.sign} {self.verdict.word}{reason}"
+
+
+_UNTRUSTED, _BAR = ": outside the range of the model", ": the error bar contains the limit"
 
 
 def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tuple[Check, ...]:
@@ -80,7 +103,7 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
         Contact of any model; one along the axis ends at its half angle from the pole.
     cup : Cup
     von_mises : float, optional
-        Largest von Mises stress in the liner in MPa; by default the estimate from half angle and pressure.
+        Largest von Mises stress in the liner in MPa, if it is solved for already; by default the mean of its bounds.
 
     Returns
     -------
@@ -91,16 +114,16 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
         return ()
     joint, radius = contact.joint, float(contact.joint.socket_radius)
     if isinstance(contact, OffAxisContact):
-        reach, distance = float(contact.model.reach_of(joint)), float(contact.edge_distance)
+        reach, distance = float(contact.model.reach_of(joint)), error_bar(contact, EDGE_DISTANCE)
     else:
         reach = cup.rim - cup.chamfer / radius
-        distance = radius * (reach - float(contact.half_angle))
+        value, low, high = error_bar(contact, "half_angle")
+        distance = Bounded(*(radius * (reach - angle) for angle in (value, high, low)))
     return checks_at(
         joint,
-        pressure=float(contact.max_pressure),
-        half_angle=float(contact.half_angle),
-        von_mises=von_mises,
-        edge=(reach, distance),
+        pressure=error_bar(contact, "max_pressure"),
+        von_mises=von_mises_bar(contact, von_mises),
+        edge=(reach, distance) if float(contact.half_angle) > 0 else None,
         trusted=bool(contact.valid),
     )
 
@@ -108,10 +131,9 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
 def checks_at(
     joint: Joint,
     *,
-    pressure: float,
-    half_angle: float,
-    von_mises: float | None = None,
-    edge: tuple[float, float] | None = None,
+    pressure: Bounded,
+    von_mises: Bounded,
+    edge: tuple[float, Bounded] | None = None,
     trusted: bool = True,
 ) -> tuple[Check, ...]:
     """List the checks of a joint for the numbers of a contact, the highest ratio first.
@@ -119,41 +141,28 @@ def checks_at(
     Parameters
     ----------
     joint : Joint
-    pressure, half_angle : float
-        Largest pressure in MPa, half angle in rad.
-    von_mises : float, optional
-        Largest von Mises stress in the liner in MPa; by default the estimate from half angle and pressure.
-    edge : tuple of float, optional
+    pressure, von_mises : Bounded
+        Largest pressure, and largest von Mises stress in the liner, in MPa.
+    edge : tuple of float and Bounded, optional
         Angle in rad from the pole of the dome to the end of the bore, and edge distance in mm.
     trusted : bool
         True if the numbers lie in the range of their model.
     """
-    estimate = float(von_mises_ratio(half_angle, joint.liner.poisson, joint.thickness_ratio)) * pressure
-    stress = estimate if von_mises is None else von_mises
-    rows = list(_material_checks("liner", joint.liner, pressure, stress, trusted))
-    if von_mises is None:
-        rows = [replace(row, source=row.source + _ESTIMATED) if _is_stress(row) else row for row in rows]
+    rows = list(_material_checks("liner", joint.liner, pressure, von_mises, trusted))
     if joint.ball is not None:
-        ball_stress = float(joint_ball_stress_ratio(joint)) * pressure
+        ball_stress = ball_von_mises(joint, pressure)
         rows += (row for row in _material_checks("ball", joint.ball, pressure, ball_stress, trusted) if row.capacity)
     if edge is not None and not float(joint.clearance) < 0:  # a preloaded contact reaches the rim as a rule
         rows.append(_rim_check(joint, *edge, trusted))
     return sorted_checks(rows)
 
 
-_ESTIMATED = "; stress estimated from pressure and half angle"
-
-
-def _is_stress(row: Check) -> bool:
-    return row.quantity == "von_mises" and row.capacity is not None
-
-
 def sorted_checks(rows: Iterable[Check]) -> tuple[Check, ...]:
     """Sort checks by their ratio, the highest first and unknown ones last."""
-    return tuple(sorted(rows, key=lambda row: -1.0 if row.ratio is None else row.ratio, reverse=True))
+    return tuple(sorted(rows, key=lambda row: -1.0 if row.ratio is None else row.ratio.value, reverse=True))
 
 
-def wear_check(joint: Joint, depth: float) -> Check:
+def wear_check(joint: Joint, depth: Bounded) -> Check:
     """Compare the deepest wear (mm) with the thickness of the liner."""
     return Check(
         title="deepest wear",
@@ -165,7 +174,9 @@ def wear_check(joint: Joint, depth: float) -> Check:
     )
 
 
-def _material_checks(part: str, material: Material, pressure: float, stress: float, trusted: bool) -> Iterator[Check]:
+def _material_checks(
+    part: str, material: Material, pressure: Bounded, stress: Bounded, trusted: bool
+) -> Iterator[Check]:
     """Yield the checks of one body: pressure and von Mises stress, known capacity or not, and further strengths."""
     strengths = {_PRESSURE: None, _VON_MISES: None, **material.strengths}
     for name, capacity in strengths.items():
@@ -188,46 +199,44 @@ def _source_of(material: Material, title: str) -> str:
     return f"{material.name}, {source}" if material.name else source
 
 
-def _rim_check(joint: Joint, reach: float, distance: float, trusted: bool) -> Check:
+def _rim_check(joint: Joint, reach: float, distance: Bounded, trusted: bool) -> Check:
     """Compare the arc from the pole to the edge of the contact with the arc to the end of the bore."""
     length = reach * float(joint.socket_radius)
     return Check(
         title="reach of the contact",
-        quantity="edge_distance",
-        demand=length - distance,
-        capacity=length,
+        quantity=EDGE_DISTANCE,
+        demand=Bounded(*(length - float(arc) for arc in (distance.value, distance.high, distance.low))),
+        capacity=nextafter(length, 0.0),  # a contact that ends at the rim is edge loaded
         limit="arc from pole to rim",
         source="arc of cover and chamfer of the cup",
         trusted=trusted,
     )
 
 
-def verdict_of(rows: Sequence[Check]) -> tuple[bool | None, str]:
-    """Return the verdict on a design and its sentence; None without a strength of the liner or outside the range."""
-    failed = [row for row in rows if row.passes is False]
-    if failed:
-        worst = "; ".join(f"{row.title} is {_use(row)} the {row.limit}" for row in failed)
-        return False, f"Fails: {worst}"
+def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
+    """Return the verdict on a design and its sentence; undecided without a strength of the liner."""
+    exceeded, undecided, kept = ([row for row in rows if row.verdict is verdict] for verdict in _WORST_FIRST)
+    if exceeded:
+        return Verdict.EXCEEDED, f"Exceeded: {_uses(exceeded)}"
     if not rows:
-        return None, "No verdict: there is no result"
+        return Verdict.UNDECIDED, "Undecided: there is no result"
     if not all(row.trusted for row in rows):
-        return None, "No verdict: this result is outside the range of its model"
-    unknown = [row for row in rows if row.passes is None]
-    if not any(row.passes and row.quantity in ("max_pressure", "von_mises") for row in rows):
-        return None, f"No verdict: {'; '.join(row.source for row in unknown)}"
-    highest = next(row for row in rows if row.passes)
+        return Verdict.UNDECIDED, "Undecided: this result is outside the range of its model"
+    near, unknown = ([row for row in undecided if (row.capacity is None) is missing] for missing in (False, True))
     unchecked = f". Not checked: {', '.join(row.title for row in unknown)}" if unknown else ""
-    return True, f"Passes: {highest.title} is {_use(highest)} the {highest.limit}, the highest ratio{unchecked}"
+    if near:
+        return Verdict.UNDECIDED, f"Undecided: {_uses(near)}{unchecked}"
+    if not any(row.quantity in ("max_pressure", "von_mises") for row in kept):
+        return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in unknown)}"
+    return Verdict.KEPT, f"Kept: {_uses(kept[:1])}, the highest ratio{unchecked}"
 
 
-def _use(row: Check) -> str:
-    """Write the ratio of a check in words, such as "81 % of" or "1.4 times"."""
-    ratio = row.ratio or 0.0
-    return f"{100 * ratio:.0f} % of" if ratio <= 1 else f"{ratio:.3g} times"
+_WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)
 
 
-_STATES = {True: ("passes", "✓ passes"), False: ("fails", "✗ fails"), None: ("unknown", "? not known")}
-"""Style and words of a result."""
+def _uses(rows: Sequence[Check]) -> str:
+    """Write the ratios of checks in words, such as "pressure on the liner is 81 % of the allowable pressure"."""
+    return "; ".join(f"{row.title} is {ratio_text(row.ratio)} the {row.limit}" for row in rows if row.ratio is not None)
 
 
 def checks_html(rows: Sequence[Check], write: Writer) -> str:
@@ -237,16 +246,15 @@ def checks_html(rows: Sequence[Check], write: Writer) -> str:
 
 def _cells(row: Check, write: Writer) -> dict[str, Any]:
     """Return the texts of one row of the table."""
-    quantity = QUANTITIES[row.quantity]
-    state, words = _STATES[row.passes]
-    outside = row.passes is None and row.ratio is not None
+    quantity, ratio = QUANTITIES[row.quantity], row.ratio
     return {
         "title": row.title,
-        "demand": write(quantity, row.demand),
+        "demand": write(quantity, row.demand.value),
+        "bar": bar_text(row.demand, lambda value: write(quantity, value)),
         "capacity": "–" if row.capacity is None else f"{write(quantity, row.capacity)} ({row.limit})",
-        "ratio": "–" if row.ratio is None else f"{100 * row.ratio:.0f} %",
-        "width": f"{min(100.0, 100 * (row.ratio or 0.0)):.1f}",
-        "state": state,
-        "result": "? outside the range of the model" if outside else words,
+        "ratio": "–" if ratio is None else f"{percent(ratio.value)} %",
+        "width": f"{min(100.0, 100 * ratio.value) if ratio else 0.0:.1f}",
+        "state": "unknown" if ratio is None else row.verdict.word,
+        "result": row.result,
         "source": row.source,
     }

@@ -10,9 +10,10 @@ import numpy
 from rich.table import Table
 from rich.text import Text
 
+from ..contact.verdict import bar_text
 from ..core.arrays import Numbers
 from ..hip.bands import Bands
-from ..hip.contact_checks import largest_utilisation
+from ..hip.contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from ..hip.film import Film
 from ..hip.history import History
 from ..hip.variability import INFLUENCED_RESULTS
@@ -31,7 +32,7 @@ _WEAR_UNITS = {
 }
 """Units of the columns of the wear table by their heads."""
 
-CONTACT_HEADS = ("cycles", "activity", "at", "F [N]", "pmax [MPa]", "σv/σy", "valid")
+CONTACT_HEADS = ("cycles", "activity", "at", "F [N]", "pmax [MPa]", "σv/σy", "yield", "valid")
 """Heads of `contact_rows`."""
 
 _BAND_UNITS = {
@@ -51,17 +52,25 @@ _ANY = "any"
 def contact_line(history: History) -> str:
     """Describe validity and largest utilisation of the contacts in one line."""
     model = history.use.contact_model.name
-    verdict = "valid" if history.contact_valid else "NOT VALID, see the notes"
-    return f"contact ({model}): {verdict}; {_utilisation_words(history)}"
+    validity = "valid" if history.contact_valid else "NOT VALID, see the notes"
+    return f"contact ({model}): {validity}; {_utilisation_words(history)}"
 
 
 def _utilisation_words(history: History) -> str:
-    """Describe the largest utilisation of the unworn hip and of the last report."""
-    checks = history.use.unworn_checks
-    unworn, end = largest_utilisation(checks), largest_utilisation(history.contact_checks[-1])
-    if unworn is None or end is None:
+    """Describe the largest utilisation of the unworn hip and of the last report, with the verdict on both."""
+    checks, last = history.use.unworn_checks, history.contact_checks[-1]
+    if largest_utilisation(checks) is None or largest_utilisation(last) is None:
         return checks[0].utilisation_note if checks else "nothing is pressed"
-    return f"utilisation σv/σy {unworn:.3g} unworn, {end:.3g} after {history.last.cycles:g} cycles"
+    worst = (max(stage, key=lambda check: check.utilisation or 0.0) for stage in (checks, last))
+    unworn, end = map(_utilisation_text, worst)
+    verdict = worst_verdict((*checks, *last)).word
+    return f"yield {verdict}: utilisation σv/σy {unworn} unworn, {end} after {history.last.cycles:g} cycles"
+
+
+def _utilisation_text(check: ContactCheck) -> str:
+    """Write a utilisation with its error bar, if it is an estimate."""
+    bar = bar_text(check.utilisation_bar, lambda ratio: f"{ratio:.3g}")
+    return "not known" if check.utilisation is None else f"{check.utilisation:.3g}{f' ({bar})' if bar else ''}"
 
 
 def contact_rows(history: History) -> Iterator[tuple[str, ...]]:
@@ -72,9 +81,8 @@ def contact_rows(history: History) -> Iterator[tuple[str, ...]]:
     ]
     for stage, checks in stages:
         for check in checks:
-            utilisation = "not known" if check.utilisation is None else f"{check.utilisation:.3g}"
-            numbers = f"{check.force:.4g}", f"{check.max_pressure:.4g}", utilisation
-            yield stage, check.activity, check.instant, *numbers, "yes" if check.valid else "no"
+            numbers = f"{check.force:.4g}", f"{check.max_pressure:.4g}", _utilisation_text(check)
+            yield stage, check.activity, check.instant, *numbers, check.verdict.word, "yes" if check.valid else "no"
 
 
 def band_summary(bands: Bands) -> str:
@@ -147,7 +155,7 @@ def band_contact_line(bands: Bands) -> str:
     reasons = [check.utilisation_note for check in bands.variability.coarse_simulation.unworn_checks] or [
         "nothing is pressed"
     ]
-    peak = reasons[0] if isnan(low) else f"utilisation σv/σy {low:.3g} to {high:.3g}"
+    peak = reasons[0] if isnan(low) else f"estimated utilisation σv/σy {low:.3g} to {high:.3g}"
     model = bands.variability.coarse_simulation.contact_model.name
     return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
+from ..contact.verdict import Verdict, error_bar, range_text
 from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -30,8 +31,8 @@ from .section_plots import joint_section
 from .unit_systems import Units
 
 _TEMPLATE = "press.html"
-_VERDICT_STYLES = {True: "holds", False: "fails", None: "nearly"}
-"""Style of a verdict by whether the checks pass; None if that is unknown."""
+_VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.EXCEEDED: "fails"}
+"""Style of a verdict on the checks."""
 
 _MAX_COLUMNS = 3
 """Designs beside each other in one table, which fits a printed page."""
@@ -316,9 +317,9 @@ def _checks(contact: Contact, cup: Cup) -> tuple[Check, ...]:
 def _verdict(contact: Contact, cup: Cup) -> tuple[str, str]:
     """Return the verdict on the checks of a contact in one sentence, and its style."""
     if contact.status.failed:
-        return f"No verdict: {contact.status.sentence}", _VERDICT_STYLES[None]
-    passes, sentence = verdict_of(_checks(contact, cup))
-    return sentence, _VERDICT_STYLES[passes]
+        return f"Undecided: {contact.status.sentence}", _VERDICT_STYLES[Verdict.UNDECIDED]
+    verdict, sentence = verdict_of(_checks(contact, cup))
+    return sentence, _VERDICT_STYLES[verdict]
 
 
 def _rim_words(contact: Contact, units: Units, uncertainty: LocalUncertainty | None = None) -> list[str]:
@@ -380,8 +381,10 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
         yield CONTACT[name].title, _number(contact, name, units)
     located = isinstance(contact, OffAxisContact) and not contact.status.failed
     yield "edge distance (CPER)", units.short_length(float(getattr(contact, EDGE_DISTANCE))) if located else "-"
-    ratio = number_text(contact.utilisation, 3, "-") if joint.strengths() else "-"
-    yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", ratio
+    ratio = error_bar(contact, "utilisation")
+    bar = f" (estimate, {range_text(ratio)})" if joint.strengths() and ratio.is_estimate else ""
+    text = number_text(ratio.value, 3, "-") if joint.strengths() else "-"
+    yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", f"{text}{bar}"
     yield "verdict", "; ".join([_verdict(contact, file.cup)[0], *_rim_words(contact, units, design.uncertainty)])
 
 

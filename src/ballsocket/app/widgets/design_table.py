@@ -8,6 +8,7 @@ from html import escape
 
 from ...compare import relative_deviation, successful_contacts
 from ...contact import Contact
+from ...contact.verdict import Verdict, range_text
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, JOINT
 from ...files.joint_file import JointFile
@@ -16,13 +17,12 @@ from ..pictures.section import extent_of, section
 from ..pressing import axial_limit, pressed
 from ..state.screen import Screen
 from .reading import number_text
-from .words import percent
+from .words import VERDICT_KINDS, percent
 
 _DIMENSIONS = {
     "radius": ("ball_radius", "clearance", "liner_thickness", "outer_radius"),
     "diameter": ("head_diameter", "diametral_clearance", "liner_thickness", "outer_diameter"),
 }
-_VERDICTS = {True: ("yes", "✓ passes"), False: ("no", "✗ fails"), None: ("quiet", "? not known")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,16 +157,18 @@ def _checks(design: ComparedDesign) -> Sequence[Check]:
 
 def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> Cell:
     limit = axial_limit(design.file, design.contact)
-    passes, sentence = verdict_of(checks) if limit is None else (None, f"{limit.reason}: see Cup")
-    kind, text = _VERDICTS[passes]
-    return Cell(text=text, difference="" if passes else sentence, kind=kind)
+    undecided = Verdict.UNDECIDED, "" if limit is None else f"{limit.reason}: see Cup"
+    verdict, sentence = verdict_of(checks) if limit is None else undecided
+    difference = "" if verdict is Verdict.KEPT else sentence
+    return Cell(text=f"{verdict.sign} {verdict.word}", difference=difference, kind=VERDICT_KINDS[verdict])
 
 
 def _ratio(check: Check | None) -> Cell:
     if check is None or check.ratio is None:
         return Cell(text="–", kind="quiet")
-    kind, text = _VERDICTS[check.passes]
-    return Cell(text=f"{text[0]} {100 * check.ratio:.0f} %", kind=kind)
+    bar = f"estimate, {range_text(check.ratio)}" if check.ratio.is_estimate else ""
+    text = f"{check.verdict.sign} {100 * check.ratio.value:.0f} %"
+    return Cell(text=text, difference=bar, kind=VERDICT_KINDS[check.verdict])
 
 
 def _validity(design: ComparedDesign) -> Cell:

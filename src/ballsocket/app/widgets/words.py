@@ -12,6 +12,7 @@ from ...catalogue import reference
 from ...compare import Comparison, relative_deviation
 from ...contact import Contact
 from ...contact.describe import COLUMNS, Column
+from ...contact.verdict import Verdict
 from ...core.kinds import Unit
 from ...core.quantities import HEADLINE, Quantity
 from ...elasticity.off_axis.contact import OffAxisContact
@@ -155,6 +156,9 @@ def column_of(quantity: Quantity, unit: Unit) -> str:
     return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"
 
 
+VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
+"""Style of each verdict on the page."""
+
 _MAIN_QUANTITY = "max_pressure"
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
@@ -183,10 +187,9 @@ def headline(
 
 def checked(rows: Sequence[Check], reading: Reading) -> str:
     """Return the verdict on checks in one sentence, and their table, as HTML."""
-    passes, sentence = verdict_of(rows)
-    kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[passes]
-    verdict = f"<p class='verdict {kind}' role='status'>{sign}{escape(sentence)}</p>"
-    return f"{verdict}{checks_html(rows, reading.with_unit) if rows else ''}"
+    verdict, sentence = verdict_of(rows)
+    status = f"<p class='verdict {VERDICT_KINDS[verdict]}' role='status'>{verdict.sign} {escape(sentence)}</p>"
+    return f"{status}{checks_html(rows, reading.with_unit) if rows else ''}"
 
 
 def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, prod
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy
 
@@ -75,6 +75,8 @@ class NearHemisphere(Range):
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class ElasticContact(SolvedContact):
     """Contact with displacements and stresses in the socket, available for a single load."""
+
+    stress_error: ClassVar[float | None] = 2e-3
 
     def displacement(self, angle: Array) -> Array:
         """Compute the radial displacement in mm of the socket's surface at polar angles (rad).
@@ -227,7 +229,7 @@ class ElasticContact(SolvedContact):
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class CurveContact(ElasticContact):
-    """Contact of the elastic solution with an interpolated largest stress in the liner, to about 1e-3."""
+    """Contact of the elastic solution with an interpolated largest stress in the liner."""
 
     def _estimate_von_mises(self, contacts: JointContacts) -> numpy.ndarray:
         return self._joint_von_mises(numpy.empty(0), contacts)

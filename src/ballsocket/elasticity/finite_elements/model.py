@@ -41,6 +41,8 @@ class MeshedContact(SolvedContact):
 
     model: Any
 
+    stress_error: ClassVar[float | None] = 4e-3
+
     @cached_property
     def section(self) -> Section:
         """Displacements and stresses in both bodies, by part, as in `section["liner"].stress.von_mises`.

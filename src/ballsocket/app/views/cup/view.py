@@ -6,10 +6,12 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import radians
+from math import nan, nextafter, radians
 from typing import Any
 
+from ....contact.verdict import EDGE_DISTANCE, Verdict, error_bar
 from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
+from ....core.validity import Status
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....reports.check_table import checks_of
 from ....reports.cup_plots import cup_figure
@@ -26,7 +28,7 @@ from ...widgets.cup_fields import cup_edited, cup_fields
 from ...widgets.fields import segments
 from ...widgets.reading import Reading
 from ...widgets.settings import chosen
-from ...widgets.words import checked, column_of, number_cell, trust, unit_of_files, value_text
+from ...widgets.words import VERDICT_KINDS, checked, column_of, number_cell, trust, unit_of_files, value_text
 from .charts import angle_map
 from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
 
@@ -191,9 +193,9 @@ _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     angle = reading.unit(CUP["inclination"])
-    margin = f"{_edge_margin_text(contact, reading)} of arc"
+    loaded, margin = float(contact.half_angle) > 0, f"{_edge_margin_text(contact, reading)} of arc"
     cells = [
-        _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
+        _cell(DERIVED[EDGE_DISTANCE], contact.edge_distance if loaded else nan, reading, margin if loaded else ""),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
         number_cell("tilt of the load", float(contact.tilt) * angle.factor, angle.text),
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
@@ -211,12 +213,28 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     """State in words if the contact stays on the bore."""
-    if contact.edge_loaded:
-        return "<p class='trust no'>✗ Rim contact (edge loading): the contact reaches the rim of the cup</p>"
-    error = float(contact.error["edge_margin"] * contact.joint.socket_radius)
-    apart = reading.with_known_digits(DERIVED["edge_distance"], float(contact.edge_distance), error)
+    if contact.status.failed:
+        verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
+        return _verdict_html(verdict, f"No contact on the bore: {contact.status.sentence}")
+    if float(contact.half_angle) == 0:
+        return _verdict_html(Verdict.UNDECIDED, "No contact: the ball is not loaded")
+    bar = error_bar(contact, EDGE_DISTANCE)
+    verdict = bar.verdict(low=_NEAREST)
+    if verdict is Verdict.EXCEEDED:
+        return _verdict_html(verdict, "Rim contact (edge loading): the contact reaches the rim of the cup")
+    apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
     angle = _edge_margin_text(contact, reading)
-    return f"<p class='trust yes'>✓ The contact ends {apart} ({angle}) before the rim</p>"
+    if verdict is Verdict.UNDECIDED:
+        return _verdict_html(verdict, f"The contact may reach the rim: it ends {apart} ({angle}) before it")
+    return _verdict_html(verdict, f"The contact ends {apart} ({angle}) before the rim")
+
+
+_NEAREST = nextafter(0.0, 1.0)
+"""Smallest edge distance in mm of a contact that does not reach the rim."""
+
+
+def _verdict_html(verdict: Verdict, sentence: str) -> str:
+    return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(sentence)}</p>"
 
 
 def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy
 
+from ....contact.verdict import exact_number
 from ....files.joint_file import JointFile
 from ....hip import HipSimulation, Lubricant
 from ....hip.ball_wear import interpolation_at
@@ -122,9 +123,9 @@ def checks_in_use(hip: HipSimulation, contacts: Sequence[ContactCheck], distance
     worst = max(contacts, key=lambda check: check.max_pressure)
     return checks_at(
         hip.joint,
-        pressure=worst.max_pressure,
-        half_angle=worst.half_angle,
-        edge=(hip.reach, float(distances.min())) if len(distances) else None,
+        pressure=worst.pressure,
+        von_mises=worst.von_mises,
+        edge=(hip.reach, exact_number(float(distances.min()))) if len(distances) else None,
         trusted=all(check.valid for check in contacts),
     )
 

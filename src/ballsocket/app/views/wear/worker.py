@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy
 
+from ....contact.verdict import Bounded
 from ....elasticity.off_axis.grid import Grid
 from ....files.joint_file import JointFile
 from ....hip import HipSimulation, History, PatientVariability, population
@@ -130,7 +131,8 @@ def _checks(hip: HipSimulation, history: History) -> tuple[Check, ...]:
     """List the checks of the bore after the last cycle, and that of the deepest wear."""
     last = history.last
     rows = checks_in_use(hip, history.contact_checks[-1], rim_distances(last.edge_distance, last.edge_loaded))
-    return sorted_checks([*rows, wear_check(hip.joint, float(last.depth))])
+    depth = Bounded(*(float(last.depth) * (1 + sign * history.error.depth) for sign in (0, -1, 1)))
+    return sorted_checks([*rows, wear_check(hip.joint, depth)])
 
 
 def rim_distances(distances: numpy.ndarray, edge_loaded: numpy.ndarray) -> numpy.ndarray:
