@@ -27,6 +27,7 @@ from ballsocket.app.views.wear import view as wear_view
 from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
+from ballsocket.contact.verdict import exact_number
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
@@ -249,7 +250,10 @@ def made(scale):
     contact = {"valid": scale > 0.1, "unworn": [{"utilisation": 1.5 - scale}]}
     summary = {"history": [last], "contact": contact, "cycle": {"peaks": {"max_pressure_MPa": 10.0}}}
     curves = {"penetration": grown, "deepest": grown, "volume": 100 * grown, "low": 0.5 * grown, "high": 2 * grown}
-    depth, checks = scale * np.ones((grid.rings, grid.meridians)), (wear_check(bs.joints["hip-36"], 30 * scale),)
+    depth, checks = (
+        scale * np.ones((grid.rings, grid.meridians)),
+        (wear_check(bs.joints["hip-36"], exact_number(30 * scale)),),
+    )
     bore = {"depth": depth, "grid": grid, "cup": bs.Cup(), "load": np.array([0.0, 0.0, 1.0])}
     texts = {"band": "band: of a test", "notes": ("a note",), "figure": b""}
     return worker.WearResult(cycles=np.arange(3.0), **curves, **bore, **texts, summary=summary, checks=checks)

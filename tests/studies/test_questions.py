@@ -69,7 +69,7 @@ def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
     here = design_space.sel(ball_radius=16.0, liner_thickness=6.0)
     arc = (1.4 - 0.2 - here.half_angle.item()) * 16.1
     assert edge.evaluate(here).item() == pytest.approx(arc)
-    assert edge.margin(here).item() == pytest.approx(arc - 10.0)
+    assert edge.margin(here).value.item() == pytest.approx(arc - 10.0)
     upright = (pi / 2 - here.half_angle.item()) * 16.1
     assert Limit(name="edge_distance").evaluate(here).item() == pytest.approx(upright)
 
@@ -80,7 +80,7 @@ def test_a_limit_that_depends_on_one_axis_fills_the_plane():
         {"max_pressure": ("clearance", [8.0, 12.0])}, coords={"clearance": [0.1, 0.2], "friction": [0.0, 0.1, 0.2]}
     )
     margin = margin_on_plane(study, Limit(name="max_pressure", high=10.0), "clearance", "friction")
-    assert (np.sign(margin) == [[1, -1]] * 3).all()
+    assert (np.sign(margin.value) == [[1, -1]] * 3).all()
 
 
 def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):

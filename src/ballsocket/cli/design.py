@@ -20,13 +20,13 @@ from ..reports import study_plots, study_tables
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
-from ..studies.limits import Limit
+from ..studies.limits import Limit, limited_quantities
 from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
 from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity import sensitivity as find_sensitivity
-from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
+from ..studies.task import DEFAULT_QUANTITIES
 from ..version import __version__
 from .model_file import requested_model
 from .options import (
@@ -323,5 +323,4 @@ def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 
 def _quantities(goals: Iterable[str], limits: Iterable[Limit]) -> list[str]:
     """Return the results to compute: the default ones, the goals and the limited ones."""
-    limited = (limit.name for limit in limits if limit.name in QUANTITIES)
-    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited)))
+    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited_quantities(limits))))

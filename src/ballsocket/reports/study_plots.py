@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact.verdict import Verdict
 from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
-from ..studies.limits import Limit, allowed, margin_on_plane
+from ..studies.limits import Limit, allowed, count_verdicts, margin_on_plane, relative_margins, verdicts
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 from .unit_systems import Units
 
@@ -37,7 +38,8 @@ def design_map(
 ) -> Figure:
     """Draw contours of results over the two axes of a study, with limits and validity.
 
-    The map is pale where a limit is broken or a result is missing, and hatched where the model is not valid.
+    The map is pale where a limit is exceeded or a result is missing, dotted where a limit is undecided, and hatched
+    where the model is not valid.
 
     Parameters
     ----------
@@ -82,9 +84,13 @@ def design_map(
         axes.set_ylabel(_label(up, units))
         axes.set_title(_label(name, units), fontsize=10)
     figure.suptitle(_title(study, units), fontsize=10, parse_math=False)
-    within = allowed(study, limits).transpose(up, across).values
-    texts = [(within, "pale: a limit is broken, or no result"), (trusted, "hatched: the model is not valid")]
-    figure.supxlabel("; ".join(words for where, words in texts if not where.all()), fontsize=8, color="0.3")
+    counts = count_verdicts(study, limits)
+    texts = {
+        "pale: a limit is exceeded, or no result": counts["exceeded"] or counts["no result"],
+        "dotted: undecided, the error bar contains a limit": counts["undecided"],
+        "hatched: the model is not valid": not trusted.all(),
+    }
+    figure.supxlabel("; ".join(words for words, present in texts.items() if present), fontsize=8, color="0.3")
     return figure
 
 
@@ -129,19 +135,20 @@ def _value_text(name: str, sign: str, value: float, units: Units) -> str:
 def _draw_limits(
     axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str], units: Units
 ) -> None:
-    """Draw a veil over the area that each limit forbids, bounded by a dotted line with its text."""
+    """Veil the area that exceeds the limits, dot the undecided area, and draw each limit as a line with its text."""
     across, up = names
     x, y = (read(study, name, units).values for name in names)
-    nearest = numpy.full((len(y), len(x)), numpy.inf)
-    for limit in limits:
-        values = margin_on_plane(study, limit, across, up)
-        size = float(numpy.nanmax(abs(values), initial=0.0, where=numpy.isfinite(values)))
-        nearest = numpy.minimum(nearest, values / (size or 1.0))
-    if numpy.nanmin(nearest) < 0:
-        axes.contourf(x, y, numpy.clip(nearest, -1.0, 1.0), levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
+    worst, best = relative_margins(study, limits, across, up)
+    if numpy.nanmin(best) < 0:
+        axes.contourf(x, y, best, levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
+    undecided = numpy.where((worst < 0) & (best >= 0), 1.0, 0.0)
+    if undecided.any():
+        dots = axes.contourf(x, y, undecided, levels=[0.5, 1.5], colors="white", alpha=_VEIL / 2, hatches=[".."])
+        dots.set_edgecolor("0.15")
+        dots.set_linewidth(0)
     for limit in limits:
         for end in _one_sided_limits(limit):
-            values = margin_on_plane(study, end, across, up)
+            values = margin_on_plane(study, end, across, up).value
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
                 _label_lines(axes, line, _limit_text(end, units))
@@ -199,7 +206,7 @@ def band_figure(
 def front_figure(
     study: xarray.Dataset, front: xarray.Dataset, minimise: tuple[str, str], limits: Sequence[Limit]
 ) -> Figure:
-    """Draw every allowed design as a dot, and the Pareto front as a line.
+    """Draw every kept and every undecided design as a dot, and the Pareto front as a line.
 
     Parameters
     ----------
@@ -212,9 +219,11 @@ def front_figure(
 
     figure = NotebookFigure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
-    good = allowed(study, limits)
-    first, second = (read(study, name).where(good).values.ravel() for name in minimise)
-    axes.plot(first, second, ".", color="0.75", markersize=3, label="allowed")
+    codes = verdicts(study, limits)
+    for verdict, colour in ((Verdict.UNDECIDED, ORANGE), (Verdict.KEPT, "0.75")):
+        first, second = (read(study, name).where(codes == int(verdict)).values.ravel() for name in minimise)
+        if numpy.isfinite(first).any():
+            axes.plot(first, second, ".", color=colour, markersize=3, label=verdict.word)
     best = [read(front, name).values for name in minimise]
     axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
     finish(axes, *(QUANTITIES[name].label() for name in minimise))

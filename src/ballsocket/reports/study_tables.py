@@ -15,14 +15,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..studies.export import dimension_names, iterate_chunks
-from ..studies.limits import Limit, allowed, refusal_reason
+from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
-from ..studies.task import OUTCOMES
+from ..studies.task import BOUNDS, OUTCOMES, VERDICT
 from .terminal import print_columns
 from .unit_systems import Units
 
@@ -46,6 +47,7 @@ class StudyReport:
     ends: dict[str, tuple[End, End]]
     sampled: dict[str, list[numpy.ndarray]]
     invalid: Counter[tuple[int, int]]
+    verdicts: dict[Verdict, int]
     valid: int = 0
 
     @classmethod
@@ -57,6 +59,7 @@ class StudyReport:
             dict.fromkeys(names, nothing),
             {name: [] for name in names},
             Counter(),
+            {verdict: 0 for verdict in Verdict if VERDICT in study},
         )
         first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
         for part in iterate_chunks(study):
@@ -66,6 +69,8 @@ class StudyReport:
             codes = numpy.stack([part.status.values[bad], part.broken_limit.values[bad]], axis=-1)
             kinds, counts = numpy.unique(codes, axis=0, return_counts=True)
             report.invalid.update(dict(zip(map(tuple, kinds.tolist()), counts.tolist(), strict=True)))
+            for verdict in report.verdicts:
+                report.verdicts[verdict] += int((part[VERDICT].values == int(verdict)).sum())
             report.valid += int(part.valid.values.sum())
             first += part.status.size
         return report
@@ -109,6 +114,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
         "held": held_in(study),
         "points": size,
         "valid": report.valid == size,
+        **({"verdicts": {verdict.word: n for verdict, n in report.verdicts.items()}} if report.verdicts else {}),
         "notes": report.notes(study),
         "quantities": quantities,
         "values": _values(study) if size <= _MAX_LISTED else None,
@@ -118,8 +124,11 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
 def _values(study: xarray.Dataset) -> dict[str, Any]:
     """Return the varied parameters and the results at all points, in the order of the axes."""
     flat = study.stack(point=dimension_names(study)) if dimension_names(study) else study.expand_dims("point")
-    names = [*varying_parameters(study), *result_names(study)]
-    return {name: _plain(flat[name].values) for name in names}
+    bounds = [name for name in BOUNDS if name in study.data_vars]
+    values = {n: _plain(flat[n].values) for n in (*varying_parameters(study), *result_names(study), *bounds)}
+    if VERDICT in study.data_vars:
+        values[VERDICT] = [Verdict(code).word for code in flat[VERDICT].values.tolist()]
+    return values
 
 
 def _plain(values: numpy.ndarray) -> Any:
@@ -159,6 +168,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         "model": study.attrs["model"],
         "held": held_in(study),
         "limits": [str(limit) for limit in limits],
+        "verdicts": count_verdicts(study, limits),
         "valid": bool(study.valid.where(good, True).all()),
         "quantities": quantities,
     }
@@ -272,7 +282,7 @@ def _print_held(held: Mapping[str, float], units: Units = Units.SI) -> None:
 
 def result_names(study: xarray.Dataset) -> list[str]:
     """Return the names of the results of a study."""
-    return [str(name) for name in study.data_vars if name not in OUTCOMES]
+    return [str(name) for name in study.data_vars if name not in (*OUTCOMES, VERDICT, *BOUNDS)]
 
 
 def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
@@ -307,7 +317,8 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
             _point_text(study, high.place, units),
         )
     print_columns(Console(), table)
-    Console().print(f"{study.status.size} points, {report.valid} of them valid", highlight=False)
+    verdicts = _verdict_counts(report.verdicts)
+    Console().print(f"{study.status.size} points, {report.valid} of them valid{verdicts}", highlight=False)
     for note in report.notes(study):
         Console().print(f"  {note}", highlight=False)
 
@@ -319,11 +330,21 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     for row in rows:
         table.add_row(*row)
     print_columns(Console(), table)
-    share = float(allowed(study, limits).mean())
-    Console().print(
-        f"{100 * share:.3g} % of the map is allowed" + "".join(f", {limit}" for limit in limits), highlight=False
-    )
+    counts = count_verdicts(study, limits)
+    shares = ", ".join(f"{100 * n / study.status.size:.3g} % {word}" for word, n in counts.items() if n)
+    Console().print(f"of the map: {shares}" + "".join(f"; {limit}" for limit in limits), highlight=False)
+    if counts[Verdict.UNDECIDED.word]:
+        Console().print(_UNDECIDED, highlight=False)
     _print_held(held_in(study))
+
+
+_UNDECIDED = "undecided: the error bar contains a limit; the table has the kept designs only"
+
+
+def _verdict_counts(counts: Mapping[Verdict, int]) -> str:
+    """Write the verdicts on the yield stress with their numbers of points; empty without a utilisation."""
+    numbers = ", ".join(f"{count} {verdict.word}" for verdict, count in counts.items() if count)
+    return f"; yield stress: {numbers}" if numbers else ""
 
 
 def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
@@ -368,6 +389,12 @@ def print_optimum(best: Optimum) -> None:
     _print_held(best.held)
     if not best.valid:
         console.print("the model is not valid there: use another model", highlight=False)
+    if best.undecided:
+        console.print(
+            f"{best.undecided} of {best.searched} searched joints are undecided: their error bar contains a limit; the "
+            "best one keeps the limits by its whole error bar",
+            highlight=False,
+        )
     if best.active:
         console.print(f"active limits: {', '.join(best.active)}", highlight=False)
 

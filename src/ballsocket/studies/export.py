@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact.verdict import Verdict
 from ..core.checks import needs
-from ..core.quantities import QUANTITIES
+from ..core.quantities import QUANTITIES, Quantity
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from ..core.storage.folders import folder_at, open_address
 from .metadata import invalid_reasons
-from .task import Blocks
+from .task import BOUNDS, VERDICT, Blocks
 
 if TYPE_CHECKING:
     import xarray
@@ -195,12 +196,21 @@ def _write_csv(study: xarray.Dataset, path: Path) -> None:
 
 def _column_head(name: str) -> str:
     """Return the head of a variable's column, with its unit."""
-    return QUANTITIES[name].column if name in QUANTITIES else name
+    quantity = _quantity(name)
+    return name if quantity is None else quantity.column
 
 
 def _in_written_unit(name: str, column: numpy.ndarray) -> numpy.ndarray:
-    """Convert a column from internal units to the units of files."""
-    return column * QUANTITIES[name].written.factor if name in QUANTITIES else column
+    """Convert a column from internal units to the units of files, and verdicts to words."""
+    if name == VERDICT:
+        return numpy.array([*(verdict.word for verdict in Verdict), "not computed"])[column]
+    quantity = _quantity(name)
+    return column if quantity is None else column * quantity.written.factor
+
+
+def _quantity(name: str) -> Quantity | None:
+    """Return the quantity of a variable, or of the bound of one; None for another variable."""
+    return BOUNDS.get(name) or QUANTITIES.get(name)
 
 
 def _cell_text(value: object) -> str:

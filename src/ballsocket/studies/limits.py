@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.kinds import Kind
@@ -18,7 +19,7 @@ from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
 from ..problem.dimensions import STORED_LENGTHS, Dimensions, derive_lengths
 from .parameters import PARAMETERS
-from .task import EDGE_DISTANCE, QUANTITIES
+from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
 
 if TYPE_CHECKING:
     import xarray
@@ -84,11 +85,27 @@ class Limit:
 
     of = RenamedAttribute("evaluate")
 
-    def margin(self, study: xarray.Dataset) -> Any:
-        """Compute the distance to the nearer end of the range at every point; negative outside the range."""
+    def bar(self, study: xarray.Dataset) -> Bounded:
+        """Return the limited quantity with its error bar at every point; without width if the study has no bounds."""
         value = self.evaluate(study)
-        below = value - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(value)
-        above = self.high - value if self.high < inf else inf + 0.0 * numpy.isnan(value)
+        if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
+            radius = joint_dimension(study, "socket_radius")
+            angles = (study.get(f"half_angle_{end}", study.half_angle) for end in ("high", "low"))
+            return Bounded(value, *(self.cup.edge_distance(radius, angle, self.direction) for angle in angles))
+        return Bounded(value, *(study.get(f"{self.name}_{end}", value) for end in ("low", "high")))
+
+    def margin(self, study: xarray.Dataset) -> Bounded:
+        """Compute the distance to the nearer end of the range at every point; negative outside the range.
+
+        Its lower bound is the margin of the worse end of the error bar, and its upper bound that of the better end.
+        """
+        bar = self.bar(study)
+        return Bounded(*(self._distance(*ends) for ends in (bar[:1] * 2, bar[1:], bar[:0:-1])))
+
+    def _distance(self, smallest: Any, largest: Any) -> Any:
+        """Compute the distance of the smallest value to the lower end, or of the largest to the upper one."""
+        below = smallest - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(smallest)
+        above = self.high - largest if self.high < inf else inf + 0.0 * numpy.isnan(largest)
         return numpy.minimum(below, above)
 
     def __str__(self) -> str:
@@ -140,20 +157,56 @@ def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _Leng
     return _LengthDimensions(**lengths, shell_thickness=shell)
 
 
-def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> numpy.ndarray:
-    """Compute the margin of a limit on the plane of two axes of a study, an array of shape (y, x)."""
-    margin = limit.margin(study) + 0.0 * study[x_axis] + 0.0 * study[y_axis]
-    values: numpy.ndarray = margin.transpose(y_axis, x_axis).values
-    return values
+def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> Bounded:
+    """Compute the margin of a limit on the plane of two axes of a study, arrays of shape (y, x)."""
+    margins = (margin + 0.0 * study[x_axis] + 0.0 * study[y_axis] for margin in limit.margin(study))
+    return Bounded(*(margin.transpose(y_axis, x_axis).values for margin in margins))
+
+
+def relative_margins(
+    study: xarray.Dataset, limits: Iterable[Limit], x_axis: str, y_axis: str
+) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Compute the smallest margin of all limits on a plane, each relative to its largest value, between -1 and 1.
+
+    Returns
+    -------
+    worst, best : array (y, x)
+        Margins of the worse and of the better end of the error bar: negative, the first where a limit is not kept, and
+        the second where one is exceeded.
+    """
+    worst, best = numpy.ones((2, study.sizes[y_axis], study.sizes[x_axis]))
+    for limit in limits:
+        margin = margin_on_plane(study, limit, x_axis, y_axis)
+        size = float(numpy.nanmax(abs(margin.value), initial=0.0, where=numpy.isfinite(margin.value))) or 1.0
+        worst, best = numpy.minimum(worst, margin.low / size), numpy.minimum(best, margin.high / size)
+    return numpy.clip(worst, -1.0, 1.0), numpy.clip(best, -1.0, 1.0)
+
+
+def limited_quantities(limits: Iterable[Limit]) -> tuple[str, ...]:
+    """Return the quantities that a study needs for limits: the limited ones and the ends of their error bars."""
+    names = ("half_angle" if limit.name == EDGE_DISTANCE else limit.name for limit in limits)
+    return with_bounds(dict.fromkeys(name for name in names if name in QUANTITIES))
+
+
+def verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
+    """Return the code of the `Verdict` on all limits at each point; undecided without a result."""
+    answered = study[next(iter(study.data_vars))].notnull()
+    codes = (1 - answered) * int(Verdict.UNDECIDED)
+    for limit in limits:
+        codes = numpy.maximum(codes, limit.margin(study).decide(low=0.0))
+    return codes.where(answered, int(Verdict.UNDECIDED))
 
 
 def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
-    """Mark the points of a study that have a result and meet every limit; a bool array."""
-    first = next(iter(study.data_vars))
-    mask = study[first].notnull()
-    for limit in limits:
-        mask = mask & (limit.margin(study) >= 0)
-    return mask
+    """Mark the points of a study that have a result and keep every limit by their whole error bars; a bool array."""
+    return verdicts(study, limits) == int(Verdict.KEPT)
+
+
+def count_verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> dict[str, int]:
+    """Count the points of a study by their verdict on all limits, and those without a result."""
+    codes, answered = verdicts(study, limits), allowed(study, ())
+    counts = {verdict.word: int(((codes == int(verdict)) & answered).sum()) for verdict in Verdict}
+    return {**counts, "no result": int((~answered).sum())}
 
 
 def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
@@ -170,6 +223,8 @@ def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str,
     """
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):
-        return f"{refused} by {' and '.join(map(str, limits))}, according to {model}"
+        near = count_verdicts(study, limits := tuple(limits))[Verdict.UNDECIDED.word]
+        words = f"; {near} are undecided: the error bar contains a limit, so use a more accurate model" if near else ""
+        return f"{refused} by {' and '.join(map(str, limits))}, according to {model}{words}"
     numbers, counts = numpy.unique(study.status.values, return_counts=True)
     return f"{model} has no answer {place}: {Status(int(numbers[counts.argmax()])).sentence}"

@@ -15,6 +15,7 @@ import numpy
 
 from ..contact.contact import ELASTIC
 from ..contact.strength import unchecked_strength_reason
+from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
@@ -22,7 +23,7 @@ from ..core.validity import Status
 from .axes import Axis, MaterialAxis, SampleAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
-from .task import Task
+from .task import BOUNDS, VERDICT, Task
 
 if TYPE_CHECKING:
     import xarray
@@ -64,7 +65,13 @@ def variable_attributes(name: str) -> dict[str, Any]:
         return {"long_name": "number of the first of the limits of the model, from 1, that a point breaks; 0 for none"}
     if name in MATERIAL_PARTS:
         return {"long_name": f"material of the {name}"}
-    quantity = QUANTITIES[name]
+    if name == VERDICT:
+        return {
+            "long_name": "verdict on the yield stress",
+            "flag_values": [-1, *(int(verdict) for verdict in Verdict)],
+            "flag_meanings": " ".join(["not_computed", *(verdict.word for verdict in Verdict)]),
+        }
+    quantity = BOUNDS.get(name) or QUANTITIES[name]
     return {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
 
 

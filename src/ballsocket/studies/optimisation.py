@@ -11,6 +11,7 @@ from typing import Any
 import numpy
 
 from ..contact import Model
+from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
 from ..core.deprecation import renamed_arguments
@@ -18,8 +19,8 @@ from ..problem import Joint
 from .derivatives import DerivativeFunction, finite_differences
 from .design import Design, grid, sample
 from .distributions import Rectangular
-from .limits import EDGE_DISTANCE, Limit, allowed, refusal_reason
-from .parameters import LOADS, MATERIAL_PARTS, PARAMETERS, hold, vary_joint
+from .limits import Limit, allowed, count_verdicts, limited_quantities, refusal_reason
+from .parameters import MATERIAL_PARTS, PARAMETERS, hold, vary_joint
 from .run import study
 from .task import QUANTITIES
 
@@ -66,6 +67,8 @@ class Optimum:
         True if the model is valid for the contact of the optimum.
     searched : int
         Number of joints in the search for starts.
+    undecided : int
+        Number of these joints whose error bar contains a limit. The optimum keeps all limits by its whole error bar.
     materials : dict of str to str
         Names of the chosen materials, by part.
     held : dict of str to float
@@ -80,6 +83,7 @@ class Optimum:
     slopes: dict[str, float]
     valid: bool
     searched: int
+    undecided: int = 0
     materials: dict[str, str] = field(default_factory=dict)
     held: dict[str, float] = field(default_factory=dict)
 
@@ -96,6 +100,8 @@ class Optimum:
             "joint": self.joint.summary(),
             "valid": self.valid,
             "searched": self.searched,
+            "verdict": Verdict.KEPT.word,
+            "undecided": self.undecided,
         }
 
 
@@ -174,7 +180,11 @@ def optimise(
     if not optima:
         raise refused
     best = min(optima, key=lambda optimum: optimum.value)
-    return replace(best, searched=sum(optimum.searched for optimum in optima))
+    return replace(
+        best,
+        searched=sum(optimum.searched for optimum in optima),
+        undecided=sum(optimum.undecided for optimum in optima),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,18 +205,15 @@ class _Search:
         materials = {name: value for name, value in combination.items() if name in MATERIAL_PARTS}
         sizes = {name: float(value) for name, value in combination.items() if name not in MATERIAL_PARTS}
         problem = _Problem(self, joint.replace(**materials), sizes)
-        starts, searched = problem.find_starts()
+        starts, searched, undecided = problem.find_starts()
         fractions = min(map(problem.refine, starts), key=lambda refined: refined[1])[0]
         names = {part: material.name or str(material) for part, material in materials.items()}
-        return replace(problem.make_optimum(fractions, searched), materials=names)
+        return replace(problem.make_optimum(fractions, searched), materials=names, undecided=undecided)
 
     @property
     def quantities(self) -> tuple[str, ...]:
         """Quantities that are minimised or limited."""
-        limited = ("half_angle" if limit.name == EDGE_DISTANCE else limit.name for limit in self.limits)
-        loads = [name for name in LOADS if name in self.load]
-        names = (self.minimise, *(name for name in limited if name in QUANTITIES and name not in loads))
-        return tuple(dict.fromkeys(names))
+        return tuple(dict.fromkeys((self.minimise, *limited_quantities(self.limits))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,22 +231,23 @@ class _Problem:
             for fraction, (name, (low, high)) in zip(fractions, self.search.ranges.items(), strict=True)
         }
 
-    def find_starts(self) -> tuple[list[Numbers], int]:
-        """Return the best allowed points of a set of samples, and the number of samples."""
+    def find_starts(self) -> tuple[list[Numbers], int, int]:
+        """Return the best allowed points of a set of samples, the number of samples, and of the undecided ones."""
         ranges, limits = self.search.ranges, self.search.limits
         if not ranges:
-            return [self._check_sizes()], 1
+            return [self._check_sizes()], 1, 0
         count = int(numpy.clip(self.search.seconds / self.search.model.seconds_a_press, _MIN_SAMPLES, _MAX_SAMPLES))
         count = 1 << (count.bit_length() - 1)
         uniform: dict[str, Any] = {name: Rectangular(low=low, high=high) for name, (low, high) in ranges.items()}
         points = self.study(sample(count, seed=self.search.seed, **uniform) * grid(**self.sizes))
+        undecided = count_verdicts(points, limits)[Verdict.UNDECIDED.word]
         value = points[self.search.minimise].where(allowed(points, limits)).values
         if numpy.isnan(value).all():
             joints = f"of {count} joints within the ranges"
             raise ValueError(refusal_reason(points, limits, f"none {joints} is allowed", f"for any {joints}"))
         best = numpy.argsort(value)[: min(_STARTS, int(numpy.isfinite(value).sum()))]
         columns = [(points[name].values[best] - low) / (high - low) for name, (low, high) in ranges.items()]
-        return list(numpy.stack(columns, axis=-1)), count
+        return list(numpy.stack(columns, axis=-1)), count, undecided
 
     def _check_sizes(self) -> Numbers:
         """Check the only point of a problem without ranges; raise ValueError if it is not allowed."""
@@ -287,8 +295,8 @@ class _Problem:
         return values[minimise], numpy.array(gradient)
 
     def margin(self, fractions: Numbers, limit: Limit) -> float:
-        """Compute the margin of a limit at a point, negative if it is violated."""
-        return float(limit.margin(self.study(grid(**self.parameters(fractions)))))
+        """Compute the margin of a limit for the worse end of the error bar, negative if the limit is not kept."""
+        return float(limit.margin(self.study(grid(**self.parameters(fractions)))).low)
 
     def make_optimum(self, fractions: Numbers, searched: int) -> Optimum:
         """Create the result at the optimal point."""

@@ -29,7 +29,18 @@ from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
 from .sampling import CHUNK_SIZE
 from .store import BlockStore, StudyStore, check_store, read
-from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Task, divide_study, points_per_block
+from .task import (
+    DEFAULT_QUANTITIES,
+    DTYPES,
+    EDGE_DISTANCE,
+    QUANTITIES,
+    STRESSES,
+    Task,
+    divide_study,
+    points_per_block,
+    quantity_of_bound,
+    with_bounds,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -104,7 +115,8 @@ def study(
         Result of `grid`, `sample`, `table`, or a product of these.
     quantities : iterable of str
         Quantities of a `Contact`. By default indentation, half angle, peak pressure, area, and the force unless it is
-        the load. `status` and `valid` are always included.
+        the load. `status` and `valid` are always included. `max_pressure_low` and `max_pressure_high` are the ends of
+        the error bar of a quantity. Stresses have them without a request, and the utilisation also has a `verdict`.
     store : path or str, optional
         Folder for a Zarr group, or its address in a remote store that fsspec knows, such as "s3://bucket/hips.zarr".
         Blocks of the same study in this folder are not computed again.
@@ -178,11 +190,12 @@ def _create_task(
         raise ValueError(f"one load is needed, as an axis or a number: {', '.join(LOADS)}")
     check_aims(model, points.names)
     known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
-    check_names(quantities, known, "among the quantities")
+    check_names([quantity_of_bound(name) for name in quantities], known, "among the quantities")
     if not all(is_number(number) for number in (*joint.numbers(), *model.parameters)):
         raise ValueError("joint and model of a study have plain numbers: use an axis for a number that varies")
     names = quantities or tuple(name for name in ("force", *DEFAULT_QUANTITIES) if name not in loads)
-    computed = tuple(dict.fromkeys(name for name in names if name not in loads))
+    names = (*names, *with_bounds(name for name in names if name in STRESSES))
+    computed = tuple(dict.fromkeys(name for name in names if quantity_of_bound(name) not in loads))
     return Task(model, joint, points, computed, divide_study(points.shape, points_per_block(model)))
 
 

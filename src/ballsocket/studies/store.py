@@ -26,7 +26,7 @@ from .metadata import (
     variable_attributes,
 )
 from .sampling import CHUNK_SIZE
-from .task import DTYPES, Task
+from .task import DTYPES, VERDICT, Task
 
 if TYPE_CHECKING:
     import xarray
@@ -230,7 +230,7 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
             shape=task.design.shape,
             chunks=task.blocks.size,
             dtype=dtype,
-            fill_value=numpy.nan if dtype.kind == "f" else NOT_COMPUTED if name == "status" else 0,
+            fill_value=numpy.nan if dtype.kind == "f" else NOT_COMPUTED if name in ("status", VERDICT) else 0,
             dimension_names=task.design.dims,
             compressors=codec,
             attributes=variable_attributes(name),

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from math import ceil, prod
 from typing import Any
 
 import numpy
 
-from ..contact import Model
+from ..contact import Contact, Model
 from ..contact.describe import COLUMNS
+from ..contact.verdict import Verdict, error_bar
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
-from ..core.quantities import BEARING
+from ..core.quantities import BEARING, Quantity
+from ..core.quantities import QUANTITIES as CONTACT_QUANTITIES
 from ..core.storage.pieces import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
 from ..problem import Joint
@@ -34,11 +37,29 @@ DEFAULT_QUANTITIES = ("indentation", "half_angle", "max_pressure", "area")
 OUTCOMES = ("status", "valid", "broken_limit")
 """Variables of every study beside its quantities."""
 
+STRESSES = tuple(BEARING)
+"""Quantities that are estimated by most models, so that a study has their bounds too."""
+
+VERDICT = "verdict"
+"""Variable with the verdict on the yield stress, in every study of the utilisation."""
+
+BOUNDS: dict[str, Quantity] = {
+    f"{name}_{end}": replace(
+        CONTACT_QUANTITIES[name],
+        name=f"{name}_{end}",
+        title=f"{word} bound of the {CONTACT_QUANTITIES[name].title}",
+    )
+    for name in (*QUANTITIES, EDGE_DISTANCE)
+    for end, word in (("low", "lower"), ("high", "upper"))
+}
+"""Ends of the error bars of quantities, which a study can have by these names."""
+
 DTYPES: dict[str, Any] = {
-    **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE), numpy.float64),
+    **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE, *BOUNDS), numpy.float64),
     "status": numpy.int8,
     "valid": numpy.bool_,
     "broken_limit": numpy.int8,
+    VERDICT: numpy.int8,
 }
 """Types of the arrays of a study."""
 
@@ -138,8 +159,8 @@ class Task:
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Names of the computed arrays: the quantities, `status`, `valid` and `broken_limit`."""
-        return (*self.quantities, *OUTCOMES)
+        """Names of the computed arrays: the quantities, the outcomes, and the verdict on the utilisation."""
+        return (*self.quantities, *OUTCOMES, *([VERDICT] if "utilisation" in self.quantities else ()))
 
     def __call__(self, number: int) -> dict[str, Numbers]:
         """Compute the variables of one block, each of the block's shape.
@@ -170,8 +191,10 @@ class Task:
             contact = self.model.press(joint, **load)
         except OutsideDomainError:
             status = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
-            return {**dict.fromkeys(self.quantities, numpy.nan), "status": status, "valid": False, "broken_limit": 0}
-        results = {name: getattr(contact, name) for name in self.variables}
+            outcome = {"status": status, "valid": False, "broken_limit": 0}
+            missing = {**dict.fromkeys(self.quantities, numpy.nan), **outcome}
+            return {**missing, VERDICT: int(Verdict.UNDECIDED)} if VERDICT in self.variables else missing
+        results = {name: _read_variable(contact, name) for name in self.variables}
         if possible.all():
             return results
         for name in self.quantities:
@@ -179,7 +202,29 @@ class Task:
         results["status"] = numpy.where(possible, results["status"], int(Status.NO_JOINT))
         results["valid"] = results["valid"] & possible
         results["broken_limit"] = numpy.where(possible, results["broken_limit"], 0)
+        if VERDICT in results:
+            results[VERDICT] = numpy.where(possible, results[VERDICT], int(Verdict.UNDECIDED))
         return results
+
+
+def with_bounds(names: Iterable[str]) -> tuple[str, ...]:
+    """Return names of quantities, each followed by the names of its bounds."""
+    return tuple(chain.from_iterable((name, f"{name}_low", f"{name}_high") for name in names))
+
+
+def quantity_of_bound(name: str) -> str:
+    """Return the name of the quantity of a bound; another name is returned as it is."""
+    return name.rpartition("_")[0] if name in BOUNDS else name
+
+
+def _read_variable(contact: Contact, name: str) -> Any:
+    """Read a variable of a study from a contact: a quantity, an end of its error bar, or the verdict on yielding."""
+    if name == VERDICT:
+        verdict = error_bar(contact, "utilisation").decide(high=1.0)
+        return numpy.where(contact.valid, verdict, numpy.maximum(verdict, int(Verdict.UNDECIDED)))
+    if name in BOUNDS:
+        return getattr(error_bar(contact, quantity_of_bound(name)), name.rpartition("_")[2])
+    return getattr(contact, name)
 
 
 def _select_section(value: Numbers, section: tuple[slice, ...]) -> Numbers:

@@ -15,7 +15,7 @@ from ...pictures.contour_map import MapPlane, contour_map, outlined
 from ...state.screen import Screen
 from ...widgets.limit_rows import limit_text, present_value
 from ...widgets.reading import Reading
-from .worker import allowed_points, axis_label, limits_of, margin
+from .worker import allowed_points, axis_label, limits_of, margins
 
 _BELOW_ZERO = -1e300
 _MAX_LEVELS = 12
@@ -48,15 +48,16 @@ def map_picture(results: Any, screen: Screen) -> str:
 
 
 def _veil(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
-    """Fade the part of the map that the limits forbid."""
-    if outline := plane.contours(margin(results, screen)).area(_BELOW_ZERO, 0.0):
-        yield f'<path class="veil" fill-rule="evenodd" d="{outline}"/>'
+    """Fade the part of the map that is undecided, and once more the part that exceeds a limit."""
+    for values in margins(results, screen):
+        if outline := plane.contours(values).area(_BELOW_ZERO, 0.0):
+            yield f'<path class="veil" fill-rule="evenodd" d="{outline}"/>'
 
 
 def _limit_lines(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
     """Draw each limit that crosses the map as a line with a handle at its middle."""
     for number, limit in enumerate(limits_of(screen)):
-        lines = plane.contours(margin_on_plane(results, limit, screen.across.name, screen.up.name)).lines(0.0)
+        lines = plane.contours(margin_on_plane(results, limit, screen.across.name, screen.up.name).value).lines(0.0)
         yield from (outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in lines)
         if lines:
             longest = max(lines, key=len)

@@ -13,7 +13,7 @@ from ....reports.figure_files import figure_bytes
 from ....reports.pages import table
 from ....reports.study_plots import design_map
 from ....reports.study_tables import map_rows
-from ....studies.task import EDGE_DISTANCE
+from ....studies.task import BOUNDS, EDGE_DISTANCE
 from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
 from ...view import Document, Host, View, field_places
@@ -250,7 +250,7 @@ def _rows(results: Any, reading: Reading) -> list[list[Any]]:
     """Tabulate the joints in rows, with numbers under names with units."""
     flat, heads = results.to_dataframe().reset_index(), []
     for name in flat.columns:
-        quantity = QUANTITIES.get(name)
+        quantity = BOUNDS.get(name) or QUANTITIES.get(name)
         if quantity is not None:
             unit = unit_of_files(quantity, reading)
             flat[name] = flat[name] * unit.factor

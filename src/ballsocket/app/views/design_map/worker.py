@@ -21,10 +21,11 @@ from ....files.joint_file import JointFile
 from ....problem import Joint
 from ....problem.dimensions import DIAMETERS, give
 from ....studies.design import Span, grid
-from ....studies.limits import Limit, allowed, margin_on_plane
+from ....studies.limits import Limit, allowed, count_verdicts, relative_margins
 from ....studies.metadata import held_in
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
+from ....studies.task import with_bounds
 from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
 from ...widgets.numbers import NUMBERS
 from ...widgets.reading import Reading
@@ -44,7 +45,7 @@ def _mapped(
     axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
-    return study(chosen, replace(joint, given=given), design, quantities=MAPPED)
+    return study(chosen, replace(joint, given=given), design, quantities=with_bounds(MAPPED))
 
 
 def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
@@ -102,13 +103,9 @@ def allowed_points(results: Any, screen: Screen) -> Any:
     return allowed(results, limits_of(screen)).broadcast_like(results.max_pressure)
 
 
-def margin(results: Any, screen: Screen) -> numpy.ndarray:
-    """Compute the relative distance of each point inside the nearest limit; 1 without limits."""
-    nearest = numpy.ones((results.sizes[screen.up.name], results.sizes[screen.across.name]))
-    for limit in limits_of(screen):
-        values = margin_on_plane(results, limit, screen.across.name, screen.up.name)
-        nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
-    return nearest
+def margins(results: Any, screen: Screen) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Compute the relative distance of each point inside the nearest limit, for the ends of its error bar."""
+    return relative_margins(results, limits_of(screen), screen.across.name, screen.up.name)
 
 
 def axis_label(name: str, screen: Screen) -> tuple[str, float]:
@@ -133,7 +130,9 @@ def map_summary(results: Any, screen: Screen) -> str:
     if results.attrs["model"] != screen.map_model:
         words.append(f"Model {results.attrs['model']}, since {screen.map_model} covers none of these joints.")
     if screen.limits:
-        words.append(f"The limits allow {100 * float(fine.mean()):.3g} % of the map.")
+        counts = count_verdicts(results, limits_of(screen))
+        shares = ", ".join(f"{100 * count / fine.size:.3g} % {word}" for word, count in counts.items() if count)
+        words.append(f"Limits on this map: {shares}.")
     if point is not None:
         position = " and ".join(_with_title(name, value, reading) for name, value in point.items())
         smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
@@ -145,7 +144,9 @@ def map_summary(results: Any, screen: Screen) -> str:
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
-        words.append("Faded: outside a limit. Grey: no result.")
+        words.append(
+            "Faded: a limit is exceeded. Half faded: undecided, its error bar contains a limit. Grey: no result."
+        )
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
