@@ -269,7 +269,7 @@ def test_two_designs_are_beside_each_other_in_one_scale():
     found = {"one": made(0.1), "other": made(0.2)}
     assert "<td>40 (+100 %)</td>" in wear_numbers(found)
     assert "<td>utilisation σv/σy, new</td><td>1.4</td>" in wear_numbers(found)
-    assert wear_numbers(found).count("✗ Fails: deepest wear is 1.2 times the liner thickness") == 1
+    assert wear_numbers(found).count("✗ Exceeded: deepest wear is 1.2 times the liner thickness") == 1
     assert wear_numbers(found).count("outside the range in which this model can be trusted") == 1
     assert "✗ one: outside" in wear_numbers(found)
     inches = Reading(units=Units.IMPERIAL)

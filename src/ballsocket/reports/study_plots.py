@@ -141,9 +141,9 @@ def _draw_limits(
     worst, best = relative_margins(study, limits, across, up)
     if numpy.nanmin(best) < 0:
         axes.contourf(x, y, best, levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
-    undecided = numpy.where((worst < 0) & (best >= 0), 1.0, 0.0)
-    if undecided.any():
-        dots = axes.contourf(x, y, undecided, levels=[0.5, 1.5], colors="white", alpha=_VEIL / 2, hatches=[".."])
+    decided = numpy.maximum(worst, -best)  # negative where only the better end of the bar keeps the limits
+    if numpy.nanmin(decided) < 0:
+        dots = axes.contourf(x, y, decided, levels=[-2.0, 0.0], colors="white", alpha=_VEIL / 2, hatches=[".."])
         dots.set_edgecolor("0.15")
         dots.set_linewidth(0)
     for limit in limits:
