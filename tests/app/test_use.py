@@ -407,8 +407,8 @@ def test_a_limit_is_asked_for_before_anything_runs(asked):
 def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     folders = []
     limits = [
-        {"name": "max_pressure", "low": None, "high": high, "verdict": verdict, "beyond": beyond, "unknown": 0}
-        for high, verdict, beyond in ((20.0, "kept", 0), (10.0, "not kept", 2))
+        {"name": "max_pressure", "low": None, "high": high, "verdict": verdict, "reason": reason}
+        for high, verdict, reason in ((20.0, "kept", ""), (10.0, "exceeded", "2 cases beyond the limit"))
     ]
 
     def ask(self, key, work):
@@ -416,7 +416,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "case": {"force": 2000.0}}}
         record = {"worst": worst, "limits": limits}
-        pack = EvidencePack(conclusions=("one: kept", "two: not kept", "accurate"), record=record, content=b"a pack")
+        pack = EvidencePack(conclusions=("one: kept", "two: exceeded", "accurate"), record=record, content=b"a pack")
         self._heard(key, RunFinished(pack))
 
     monkeypatch.setattr(Job, "ask", ask)
@@ -427,7 +427,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     edits(page, "evidence.run", True)
     found = unescape(told(page, "evidence-found"))
     assert "11.2 MPa" in found
-    assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: not kept</p>")
+    assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: exceeded")
     assert "✓ largest pressure at most 20 MPa: kept" in found
     assert edits(page, "evidence.take", True)["file"]["name"] == "evidence.zip"
     assert b"largest pressure,11.2 MPa" in saved(page, "CSV")

@@ -201,7 +201,7 @@ def test_rows_state_gap_and_evidence(record):
     assert list(table) == [f"{letter}{number}" for letter, count in groups.items() for number in range(1, count + 1)]
     statuses = {name: table[name]["status"] for name in ("L1", "L2", "U1", "U2")}
     assert statuses == {"L1": "not met", "L2": "met", "U1": "not met", "U2": "not known"}  # bands exceed 15 MPa
-    assert table["L1"]["gap"] == "cases beyond the limit: 1; without a result: 0"
+    assert table["L1"]["gap"] == "1 case beyond the limit"
     assert table["E2"]["gap"] == "an error bar of the edge distance"
     assert table["E1"]["evidence"].endswith(" % of the margin")
     places = {"U1": "uncertainty.bands", "V1": "code_verification[0]", "F13": "credibility[12]"}
@@ -212,7 +212,7 @@ def test_rows_state_gap_and_evidence(record):
         ("source of the coefficient of friction", "a source in [sources]")
     ]
     assert {row["id"] for row in gaps(record)} == {name for name, row in table.items() if row["status"] != "met"}
-    record["limits"][1]["verdict"] = "not known"
+    record["limits"][1]["verdict"] = "undecided"
     assert rows(record)["L2"]["status"] == "not known"
 
 

@@ -122,7 +122,7 @@ def without_gaps(record):
 
 
 HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
-OTHER_VERSION = both(updated(version="1.0.0+deadbeef"), in_page(b"not kept", b"kept"))
+OTHER_VERSION = both(updated(version="1.0.0+deadbeef"), in_page(b"exceeded", b"kept"))
 OTHER_LIBRARY = both(updated("made_with", matplotlib="3.4.1"), swap_figure)
 DIGEST_DIFFERS = "the page differs from the page made from evidence.json"
 NOT_CANONICAL = "evidence.json: differs from the canonical form"
@@ -131,8 +131,8 @@ FORGERIES = {
     "a figure that was swapped": (swap_figure, "figure 1 of the page differs from the figure made from evidence.json"),
     "one colour of a figure": (change_a_letter_of_a_figure, "figure 2 of the page differs from the figure"),
     "a page that hides itself": (in_page(b"<html lang=", b"<html lang=" + HIDDEN), "instead of"),
-    "a verdict on the page": (in_page(b"not kept", b"kept"), "instead of"),
-    "text of no width on the page": (in_page(b"not kept", "not\u200b kept".encode()), "instead of"),
+    "a verdict on the page": (in_page(b"exceeded", b"kept"), "instead of"),
+    "text of no width on the page": (in_page(b"exceeded", "excee\u200bded".encode()), "instead of"),
     "a mark before the page": (replace_bytes(PAGE, lambda text: b"\xef\xbb\xbf" + text), "instead of"),
     "line ends of the page": (replace_bytes(PAGE, lambda text: text.replace(b"\n", b"\r\n")), "instead of"),
     "another digest on the page": (lambda out: in_page(digest_of(out).encode(), b"0" * 64)(out), "instead of"),
@@ -145,7 +145,7 @@ FORGERIES = {
     "a link": (link_the_page, "evidence.html: is a symbolic link"),
     "a link to a folder": (lambda out: symlink_or_skip(out / "more", out.parent), "more: is a symbolic link"),
     "no page": (lambda out: (out / PAGE).unlink(), "evidence.html: written 'not listed', now 'missing'"),
-    "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'not kept'"),
+    "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'exceeded'"),
     "a verdict in both, judged again": (in_record(verdict, True), r"limits\[0\].verdict: written 'kept'"),
     "a level of a factor": (updated("credibility", 7, reached="d"), r"credibility\[7\].reached: written 'd', now 'a'"),
     "gaps that were left out": (in_record(without_gaps), "requirements: written"),

@@ -18,8 +18,8 @@ PRESSURES = (10.0, 19.5, 21.0, math.nan)
 LIMIT = parse_limit("max_pressure <= 20 MPa")
 
 
-def row(**numbers):
-    return Row({"force": 1.0}, numbers, {}, "OK", True)
+def row(valid=True, **numbers):
+    return Row({"force": 1.0}, numbers, {}, {}, "OK", valid)
 
 
 def test_a_limit_counts_violations_missing_results_and_marginal_cases():
@@ -35,24 +35,38 @@ def test_a_limit_counts_violations_missing_results_and_marginal_cases():
 @pytest.mark.parametrize(
     ("pressures", "verdict"),
     [
-        ((10.0, 21.0, math.nan), "not kept"),
-        ((10.0, math.nan), "not known"),
-        ((), "not known"),
-        ((10.0, 19.5), "kept, but nearer than the required accuracy"),
-        ((10.0, 20.0), "kept, but nearer than the required accuracy"),
+        ((10.0, 21.0, math.nan), "exceeded"),
+        ((10.0, math.nan), "undecided"),
+        ((), "undecided"),
+        ((10.0, 19.5), "undecided"),  # nearer than the required accuracy
+        ((10.0, 20.0), "undecided"),
         ((10.0,), "kept"),
     ],
 )
 def test_verdict_of_a_limit(pressures, verdict):
     rows = [row(max_pressure=pressure) for pressure in pressures]
-    assert check_limit(LIMIT, rows, accuracy=0.05).verdict == verdict
+    assert check_limit(LIMIT, rows, accuracy=0.05).verdict.word == verdict
+
+
+def test_an_error_bar_or_an_invalid_result_leaves_a_limit_undecided():
+    near = {"max_pressure": 18.0}
+    for bar, valid, verdict in (
+        ((17.9, 18.1), True, "kept"),
+        ((17.9, 20.1), True, "undecided"),
+        ((17.9, math.inf), True, "undecided"),
+        ((17.9, 18.1), False, "undecided"),
+        ((20.1, 20.3), False, "exceeded"),
+    ):
+        case = Row({"force": 1.0}, near, {}, {"max_pressure": bar}, "OK", valid)
+        assert check_limit(LIMIT, [case], accuracy=0.05).verdict.word == verdict
+        assert check_limit(LIMIT, [Row.of(case.summary())], accuracy=0.05).verdict.word == verdict
 
 
 def test_a_limit_may_have_a_lower_end_or_limit_a_parameter():
     rows = [row(edge_distance=distance) for distance in (3.0, 0.5, 2.0)]
     check = check_limit(parse_limit("edge_distance >= 1 mm"), rows, accuracy=0.05)
     assert (check.beyond, check.row) == (1, rows[1])
-    assert check_limit(parse_limit("force <= 2 N"), rows, accuracy=0.05).verdict == "kept"
+    assert check_limit(parse_limit("force <= 2 N"), rows, accuracy=0.05).verdict.word == "kept"
 
 
 def test_worst_row_has_the_largest_number_and_the_smallest_edge_distance():

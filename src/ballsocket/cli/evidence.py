@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
+from ..contact.verdict import Verdict
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
@@ -83,7 +84,7 @@ def evidence(
     else:
         assert question is not None
         record = _gather(read_question(question), out, engine, as_json, key)
-    if strict and not all(limit["verdict"].startswith("kept") for limit in record["limits"]):
+    if strict and not all(limit["verdict"] == Verdict.KEPT.word for limit in record["limits"]):
         raise typer.Exit(_LIMIT_NOT_KEPT)
 
 

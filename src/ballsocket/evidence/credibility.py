@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..contact.verdict import Verdict
 from ..core.deprecation import renamed_names
 from . import credibility_levels
 from .credibility_levels import ReachedLevel, Record, error_margins
@@ -269,10 +270,9 @@ def _row(
 def _limit_rows(record: Record) -> Iterator[dict[str, Any]]:
     """Compare the matrix with each limit, one row for each."""
     for index, limit in enumerate(record["limits"]):
-        within = {"not kept": False, "not known": None}.get(limit["verdict"], True)
-        gap = f"cases beyond the limit: {limit['beyond']}; without a result: {limit['unknown']}"
-        identifier = f"L{index + 1}"
-        yield _row(identifier, f"limit: {limit_text(limit)}", f"{limit['verdict']}", within, f"limits[{index}]", gap)
+        within = {Verdict.EXCEEDED.word: False, Verdict.UNDECIDED.word: None}.get(limit["verdict"], True)
+        identifier, text = f"L{index + 1}", f"limit: {limit_text(limit)}"
+        yield _row(identifier, text, limit["verdict"], within, f"limits[{index}]", limit["reason"])
 
 
 def _accuracy_rows(record: Record) -> Iterator[dict[str, Any]]:

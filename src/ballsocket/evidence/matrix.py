@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import numpy
 
 from ..contact import Contact
+from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, error_bar
 from ..core.arrays import Numbers, to_numpy
 from ..core.deprecation import renamed_fields, renamed_names
 from ..core.kinds import Kind
@@ -65,6 +66,8 @@ class Row:
         Computed numbers by name; NaN for a missing result.
     errors : mapping of str to float
         Known relative errors by name.
+    bars : mapping of str to (float, float)
+        Lower and upper bound of the numbers with an error bar, by name.
     status : str
         Name of the status of the contact.
     valid : bool
@@ -74,6 +77,7 @@ class Row:
     case: Case
     numbers: Mapping[str, float]
     errors: Mapping[str, float]
+    bars: Mapping[str, tuple[float, float]]
     status: str
     valid: bool
 
@@ -87,6 +91,11 @@ class Row:
             "case": {PARAMETERS[name].key: to_file_unit(PARAMETERS[name], value) for name, value in self.case.items()},
             "numbers": {NAMES[name].key: to_file_unit(NAMES[name], value) for name, value in self.numbers.items()},
             "errors": {NAMES[name].key: value for name, value in self.errors.items() if isfinite(value)},
+            "bars": {
+                NAMES[name].key: [to_file_unit(NAMES[name], end) for end in ends]
+                for name, ends in self.bars.items()
+                if isfinite(ends[0])
+            },
             "status": self.status,
             "valid": self.valid,
         }
@@ -94,7 +103,7 @@ class Row:
     @staticmethod
     def of(summary: Mapping[str, Any]) -> Row:
         """Create a row from its summary."""
-        case, numbers, errors = (summary[name] for name in ("case", "numbers", "errors"))
+        case, numbers, errors, bars = (summary[name] for name in ("case", "numbers", "errors", "bars"))
         return Row(
             {name: case[p.key] / p.written.factor for name, p in PARAMETERS.items() if p.key in case},
             {
@@ -103,6 +112,11 @@ class Row:
                 if quantity.key in numbers
             },
             {name: errors[quantity.key] for name, quantity in NAMES.items() if quantity.key in errors},
+            {
+                name: (bars[quantity.key][0] / quantity.written.factor, _upper_bound(quantity, bars[quantity.key][1]))
+                for name, quantity in NAMES.items()
+                if quantity.key in bars
+            },
             summary["status"],
             summary["valid"],
         )
@@ -111,6 +125,11 @@ class Row:
 def _to_internal_unit(quantity: Quantity, value: float | None) -> float:
     """Convert a number of a file to internal units; NaN for None."""
     return numpy.nan if value is None else value / quantity.written.factor
+
+
+def _upper_bound(quantity: Quantity, value: float | None) -> float:
+    """Convert an upper bound of a file to internal units; infinity for None."""
+    return inf if value is None else value / quantity.written.factor
 
 
 def to_file_unit(quantity: Quantity, value: float) -> float | None:
@@ -131,12 +150,14 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     contact = question.model.press(joint, **load)
     numbers = {name: _column(value, count) for name, value in _contact_numbers(question, contact).items()}
     errors = {name: _column(value, count) for name, value in known_errors(contact).items() if name in NAMES}
+    bars = {name: [_column(end, count) for end in bar[1:]] for name, bar in _error_bars(question, contact).items()}
     status, valid, made = (_column(value, count) for value in (contact.status, contact.valid, possible))
     return [
         Row(
             case,
             {name: float(value[i]) if made[i] else numpy.nan for name, value in numbers.items()},
             {name: float(value[i]) for name, value in errors.items()},
+            {name: (float(low[i]), float(high[i])) for name, (low, high) in bars.items() if made[i]},
             Status(int(status[i]) if made[i] else Status.NO_JOINT).name,
             bool(valid[i] and made[i]),
         )
@@ -147,17 +168,23 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
 def _contact_numbers(question: Question, contact: Contact) -> dict[str, Any]:
     """Return the numbers of a contact, by name."""
     numbers = {name: getattr(contact, name) for name in COMPUTED}
-    numbers["edge_distance"] = _edge_distance(question, contact)
+    numbers[EDGE_DISTANCE] = _edge_distance(question, contact).value
     if question.friction is not None:
         numbers[TORQUE.name] = _friction_torque(question, contact, question.friction)
     return {name: value for name, value in numbers.items() if value is not None}
 
 
-def _edge_distance(question: Question, contact: Contact) -> Any:
-    """Compute the edge distance in rad: of the off-axis contact, or of a round contact under a vertical load."""
+def _edge_distance(question: Question, contact: Contact) -> Bounded:
+    """Compute the edge distance in mm: of the off-axis contact, or of a round contact under a vertical load."""
     if question.model.off_axis:
-        return contact.edge_distance  # type: ignore[attr-defined]
-    return question.file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle, UP)
+        return error_bar(contact, EDGE_DISTANCE)
+    angle, radius = error_bar(contact, "half_angle"), contact.joint.socket_radius
+    return Bounded(*(question.file.cup.edge_distance(radius, end, UP) for end in (angle.value, angle.high, angle.low)))
+
+
+def _error_bars(question: Question, contact: Contact) -> dict[str, Bounded]:
+    """Return the numbers of a contact with their error bars, by name."""
+    return {**{name: error_bar(contact, name) for name in COMPUTED}, EDGE_DISTANCE: _edge_distance(question, contact)}
 
 
 def _friction_torque(question: Question, contact: Contact, friction: float) -> Any:
@@ -197,26 +224,39 @@ class LimitCheck:
     Attributes
     ----------
     limit : Limit
+    accuracy : float
+        Required relative accuracy.
     beyond, unknown, marginal : int
-        Number of cases outside the limit, without a result, and closer to the limit than the required accuracy.
+        Number of cases outside the limit, without a result, and closer to the limit than their error bar or the
+        required accuracy.
     row : Row or None
         Row with the smallest margin.
     """
 
     limit: Limit
+    accuracy: float
     beyond: int
     unknown: int
     marginal: int
     row: Row | None
 
     @property
-    def verdict(self) -> str:
-        """Verdict in words."""
+    def verdict(self) -> Verdict:
+        """Verdict on all cases together."""
         if self.beyond:
-            return "not kept"
-        if self.unknown or self.row is None:
-            return "not known"
-        return "kept, but nearer than the required accuracy" if self.marginal else "kept"
+            return Verdict.EXCEEDED
+        return Verdict.UNDECIDED if self.unknown or self.marginal or self.row is None else Verdict.KEPT
+
+    @property
+    def reason(self) -> str:
+        """Numbers of cases that do not keep the limit, in words; empty if it is kept."""
+        counts = {
+            "beyond the limit": self.beyond,
+            f"nearer than the error bar or the required accuracy of {100 * self.accuracy:.3g} %": self.marginal,
+            "without a valid result": self.unknown,
+        }
+        parts = [f"{count} case{'s' * (count > 1)} {words}" for words, count in counts.items() if count]
+        return ", ".join(parts) if parts or self.row is not None else "no case has a result"
 
     def _in_file_unit(self, end: float) -> float | None:
         """Convert an end of the limit to the unit of files."""
@@ -229,7 +269,8 @@ class LimitCheck:
             "name": self.limit.name,
             "low": self._in_file_unit(self.limit.low),
             "high": self._in_file_unit(self.limit.high),
-            "verdict": self.verdict,
+            "verdict": self.verdict.word,
+            "reason": self.reason,
             "beyond": self.beyond,
             "unknown": self.unknown,
             "near": self.marginal,
@@ -238,23 +279,38 @@ class LimitCheck:
 
 
 def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitCheck:
-    """Check a limit over the matrix, with numbers of a relative accuracy."""
-    values = numpy.array([_limited_value(limit, row) for row in rows], dtype=float)
-    margin = numpy.minimum(values - limit.low, limit.high - values)
-    known = numpy.isfinite(values)
+    """Check a limit over the matrix.
+
+    A case is beyond the limit if the whole error bar of its number is. It keeps the limit if the bar does so, widened
+    to the required relative accuracy, and if the result is valid.
+    """
+    bars = Bounded(*numpy.array([_limited_number(limit, row) for row in rows], dtype=float).reshape(-1, 3).T)
+    widened = Bounded(
+        bars.value,
+        numpy.minimum(bars.low, bars.value - accuracy * abs(bars.value)),
+        numpy.maximum(bars.high, bars.value + accuracy * abs(bars.value)),
+    )
+    computed = numpy.array([limit.name in row.numbers for row in rows], dtype=bool)
+    valid = numpy.array([row.valid for row in rows], dtype=bool) | ~computed
+    exceeded = bars.decide(**limit.ends) == Verdict.EXCEEDED
+    kept = numpy.where(computed, widened.decide(**limit.ends), bars.decide(**limit.ends)) == Verdict.KEPT
+    known = numpy.isfinite(bars.value)
+    margin = numpy.minimum(bars.value - limit.low, limit.high - bars.value)
     order = numpy.where(known, margin, numpy.inf)
     return LimitCheck(
         limit=limit,
-        beyond=int((known & (margin < 0)).sum()),
-        unknown=int((~known).sum()),
-        marginal=int((known & (margin >= 0) & (margin < accuracy * abs(values))).sum()),
+        accuracy=accuracy,
+        beyond=int(exceeded.sum()),
+        unknown=int((~exceeded & ~(known & valid)).sum()),
+        marginal=int((known & valid & ~exceeded & ~kept).sum()),
         row=rows[int(order.argmin())] if known.any() else None,
     )
 
 
-def _limited_value(limit: Limit, row: Row) -> float:
-    """Return the limited number of a row, or the parameter of its case."""
-    return float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
+def _limited_number(limit: Limit, row: Row) -> Bounded:
+    """Return the limited number of a row with its error bar, or the parameter of its case."""
+    value = float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
+    return Bounded(value, *row.bars.get(limit.name, (value, value)))
 
 
 # Titles and texts of the record and the page
@@ -283,6 +339,11 @@ def limit_text(limit: Mapping[str, Any]) -> str:
     unit = quantity.written.text
     ends = [f"{word} {number(limit[end])} {unit}".strip() for end, word in _LIMIT_ENDS if limit[end] is not None]
     return f"{title_of(limit['name'])} {' and '.join(ends)}"
+
+
+def verdict_text(limit: Mapping[str, Any]) -> str:
+    """Write the verdict on a limit with its reason: "undecided: 2 cases without a valid result"."""
+    return f"{limit['verdict']}: {limit['reason']}" if limit["reason"] else str(limit["verdict"])
 
 
 def input_title(name: str) -> str:

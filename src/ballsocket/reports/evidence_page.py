@@ -9,7 +9,7 @@ from typing import Any
 
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
-from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of
+from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of, verdict_text
 from . import evidence_parts as figures
 from .evidence_parts import (
     Record,
@@ -83,7 +83,7 @@ def evidence_page(record: Record, digest: str = "") -> str:
 
 def conclusions(record: Record) -> list[str]:
     """Return the conclusions in sentences: verdict on each limit, accuracy, adequacy, changed nominal values."""
-    limits = [f"{limit_text(limit)}: {limit['verdict']}" for limit in record["limits"]] or ["no limit is stated"]
+    limits = [f"{limit_text(limit)}: {verdict_text(limit)}" for limit in record["limits"]] or ["no limit is stated"]
     accurate = record["accurate"]
     largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
     within = "within" if accurate["holds"] else "NOT within"
@@ -119,7 +119,7 @@ def _matrix(record: Record) -> dict[str, Any]:
     return {
         "held": held_text(record["held"]),
         "limits": [
-            (limit_text(limit), limit["verdict"], *(str(limit[key]) for key in ("beyond", "unknown", "near")))
+            (limit_text(limit), verdict_text(limit), *(str(limit[key]) for key in ("beyond", "unknown", "near")))
             for limit in record["limits"]
         ],
         "worst": [*worst, *_final_wear(record)],

@@ -77,6 +77,11 @@ class Limit:
             self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
         )
 
+    @property
+    def ends(self) -> dict[str, float]:
+        """Ends of the range as arguments of a verdict."""
+        return {"low": self.low, "high": self.high}
+
     def evaluate(self, study: xarray.Dataset) -> Any:
         """Compute the limited quantity at every point of a study, in mm, N, MPa or rad."""
         if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:

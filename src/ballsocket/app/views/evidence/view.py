@@ -12,7 +12,8 @@ from math import prod
 from typing import Any
 
 from ....catalogue import reference
-from ....evidence.matrix import limit_text, title_of
+from ....contact.verdict import Verdict
+from ....evidence.matrix import limit_text, title_of, verdict_text
 from ....evidence.question import LEVELS
 from ....reports.evidence_parts import case_text, value_text
 from ....reports.pages import items, table
@@ -28,7 +29,7 @@ from ...view import Document, Host, field_places
 from ...widgets.fields import segments
 from ...widgets.limit_rows import LimitRows, present_value
 from ...widgets.settings import chosen, text
-from ...widgets.words import alert
+from ...widgets.words import VERDICT_KINDS, alert
 from .worker import EVIDENCE_SECONDS, EvidencePack, axes_of, gather_pack, phrases_in
 
 _NO_YES = ("no", "yes")
@@ -168,18 +169,19 @@ def _pack_html(pack: EvidencePack) -> str:
     """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
     take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
     limits = pack.record["limits"]
-    decided = "".join(_decision(limit) for limit in sorted(limits, key=_is_kept))
+    decided = "".join(_decision(limit) for limit in sorted(limits, key=_verdict, reverse=True))
     return f"{decided}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
 
 
-def _is_kept(limit: Mapping[str, Any]) -> bool:
-    return not limit["beyond"]
+def _verdict(limit: Mapping[str, Any]) -> Verdict:
+    return Verdict[limit["verdict"].upper()]
 
 
 def _decision(limit: Mapping[str, Any]) -> str:
     """Return the decision on one limit with its sign, word and colour."""
-    kind, sign = ("no", "✗") if not _is_kept(limit) else ("quiet", "?") if limit["unknown"] else ("yes", "✓")
-    return f"<p class='verdict {kind}'>{sign} {escape(limit_text(limit))}: {escape(limit['verdict'])}</p>"
+    verdict = _verdict(limit)
+    words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
+    return f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>"
 
 
 def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:
