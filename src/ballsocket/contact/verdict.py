@@ -15,7 +15,7 @@ from math import inf
 from math import isfinite as is_finite_number
 from typing import Any, NamedTuple
 
-from ..core.arrays import Array, all_true, isfinite
+from ..core.arrays import Array, all_true, isfinite, where
 from ..core.deprecation import renamed_names
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
@@ -117,7 +117,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
         error = contact.error["edge_margin"] * contact.joint.socket_radius  # type: ignore[attr-defined]
     else:
         error = relative_error(contact, name) * abs(value)
-    return Bounded(value, value - error, value + error)
+    return Bounded(value, *(where(isfinite(value), value + sign * error, value) for sign in (-1, 1)))
 
 
 def von_mises_bar(contact: Contact, solved: Array | None = None) -> Bounded:

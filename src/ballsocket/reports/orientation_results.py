@@ -10,6 +10,7 @@ import numpy
 from rich.table import Table
 from rich.text import Text
 
+from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_arguments
 from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
@@ -81,7 +82,7 @@ _LIMIT_LINE: Any = {"color": VERMILLION, "linestyle": "--", "linewidth": 1.6}
 
 
 def _draw_limits(axes: Axes, orientations: Orientations, limits: Sequence[Limit], units: Units) -> None:
-    """Draw each limit as a dashed line over the map, where it lies between the values."""
+    """Draw each limit as a dashed line over the map where it lies between the values, and mark undecided values."""
     x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
     for limit in limits:
         values = getattr(orientations, limit.name).T
@@ -90,6 +91,10 @@ def _draw_limits(axes: Axes, orientations: Orientations, limits: Sequence[Limit]
         if levels:
             axes.contour(x, y, values, levels=sorted(set(levels)), colors=VERMILLION, linestyles="--", linewidths=1.6)
             axes.plot([], [], label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
+    across, up = numpy.nonzero(verdicts(orientations, limits) == Verdict.UNDECIDED)
+    if len(across):
+        label = "undecided: the error bar contains a limit"
+        axes.plot(x[across], y[up], linestyle="", marker="$?$", color=VERMILLION, markersize=8, label=label)
 
 
 def _draw_curve(
@@ -98,9 +103,11 @@ def _draw_curve(
     """Draw one field over the angle that changes, with its limits; orientations without a number are left out."""
     name = "inclination" if orientations.status.shape[1] == 1 else "anteversion"
     label, factor = units.axis(quantity.label(quantity.written))
-    values = getattr(orientations, quantity.name)
-    shown = factor * numpy.where(orientations.held & numpy.isfinite(values), values, numpy.nan)
-    axes.plot(numpy.degrees(getattr(orientations, name)), shown.ravel(), "o-", color=BLUE, markersize=4)
+    bar = orientations.error_bar(quantity.name)
+    known = orientations.held & numpy.isfinite(bar.value)
+    shown, low, high = (factor * numpy.where(known, ends, numpy.nan).ravel() for ends in bar)
+    angles, ends = numpy.degrees(getattr(orientations, name)), [shown - low, high - shown]
+    axes.errorbar(angles, shown, yerr=ends, fmt="o-", color=BLUE, markersize=4, capsize=2)
     for limit in (limit for limit in limits if limit.name == quantity.name):
         for end in filter(isfinite, (limit.low, limit.high)):
             axes.axhline(factor * end, label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
@@ -201,13 +208,18 @@ LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")
 """Fields of orientations that can be limited."""
 
 
-def within_limits(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
-    """Return a mask of the orientations within all limits; false where the bore does not hold the ball."""
-    within = orientations.held.copy()
+def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
+    """Return the code of the `Verdict` on all limits for each orientation; exceeded where the ball is not held."""
+    codes = numpy.where(orientations.held, int(Verdict.KEPT), int(Verdict.EXCEEDED))
     for limit in limits:
-        values = getattr(orientations, limit.name)
-        within &= (values >= limit.low) & (values <= limit.high)
-    return within
+        codes = numpy.maximum(codes, orientations.error_bar(limit.name).decide(**limit.ends))
+    return codes
+
+
+def within_limits(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
+    """Return a mask of the orientations that keep all limits by their whole error bars."""
+    mask: Numbers = verdicts(orientations, limits) == Verdict.KEPT
+    return mask
 
 
 def inclination_ranges(orientations: Orientations, limits: Sequence[Limit]) -> list[tuple[float, float] | None]:
@@ -236,6 +248,7 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     return {
         "limits": [_limit_text(limit) for limit in limits],
         "within_limits": within_limits(orientations, limits).tolist(),
+        "verdicts": [[Verdict(code).word for code in row] for row in verdicts(orientations, limits).tolist()],
         "inclination_ranges": [
             {
                 "anteversion_deg": round(degrees(angle), 9),
@@ -268,9 +281,12 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (),
 
 def _limit_remarks(orientations: Orientations, limits: Sequence[Limit]) -> Iterator[str]:
     """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
-    within = within_limits(orientations, limits)
+    codes = verdicts(orientations, limits)
+    kept, undecided, _ = (int((codes == verdict).sum()) for verdict in Verdict)
     texts = " and ".join(map(_limit_text, limits))
-    yield f"limit: {texts}; {within.sum()} of {within.size} orientations are within it, * marks the others"
+    yield f"limit: {texts}; kept in {kept} of {codes.size} orientations, exceeded where *"
+    if undecided:
+        yield f"undecided in {undecided} orientations with ?: their error bar contains the limit"
     ranges = inclination_ranges(orientations, limits)
     starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
     for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
@@ -300,17 +316,21 @@ def _limit_text(limit: Limit) -> str:
 
 
 def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit], digits: int) -> Table:
-    """Make the table of a field: anteversion by inclination; a star marks values outside the limits."""
-    within = within_limits(orientations, limits)
+    """Make the table of a field: anteversion by inclination; a star marks an exceeded limit, "?" an undecided one."""
+    codes = verdicts(orientations, limits)
     columns = range(len(orientations.inclination))
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
         table.add_column(head, justify="right", no_wrap=True)
     for j in range(len(orientations.anteversion)):
-        marks = ("*" if limits and not within[i, j] else "" for i in columns)
+        marks = (_MARKS[codes[i, j]] if limits else "" for i in columns)
         cells = (_cell(orientations, values, i, j, mark, digits) for i, mark in zip(columns, marks, strict=True))
         table.add_row(Text(_degree_text(orientations.anteversion[j]), style="bold"), *cells)
     return table
+
+
+_MARKS = ("", "?", "*")
+"""Marks of the verdicts on the limits."""
 
 
 def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str, digits: int) -> Text:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy
 
 from ...contact.assembly import check_joint
+from ...contact.verdict import Bounded, error_bar
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
@@ -57,6 +58,11 @@ class Orientations:
     def _collect_quantity(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
         """Collect a quantity of all contacts by a function: (inclinations, anteversions)."""
         return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
+
+    def error_bar(self, name: str) -> Bounded:
+        """Return a quantity of all contacts with its error bar."""
+        bars = [error_bar(contact, name) for contact in self.contacts]
+        return Bounded(*(numpy.stack(list(map(arrays.to_numpy, ends))) for ends in zip(*bars, strict=True)))
 
     @cached_property
     def status(self) -> Numbers:
