@@ -14,6 +14,8 @@ import typer
 from ..catalogue import catalogue, judge, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
+from ..contact.verdict import assess_strength, error_bar
+from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
 from ..core.validity import Status
@@ -201,6 +203,8 @@ class PressedJoint:
     def summary(self, friction: FrictionOptions) -> dict[str, Any]:
         """Return the results as plain data, with the friction torques and the pull-out force if requested."""
         summary = self.comparison.summary()
+        for result in summary["results"]:
+            result.update(_strength_summary(self.comparison.get(result["model"])))
         for result in summary["results"] if friction.friction is not None else ():
             contact = self.comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
@@ -213,6 +217,15 @@ class PressedJoint:
             "pull_out": pull_out,
         }
         return {**summary, **{key: part for key, part in further.items() if part}}
+
+
+def _strength_summary(contact: Contact | None) -> dict[str, Any]:
+    """Return the verdict on the strengths with its reason, and the bar of the utilisation; empty without a contact."""
+    if contact is None:
+        return {}
+    strength, bar = assess_strength(contact), map(to_list, error_bar(contact, "utilisation")[1:])
+    ends = dict(zip(("utilisation_low", "utilisation_high"), bar, strict=True))
+    return {**ends, "verdict": strength.verdict.word, "verdict_reason": strength.words}
 
 
 @app.command()

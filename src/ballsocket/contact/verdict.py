@@ -183,7 +183,12 @@ class StrengthUse:
         return self.ratio.verdict(high=1.0)
 
     def __str__(self) -> str:
-        return f"{ratio_text(self.ratio)} the {STRENGTH[self.strength].title} of the {self.part}"
+        return f"{ratio_text(self.ratio)} the {self.title}"
+
+    @property
+    def title(self) -> str:
+        """Strength in words, such as "yield stress of the liner"."""
+        return f"{STRENGTH[self.strength].title} of the {self.part}"
 
 
 def bar_text(bar: Bounded, write: Callable[[float], str]) -> str:
@@ -261,10 +266,13 @@ class StrengthVerdict:
         valid result, or without a strength of the liner.
     words : str
         Reason in one sentence.
+    use : StrengthUse or None
+        Comparison that decides; None without a valid result, or without a strength of the liner.
     """
 
     verdict: Verdict
     words: str
+    use: StrengthUse | None = None
 
 
 def assess_strength(contact: Contact) -> StrengthVerdict:
@@ -291,12 +299,12 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     uses = strength_uses(contact)
     worst = max(uses, key=lambda use: (use.verdict, use.ratio.value), default=None)
     if worst is not None and worst.verdict is Verdict.EXCEEDED:
-        return StrengthVerdict(verdict=Verdict.EXCEEDED, words=f"exceeded: {worst}")
+        return StrengthVerdict(verdict=Verdict.EXCEEDED, words=f"exceeded: {worst}", use=worst)
     if not contact.valid:
         return _undecided(f"result not valid: {'; '.join(contact.notes)}")
     if worst is None or not contact.joint.liner.strengths:
         return _undecided(unchecked_strength_reason(contact.joint))
-    return StrengthVerdict(verdict=worst.verdict, words=f"{worst.verdict.word}: {worst}")
+    return StrengthVerdict(verdict=worst.verdict, words=f"{worst.verdict.word}: {worst}", use=worst)
 
 
 def _undecided(reason: str) -> StrengthVerdict:

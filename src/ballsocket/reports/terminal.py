@@ -16,9 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from ..catalogue import reference
-from ..compare import Comparison, relative_deviation
+from ..compare import Comparison, relative_deviation, successful_contacts
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column, number_text
+from ..contact.verdict import assess_strength, ratio_text
 from ..core.quantities import CONTACT, HEADLINE
 from ..problem import Joint
 from .unit_systems import Units
@@ -45,8 +46,21 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
     print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
+    for line in _strength_lines(ordered):
+        print_folded(terminal, line, "")
     for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
         print_folded(terminal, line, "dim")
+
+
+def _strength_lines(comparison: Comparison) -> Iterator[str]:
+    """Yield the verdicts of the models on each strength that decides, one line for each strength."""
+    verdicts: dict[str, list[str]] = {}
+    for name, contact in successful_contacts(comparison).items():
+        strength = assess_strength(contact)
+        if strength.use is not None:
+            words = f"{name} {strength.verdict.word}, {ratio_text(strength.use.ratio).removesuffix(' of')}"
+            verdicts.setdefault(strength.use.title, []).append(words)
+    yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())
 
 
 def _exact_first(comparison: Comparison) -> Comparison:
