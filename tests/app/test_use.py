@@ -9,6 +9,7 @@ from dataclasses import replace
 from html import unescape
 from math import radians
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -261,8 +262,10 @@ def made(scale):
 
 def test_a_bore_worn_to_the_rim_fails_there_only_by_edge_loading():
     distances = np.array([0.0, 3.0, -1.0])
-    assert worker.rim_distances(distances, np.zeros(3, dtype=bool)).tolist() == [3.0]
-    assert worker.rim_distances(distances, np.array([False, False, True])).min() == -1.0
+    hip = SimpleNamespace(reach=1.5, joint=bs.joints["hip-36"])
+    (row,) = worker.worn_rim_rows(hip, distances, np.zeros(3, dtype=bool))
+    assert (row.title, row.verdict.word) == ("reach of the contact", "undecided")
+    assert worker.worn_rim_rows(hip, distances, np.array([False, False, True])) == []
 
 
 def test_two_designs_are_beside_each_other_in_one_scale():

@@ -222,13 +222,18 @@ def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
         return Verdict.UNDECIDED, "Undecided: there is no result"
     if not all(row.trusted for row in rows):
         return Verdict.UNDECIDED, "Undecided: this result is outside the range of its model"
-    near, unknown = ([row for row in undecided if (row.capacity is None) is missing] for missing in (False, True))
-    unchecked = f". Not checked: {', '.join(row.title for row in unknown)}" if unknown else ""
+    near = [row for row in undecided if row.capacity is not None]
     if near:
-        return Verdict.UNDECIDED, f"Undecided: {_uses(near)}{unchecked}"
+        return Verdict.UNDECIDED, f"Undecided: {_uses(near)}"
     if not any(row.quantity in ("max_pressure", "von_mises") for row in kept):
-        return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in unknown)}"
-    return Verdict.KEPT, f"Kept: {_uses(kept[:1])}, the highest ratio{unchecked}"
+        return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in undecided)}"
+    return Verdict.KEPT, f"Kept: {_uses(kept[:1])}, the highest ratio"
+
+
+def unchecked_text(rows: Sequence[Check]) -> str:
+    """List the demands without a known limit, such as "not checked: pressure on the liner"; empty without one."""
+    titles = ", ".join(row.title for row in rows if row.capacity is None)
+    return f"not checked: {titles}" if titles else ""
 
 
 _WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)

@@ -25,7 +25,7 @@ from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .check_table import Check, checks_html, checks_of, verdict_of
+from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from .pages import HEAD_TEXTS, letterhead, logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
@@ -305,8 +305,8 @@ def press_lede(contact: Contact, cup: Cup, units: Units = Units.SI, uncertainty:
     """Return the largest pressure of a contact with the verdict on its checks and its place at the rim, as HTML."""
     pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
     verdict, kind = _verdict(contact, cup)
-    at_the_rim = _rim_words(contact, units, uncertainty)
-    return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, (verdict, kind), at_the_rim)
+    remarks = [*filter(None, [unchecked_text(_checks(contact, cup))]), *_rim_words(contact, units, uncertainty)]
+    return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, (verdict, kind), remarks)
 
 
 def _checks(contact: Contact, cup: Cup) -> tuple[Check, ...]:

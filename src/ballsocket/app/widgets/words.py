@@ -17,7 +17,7 @@ from ...core.kinds import Unit
 from ...core.quantities import HEADLINE, Quantity
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...problem.cup import Cup
-from ...reports.check_table import Check, checks_html, checks_of, verdict_of
+from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from ...reports.style import line_of
 from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
@@ -189,7 +189,8 @@ def checked(rows: Sequence[Check], reading: Reading) -> str:
     """Return the verdict on checks in one sentence, and their table, as HTML."""
     verdict, sentence = verdict_of(rows)
     status = f"<p class='verdict {VERDICT_KINDS[verdict]}' role='status'>{verdict.sign} {escape(sentence)}</p>"
-    return f"{status}{checks_html(rows, reading.with_unit) if rows else ''}"
+    unchecked = f"<p class='quiet'>N{escape(text[1:])}</p>" if (text := unchecked_text(rows)) else ""
+    return f"{status}{unchecked}{checks_html(rows, reading.with_unit) if rows else ''}"
 
 
 def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:

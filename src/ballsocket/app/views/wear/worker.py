@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from ....contact.verdict import Bounded
+from ....contact.verdict import EDGE_DISTANCE, Bounded, exact_number
 from ....elasticity.off_axis.grid import Grid
 from ....files.joint_file import JointFile
 from ....hip import HipSimulation, History, PatientVariability, population
@@ -130,11 +130,22 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
 def _checks(hip: HipSimulation, history: History) -> tuple[Check, ...]:
     """List the checks of the bore after the last cycle, and that of the deepest wear."""
     last = history.last
-    rows = checks_in_use(hip, history.contact_checks[-1], rim_distances(last.edge_distance, last.edge_loaded))
+    worn = worn_rim_rows(hip, last.edge_distance, last.edge_loaded)
+    rows = [*checks_in_use(hip, history.contact_checks[-1], last.edge_distance[: 0 if worn else None]), *worn]
     depth = Bounded(*(float(last.depth) * (1 + sign * history.error.depth) for sign in (0, -1, 1)))
     return sorted_checks([*rows, wear_check(hip.joint, depth)])
 
 
-def rim_distances(distances: numpy.ndarray, edge_loaded: numpy.ndarray) -> numpy.ndarray:
-    """Return the edge distances to check: without edge loading a bore that is worn to the rim does not fail there."""
-    return distances if edge_loaded.any() else distances[distances > 0]
+def worn_rim_rows(hip: HipSimulation, distances: numpy.ndarray, edge_loaded: numpy.ndarray) -> list[Check]:
+    """Return the row of a bore that is worn to its rim without edge loading, which has no limit; else no row."""
+    if edge_loaded.any() or not (distances <= 0).any():
+        return []
+    row = Check(
+        title="reach of the contact",
+        quantity=EDGE_DISTANCE,
+        demand=exact_number(hip.reach * float(hip.joint.socket_radius)),
+        capacity=None,
+        limit="arc from pole to rim",
+        source="worn to the rim, which is not edge loading: see the notes",
+    )
+    return [row]
