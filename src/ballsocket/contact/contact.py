@@ -151,7 +151,7 @@ class Contact(Outcome):
 
         No stresses are solved for.
         """
-        return self.von_mises, self.von_mises
+        return strength.von_mises_bounds(self, self.von_mises)
 
     @property
     def utilisation_bounds(self) -> tuple[Array, Array]:

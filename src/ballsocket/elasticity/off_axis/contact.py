@@ -43,11 +43,6 @@ class OffAxisContact(SolvedContact):
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
-    @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa; both are the estimate itself."""
-        return self.von_mises, self.von_mises
-
     @cached_property
     def force_vector(self) -> Array:
         """Force of the ball on the cup in N: components towards the rim, across, towards the dome."""
