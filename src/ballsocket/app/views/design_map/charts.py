@@ -43,7 +43,7 @@ def map_picture(results: Any, screen: Screen) -> str:
     ]
     levels = svg.levels_between(float(numpy.nanmin(values)), float(numpy.nanmax(values)), _MAX_LEVELS)
     share = 100 * float(allowed_points(results, screen).mean())
-    sentence = f"{label} over {x_label} and {y_label}; the limits allow {share:.3g} % of the map"
+    sentence = f"{label} over {x_label} and {y_label}; {share:.3g} % of the map keep the limits"
     return contour_map(plane, values, levels, (label, sentence), marks, "map.pick")
 
 

@@ -191,7 +191,7 @@ class DesignMap(View):
     def _pick_best(self, value: Any) -> None:
         point = best_point(_map_of(self.page.screen), self.page.screen)
         if point is None:
-            raise ValueError("the limits allow no point of the map: widen the axes or a limit")
+            raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
         self._show_point(point)
 
     def _show_point(self, point: dict[str, float]) -> None:
