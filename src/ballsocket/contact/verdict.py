@@ -31,7 +31,7 @@ _BALL_STRESS_ERROR = 0.02
 _AREA_ERRORS = 2.0
 """Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
 
-_ESTIMATE_WIDTH = 0.06
+_ESTIMATE_WIDTH = 0.05
 """Width of an error bar, relative to its value, above which the value is an estimate."""
 
 
@@ -65,7 +65,7 @@ class Bounded(NamedTuple):
 
     @property
     def is_estimate(self) -> bool:
-        """True for a single number whose bar is wider than 6 % of it."""
+        """True for a single number whose bar is wider than 5 % of it."""
         return not self.high - self.low <= _ESTIMATE_WIDTH * abs(self.value)
 
     def verdict(self, *, low: float = -inf, high: float = inf) -> Verdict:
