@@ -318,22 +318,14 @@ def test_verdicts_state_their_reason(contact, state, words):
     assert re.match(f"{state}: {words}", verdict.words)
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "state"),
-    [
-        (18.0, 20.0, Verdict.KEPT),  # a limit is allowed
-        (19.9, 20.1, Verdict.UNDECIDED),
-        (20.1, 22.0, Verdict.EXCEEDED),
-        (4.0, 4.9, Verdict.EXCEEDED),
-        (4.0, 22.0, Verdict.UNDECIDED),
-        (0.0, inf, Verdict.UNDECIDED),
-        (nan, nan, Verdict.UNDECIDED),
-    ],
-)
-def test_a_limit_is_kept_or_exceeded_only_by_the_whole_error_bar(low, high, state):
-    bar = Bounded((low + high) / 2, low, high)
-    assert bar.verdict(low=5.0, high=20.0) is state
-    assert Bounded(*np.tile(bar, (3, 1)).T).decide(low=5.0, high=20.0).tolist() == [state] * 3
+def test_a_limit_is_kept_or_exceeded_only_by_the_whole_error_bar():
+    kept, undecided, exceeded = Verdict
+    bars = {kept: [(5.0, 20.0)], exceeded: [(20.1, 22.0), (4.0, 4.9)]}  # the limits 5 and 20 are allowed
+    bars[undecided] = [(19.9, 20.1), (4.0, 22.0), (0.0, inf), (nan, nan)]
+    for verdict, (low, high) in ((verdict, ends) for verdict, pairs in bars.items() for ends in pairs):
+        bar = Bounded(10.0, low, high)
+        assert bar.verdict(low=5.0, high=20.0) is verdict
+        assert Bounded(*np.tile(bar, (3, 1)).T).decide(low=5.0, high=20.0).tolist() == [verdict] * 3
 
 
 def test_the_bar_of_a_number_is_the_error_that_its_result_states():

@@ -20,7 +20,7 @@ from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
 from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
 from ballsocket.studies.file import read_study
-from ballsocket.studies.limits import Limit, allowed, joint_dimension, margin_on_plane
+from ballsocket.studies.limits import Limit, allowed, joint_dimension, limited_quantities, margin_on_plane, verdicts
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.pareto import pareto
 from ballsocket.studies.run import default_model
@@ -95,6 +95,20 @@ def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
         assert list(zip(front.area.values, front.max_pressure.values, strict=True)) == best
     with pytest.raises(ValueError, match="no point is allowed by outer_radius ≤ 1"):
         pareto(design_space, limits=[TINY])
+
+
+def test_only_the_whole_error_bar_keeps_a_limit():
+    """The pressure of the springs is known to 15 %, and so is their stress at least."""
+    springs, limit = bs.HessForsbach(), Limit(name="max_pressure", high=15.0)
+    names = ["utilisation", *limited_quantities([limit])]
+    found = bs.study(springs, HIP, ball_radius=np.linspace(10.0, 20.0, 21), force=3000.0, quantities=names)
+    codes = np.select([1.15 * found.max_pressure <= 15.0, 0.85 * found.max_pressure > 15.0], [0, 2], 1)
+    assert verdicts(found, [limit]).values.tolist() == codes.tolist()
+    assert set(codes) == {0, 1, 2}
+    assert (found.verdict == (found.utilisation_high > 1.0).astype(int) + (found.utilisation_low > 1.0)).all()
+    best = optimise(springs, HIP, {"ball_radius": (10.0, 20.0)}, load=LOAD, limits=[limit], minimise="area")
+    assert springs.press(best.joint, force=3000.0).max_pressure == pytest.approx(15.0 / 1.15, rel=1e-4)
+    assert 0 < best.undecided < best.searched
 
 
 @pytest.mark.parametrize("model", some([bs.HessForsbach(), bs.Tabulated()], 1), ids=lambda model: model.name)
