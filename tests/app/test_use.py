@@ -417,7 +417,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     def ask(self, key, work):
         folders.append(Path(work.args[-1]))
         assert folders[-1].is_dir()
-        worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "case": {"force": 2000.0}}}
+        worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "bars": {}, "case": {"force": 2e3}}}
         record = {"worst": worst, "limits": limits}
         pack = EvidencePack(conclusions=("one: kept", "two: exceeded", "accurate"), record=record, content=b"a pack")
         self._heard(key, RunFinished(pack))

@@ -15,6 +15,7 @@ from ..catalogue import judge, off_axis
 from ..contact import Contact
 from ..contact.describe import COLUMNS
 from ..contact.per_joint import SolvedContact
+from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
@@ -224,11 +225,11 @@ def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
     distance = contact.edge_distance
     if contact.edge_loaded and contact.joint.clearance < 0:
         return "contact up to the rim"
-    return (
-        f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
-        if contact.edge_loaded
-        else f"contact {units.short_length(distance)} from the rim"
-    )
+    verdict = rim_verdict(contact)
+    if verdict is Verdict.EXCEEDED:
+        return f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
+    near = ", less than its error bar: edge loading is undecided" if verdict is Verdict.UNDECIDED else ""
+    return f"contact {units.short_length(abs(distance))} from the rim{near}"
 
 
 def _peak_text(contact: OffAxisContact) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
-from math import inf
+from math import inf, nextafter
 from math import isfinite as is_finite_number
 from typing import Any, NamedTuple
 
@@ -139,6 +139,11 @@ def _stress_bar(contact: Contact, value: Array, bounds: tuple[Array, Array]) -> 
     low, high = bounds if contact.stress_error is None else (value, value)
     error = relative_error(contact, "max_pressure") + (contact.stress_error or 0.0)
     return Bounded(value, (1 - error) * low, (1 + error) * high)
+
+
+def rim_verdict(contact: Contact) -> Verdict:
+    """Decide if a single contact in a cup ends before the rim; undecided where its error bar contains the rim."""
+    return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded
 
 
 def relative_error(contact: Contact, name: str) -> Array:

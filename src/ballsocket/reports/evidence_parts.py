@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from math import prod, radians
+from math import inf, prod, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact.verdict import Bounded, bar_text
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES, Quantity
 from ..evidence.matrix import KEYS, LIMITED, NAMES, number, title_of
@@ -44,7 +45,11 @@ def value_text(name: str, row: Record) -> str:
     """Write a number of a case with its unit and error bar."""
     quantity = NAMES[name]
     value = f"{number(row['numbers'][quantity.key])} {quantity.written.text}".strip()
-    return value + error_text(row["errors"].get(quantity.key))
+    error, (low, high) = row["errors"].get(quantity.key), row["bars"].get(quantity.key, (None, None))
+    if error is not None or low is None:
+        return value + error_text(error)
+    bar = bar_text(Bounded(row["numbers"][quantity.key], low, inf if high is None else high), number)
+    return f"{value} ({bar})" if bar else value
 
 
 def column_head(key: str) -> str:

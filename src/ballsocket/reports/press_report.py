@@ -12,7 +12,7 @@ from pathlib import Path
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
-from ..contact.verdict import Verdict, error_bar, range_text
+from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
 from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -329,8 +329,11 @@ def _rim_words(contact: Contact, units: Units, uncertainty: LocalUncertainty | N
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded and contact.joint.clearance < 0:
         return ["the contact reaches the rim, as is normal in a preloaded joint"]
-    if contact.edge_loaded:
+    verdict = rim_verdict(contact)
+    if verdict is Verdict.EXCEEDED:
         return [f"edge loading: the contact reaches the rim (CPER -{distance})"]
+    if verdict is Verdict.UNDECIDED:
+        return [f"edge loading is undecided: the contact ends {distance} from the rim (CPER), less than its error bar"]
     least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
     possible = [] if least > 0 else ["edge loading is possible within the tolerances"]
     return [f"no edge loading: the contact ends {distance} from the rim (CPER)", *possible]

@@ -6,10 +6,10 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import nan, nextafter, radians
+from math import nan, radians
 from typing import Any
 
-from ....contact.verdict import EDGE_DISTANCE, Verdict, error_bar
+from ....contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
 from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ....core.validity import Status
 from ....elasticity.off_axis.contact import OffAxisContact
@@ -219,7 +219,7 @@ def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     if float(contact.half_angle) == 0:
         return _verdict_html(Verdict.UNDECIDED, "No contact: the ball is not loaded")
     bar = error_bar(contact, EDGE_DISTANCE)
-    verdict = bar.verdict(low=_NEAREST)
+    verdict = rim_verdict(contact)
     if verdict is Verdict.EXCEEDED:
         return _verdict_html(verdict, "Rim contact (edge loading): the contact reaches the rim of the cup")
     apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
@@ -227,10 +227,6 @@ def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     if verdict is Verdict.UNDECIDED:
         return _verdict_html(verdict, f"The contact may reach the rim: it ends {apart} ({angle}) before it")
     return _verdict_html(verdict, f"The contact ends {apart} ({angle}) before the rim")
-
-
-_NEAREST = nextafter(0.0, 1.0)
-"""Smallest edge distance in mm of a contact that does not reach the rim."""
 
 
 def _verdict_html(verdict: Verdict, sentence: str) -> str:
