@@ -142,7 +142,12 @@ def _stress_bar(contact: Contact, value: Array, bounds: tuple[Array, Array]) -> 
 
 
 def rim_verdict(contact: Contact) -> Verdict:
-    """Decide if a single contact in a cup ends before the rim; undecided where its error bar contains the rim."""
+    """Decide if a single contact in a cup ends before the rim; undecided where its error bar contains the rim.
+
+    A ball without load is undecided.
+    """
+    if not contact.half_angle > 0:
+        return Verdict.UNDECIDED
     return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded
 
 

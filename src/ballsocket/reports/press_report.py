@@ -326,6 +326,8 @@ def _rim_words(contact: Contact, units: Units, uncertainty: LocalUncertainty | N
     """Describe the place of a contact at the rim of its cup; empty for a contact along the axis."""
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
+    if not contact.half_angle > 0:
+        return ["no contact: the ball is not loaded"]
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded and contact.joint.clearance < 0:
         return ["the contact reaches the rim, as is normal in a preloaded joint"]
