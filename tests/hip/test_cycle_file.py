@@ -86,14 +86,6 @@ def test_three_components_of_the_force(tmp_path):
     assert on_ball == pytest.approx(-cycle.forces, abs=1e-9)
 
 
-@pytest.mark.parametrize("separator", [",", ";", "\t", " ", "   "])
-def test_separators_and_decimal_commas(tmp_path, separator):
-    for point in ".," if separator in ";\t" else ".":
-        rows = [separator.join([f"{10 * step}.50", "700.25"]).replace(".", point) for step in range(11)]
-        cycle = read_cycle(write_lines(tmp_path / "load.txt", separator.join(["phase [%]", "force [N]"]), rows))
-        assert cycle.force_magnitudes == pytest.approx(700.25)
-
-
 def replaced(row, new):
     """Change of a table in which a row has its own time and other cells."""
     return lambda rows: [*rows[:row], f"{rows[row].split(',')[0]},{new}", *rows[row + 1 :]]
@@ -134,10 +126,10 @@ def test_five_lines_are_enough_and_steps_may_differ_threefold(tmp_path):
         (HEADS.replace("flexion [deg]", "flexion"), r"the column flexion has no unit: write 'flexion \[deg\]'"),
         (HEADS.replace("time [s]", "time"), r"the column time has no unit: write 'time \[s\]'"),
         (HEADS.replace("[N]", "[lbf]"), "the unit 'lbf' of the column force is unknown; allowed: n, kn, %bw, bw"),
-        (HEADS.replace("force", "load"), "'load' as a column is not known"),
+        (HEADS.replace("force", "strain"), "column 'strain .N.' is not known"),
         (HEADS.replace("flexion [deg]", "force [N]"), "the column force appears twice"),
-        (HEADS.replace("[N]", "[N] upwards"), "is not a name with a unit, such as 'force"),
-        (HEADS.replace("force [N]", "2 force"), "is not a name with a unit, such as 'force"),
+        (HEADS.replace("[N]", "[N] upwards"), "the unit '.N. upwards' of the column force is unknown"),
+        (HEADS.replace("force [N]", "2 force"), "column '2 force' is not known; did you mean 'force'"),
         (HEADS.replace("time [s]", "force_x [N]"), TIME_COLUMN),
         (HEADS.replace("rotation [deg]", "phase [%]"), f"{TIME_COLUMN}, and not both"),
         (HEADS.replace("force", "force_x"), FORCE_COLUMN),
@@ -161,10 +153,6 @@ def test_files_beyond_a_hip_without_text_or_too_large_are_rejected(tmp_path):
     assert read_cycle(write("N", 2e6, 3.1)).largest_force == 2e6
     assert read_cycle(path).angles(np.array([0.0, 0.5]))[0] == pytest.approx([3.1, -3.1])
     refuses("the column force is in %BW: set body_weight", read_cycle, write("%BW", 200, 0.1))
-    path.write_bytes(b"time [s],force [N]\n\xff\xfe")
-    refuses("not text in UTF-8: invalid start byte at byte 19", read_cycle, path)
-    path.write_bytes(b"#" * 10_000_001)
-    refuses("the table is larger than 10000000 bytes", read_cycle, path)
     refuses("no table is named", read_cycle, [])
 
 

@@ -116,21 +116,21 @@ def test_a_wrong_call_is_refused_with_the_reason(call, message, tmp_path, monkey
     [
         (b"ball_radius,clearence\n16,0.1\n", "did you mean 'clearance'"),
         (b"ball_radius,force,half_angle_deg\n16,,\n", r"force in row 0 of rows.csv = nan is not allowed"),
-        (b"clearance_deg,force\n6,1000\n", "'clearance_deg' among the columns"),
-        (b"clearance,force\n0.1,1000,7\n", "row 0 of rows.csv has more cells than there are columns"),
-        (b'force\n"1\n2\n', "rows.csv is not CSV: unexpected end of data, in line 3"),
+        (b"clearance_deg,force\n6,1000\n", "the unit of clearance_deg = '1 deg' is not a length"),
+        (b"clearance,force\n0.1,1000,7\n", "rows.csv: line 2 has 3 cells, and there are 2 columns"),
+        (b'force\n"1\n2\n', "rows.csv: it is not a table in text: unexpected end of data, in line 4"),
         (b"force\n" + b"1" * 99_000 + b"\n", "force in row 0 of rows.csv = inf"),
-        (b"force\n" + b"1" * 200_000 + b"\n", "rows.csv has a line of more than 100000 characters"),
-        (b'force\n"' + b"1\n" * 80_000 + b'"', "rows.csv is not CSV: field larger than field limit"),
-        (b",".join([b"force"] * 16_000), "rows.csv has force twice"),
-        (b"\x1b[31m\n1\n", r"'.x1b\[31m' among the columns of rows.csv is not known"),
-        (b"a" * 90_000 + b"\n1\n", "'a{39}... among the columns of rows.csv is not known"),
-        (b"force\n\xff\n", "rows.csv is not text in UTF-8: invalid start byte"),
-        (b"force\n1\0\n", "force in row 0 of rows.csv = nan"),
+        (b"force\n" + b"1" * 200_000 + b"\n", "rows.csv: it is not a table in text: field larger than field limit"),
+        (b'force\n"' + b"1\n" * 80_000 + b'"', "rows.csv: it is not a table in text: field larger than field limit"),
+        (b",".join([b"force"] * 16_000), "rows.csv: the column force appears twice"),
+        (b"\x1b[31m\n1\n", r"rows.csv: column '.x1b\[31m' is not known"),
+        (b"a" * 90_000 + b"\n1\n", "rows.csv: column 'a{39}... is not known"),
+        (b"force\n\xff\n", "rows.csv has no rows of numbers"),
+        (b"force\n1\0\n", "rows.csv: it is not text in UTF-8, UTF-16 or cp1252"),
     ],
     ids=range(13),
 )
-def test_a_table_that_is_no_csv_is_refused_in_a_short_sentence(content, message, tmp_path):
+def test_a_file_that_is_no_table_is_refused_in_a_short_sentence(content, message, tmp_path):
     (tmp_path / "rows.csv").write_bytes(content)
     with pytest.raises(ValueError, match=message) as refused:
         table(tmp_path / "rows.csv")

@@ -234,7 +234,7 @@ def test_rows_of_a_table(tmp_path):
 
 def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, monkeypatch):
     (tmp_path / "rows.parquet").write_bytes(b"PAR1" * 100)
-    with pytest.raises(ValueError, match="rows.parquet is not a readable Parquet file"):
+    with pytest.raises(ValueError, match="rows.parquet: it is not a readable Parquet file"):
         table(tmp_path / "rows.parquet")
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
@@ -244,7 +244,7 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
     with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):
         table(tmp_path / "rows.csv")
     symlink_or_skip(tmp_path / "endless.csv", "/dev/zero")
-    with pytest.raises(ValueError, match="endless.csv is not a regular file"):
+    with pytest.raises(ValueError, match="endless.csv: it is not a regular file"):
         table(tmp_path / "endless.csv")
 
 

@@ -242,12 +242,19 @@ def nearest(name: Any, known: Iterable[str]) -> str:
 
     It has the most similar known name, or else all known names.
     """
+    names = list(known)
+    close = closest(name, names)
+    return f"; did you mean {close!r}?" if close else f"; known: {_join_names(names)}"
+
+
+def closest(name: Any, known: Iterable[str]) -> str:
+    """Return the known name that is most similar to an unknown one; "" without one."""
     text = normalise_name((name if isinstance(name, str) else shown(name))[:_MAX_SHOWN_LENGTH])
     names = {normalise_name(known_name): known_name for known_name in known}
     close = get_close_matches(text, names, n=1, cutoff=0.8)
     close = close or [candidate for candidate in names if len(text) > 2 and candidate.startswith(text)]
     close = close or get_close_matches(text, names, n=1, cutoff=0.5)
-    return f"; did you mean {names[close[0]]!r}?" if close else f"; known: {_join_names(list(names.values()))}"
+    return names[close[0]] if close else ""
 
 
 def _join_names(names: list[str]) -> str:

@@ -1,260 +1,514 @@
-"""Columns of numbers in text tables (CSV and similar, OpenSim) and Parquet files, read in bounded memory."""
+"""Columns of numbers in the tables that machines and offices write: text, OpenSim, Excel (.xlsx) and Parquet."""
 
 from __future__ import annotations
 
 import re
-from array import array
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from io import TextIOWrapper
-from math import isfinite, nan
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain
+from math import isfinite
 from pathlib import Path
-from typing import TextIO
+from types import MappingProxyType
+from typing import Annotated
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import needs, shown
+from ..core.checks import closest, nearest, needs, shown
 from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
+from ..core.kinds import Kind
+from .cells import (
+    Cell,
+    NumberedRow,
+    cell_number,
+    count_words,
+    decimal_mark,
+    decode_text,
+    is_data,
+    read_excel,
+    split_text,
+)
+from .head_names import UNCERTAINTY, known_head, plain_name
+from .schema import HeadMap, Table, Texts, meaning
+from .units import parse, parse_units
 
-CheckHeads = Callable[[Sequence[str]], None]
-"""Function that refuses column heads before the rows below them are read."""
-
-CheckRows = Callable[[int], None]
-"""Function that refuses a number of rows."""
-
-_MAX_LINE = 100_000
-"""Largest number of characters in a line of a CSV file."""
-
-_MAX_TEXT_BYTES = 10_000_000
-"""Largest size in bytes of a text table with any separator."""
-
-_MAX_PREAMBLE = 100
-"""Number of lines in which the column heads are searched."""
-
-_ROWS_PER_CHECK = 1 << 16
-"""Number of rows of a CSV file between two checks of the memory."""
+_MAX_BYTES = 10_000_000
+"""Largest size in bytes of a table that is not Parquet."""
 
 _COPIES = 3
 """Copies of the numbers that are in memory at once: as read, as converted, as labels of a result."""
 
+_MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
+"""Largest number of characters of a known column head, and of words in its name."""
+
+_MAX_HEAD_ROWS = 4
+"""Number of lines above the numbers in which the column heads are searched."""
+
+_MAX_TABLES = 100
+"""Largest number of tables in a file whose heads are compared."""
+
+_MAX_NAMES = 3
+"""Number of known names in a message."""
+
+_MAX_LISTED = 20
+"""Largest number of heads in a message."""
+
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
-_HEAD_WORDS = re.compile(r"[^\s\[(]++(?:\s{0,20}+[\[(][^\])]{0,60}+[\])])?")
-_UNIT = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°]++\s*+[\])]?\s*+")
-
-NumberedLine = tuple[int, str]
-"""Number of a line in its file, and its text."""
-
-NumberedRow = tuple[int, Sequence[str]]
-"""Number of a row or line, and its cells."""
+_NAME = re.compile(r"[^\[(]*\w\.?")
+_SEPARATOR = re.compile(r"[\s_\[(/,;:'-]")
+_BRACKETED = re.compile(r"[\s_/,;:'-]*+[\[(]\s*+([^\])]*+)[\])]?\s*+")
+_UNIT_CELL = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°µμ][A-Za-z%°µμ²³·*/^0-9 -]{0,14}[\])]?\s*+")
 
 
-@dataclass(frozen=True, eq=False)
-class NumberColumn:
-    """Numbers of a column; NaN for cells without a number."""
+class HeadKeys(Table, frozen=True, kw_only=True):
+    """Keys of a table that names a file with columns."""
 
-    numbers: array[float] = field(default_factory=lambda: array("d"))
-    gaps: list[tuple[int, str]] = field(default_factory=list)
-    """Row or line number and text of the first cell without a finite number; empty if there is none."""
+    columns: Annotated[HeadMap | None, meaning("names of columns of the file by their heads")] = None
+    skip: Annotated[Texts | None, meaning("heads of columns of the file that are not used")] = None
 
-    def append(self, number: int, cell: str, decimal_mark: str) -> None:
-        """Append the number in a cell of a row."""
-        try:
-            value = float(cell.replace(decimal_mark, "."))
-        except ValueError:
-            value = nan
-        if not (self.gaps or isfinite(value)):
-            self.gaps.append((number, cell.strip()))
-        self.numbers.append(value)
+    def choice(self) -> HeadChoice:
+        """Return the columns of the file that get another name, or that are not used."""
+        return HeadChoice(columns={} if self.columns is None else self.columns.value, skip=tuple(self.skip or ()))
 
 
-def _fill_columns(rows: Iterable[NumberedRow], width: int, decimal_mark: str = ".") -> list[NumberColumn]:
-    """Convert rows of cells to columns; missing cells at the end of a row are gaps."""
-    columns = [NumberColumn() for _ in range(width)]
-    for number, cells in rows:
-        for index, column in enumerate(columns):
-            column.append(number, cells[index] if index < len(cells) else "", decimal_mark)
-    return columns
+@dataclass(frozen=True, kw_only=True)
+class HeadChoice:
+    """Columns of a file that get another name, or that are not used.
 
-
-def split_head(head: str) -> tuple[str, str]:
-    """Split a head such as "Force [N]" or "area (mm2)" into a name and the unit in brackets, or "" without brackets."""
-    plain = head.strip().removeprefix('"').removesuffix('"').strip()
-    start = min((plain.index(bracket) for bracket in "[(" if bracket in plain), default=-1)
-    if start < 0 or plain[-1] not in "])":
-        return plain, ""
-    return plain[:start].rstrip(), plain[start + 1 : -1].strip()
-
-
-def read_columns(path: Path, check_heads: CheckHeads) -> dict[str, Numbers]:
-    """Read the columns of a CSV or Parquet file by their heads; NaN for an empty cell or one without a number.
-
-    In CSV, lines before the heads that begin with # are skipped.
-
-    Raises
-    ------
-    ValueError
-        Another ending, content that is not CSV or Parquet, or more rows than fit into the memory.
-    OSError
-        The file cannot be read.
+    Parameters
+    ----------
+    columns : mapping of str to str
+        Name, such as "force" or "force_N", by the head in the file with or without its unit. A name without a unit
+        keeps the unit of the file.
+    skip : sequence of str
+        Heads of columns that are not used, with or without their units.
     """
-    if path.suffix.lower() not in _READERS:
-        raise ValueError(f"{shown(str(path))} must end in {' or '.join(_READERS)}")
-    resolved = resolve_input(path)
-    if resolved.exists() and not resolved.is_file():
-        raise ValueError(f"{path.name} is not a regular file")
-    return _READERS[path.suffix.lower()](path, check_heads)
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    skip: Sequence[str] = ()
 
 
-def _read_csv(path: Path, check_heads: CheckHeads) -> dict[str, Numbers]:
-    """Read the columns of a CSV file."""
-    import csv
-
-    with TextIOWrapper(open_input(path), encoding="utf-8-sig", newline="") as stream:
-        reader = csv.reader(_csv_lines(stream, path.name), strict=True)
-        try:
-            heads = next(reader, [])
-            check_heads(heads)
-            columns = _fill_columns(_csv_rows(reader, path.name, len(heads)), len(heads))
-        except csv.Error as error:
-            raise ValueError(f"{path.name} is not CSV: {error}, in line {reader.line_num}") from error
-        except UnicodeDecodeError as error:
-            raise ValueError(f"{path.name} is not text in UTF-8: {error.reason}") from error
-    return {head: numpy.array(column.numbers) for head, column in zip(heads, columns, strict=True)}
+ALL_COLUMNS = HeadChoice()
+"""Choice of all columns of a file, under their names there."""
 
 
-def _csv_lines(stream: TextIO, title: str) -> Iterator[str]:
-    """Yield the lines of a text of limited length, from the heads on."""
-    in_table = False
-    while line := stream.readline(_MAX_LINE):
-        if len(line) == _MAX_LINE:
-            raise ValueError(f"{title} has a line of more than {_MAX_LINE} characters")
-        in_table = in_table or not line.startswith("#")
-        if in_table:
-            yield line
+@dataclass(frozen=True)
+class Head:
+    """Column head: its text in the file, its known name or "", and its unit or ""."""
+
+    text: str
+    name: str
+    unit: str = ""
+
+    @property
+    def plain_texts(self) -> tuple[str, str]:
+        """Plain names of the text with and without the unit in brackets."""
+        return plain_name(self.text), plain_name(re.split(r"[\[(]", self.text)[0])
+
+    def factor(self, kind: Kind) -> float:
+        """Return the factor from the unit of the column to mm, N, MPa or rad.
+
+        Raises
+        ------
+        ValueError
+            A missing unit, or the unit of another quantity.
+        """
+        if kind is Kind.NUMBER:
+            return parse(self.text, f"1 {'' if self.unit in ('-', '1') else self.unit}".strip(), kind)
+        if not self.unit:
+            name = f"{self.name}_{kind.column_suffix}"
+            raise ValueError(f"column {shown(self.text)} has no unit: use {name}, or another unit")
+        return parse(f"the unit of {self.text}", f"1 {self.unit}", kind)
 
 
-def _csv_rows(reader: Iterator[list[str]], title: str, width: int) -> Iterator[NumberedRow]:
-    """Yield the rows of a CSV file with their numbers from 0, as long as they fit into the memory."""
-    for number, cells in enumerate(filter(None, reader)):
-        if len(cells) > width:
-            raise ValueError(f"row {number} of {title} has more cells than there are columns")
-        if number % _ROWS_PER_CHECK == 0:
-            _check_size(title, number, width)
-        yield number, cells
+def split_head(text: str, names: Collection[str]) -> Head:
+    """Split a head such as "Force [N]", "Kraft in N" or "force_N" into one of the known names and a unit.
+
+    The name is "" if it is not known.
+    """
+    marks = [match.start() for match in _SEPARATOR.finditer(text[:_MAX_HEAD_LENGTH])][:_MAX_HEAD_WORDS]
+    for end in (len(text), *reversed(marks)) if len(text) <= _MAX_HEAD_LENGTH else ():
+        start = text[:end]
+        if _NAME.fullmatch(start) and (name := known_head(plain_name(start), names)):
+            return Head(text, name, _unit(text[end:]))
+    bracket = re.search(r"[\[(]", text)
+    return Head(text, "", _unit(text[bracket.start() :]) if bracket else "")
 
 
-def _check_size(title: str, n_rows: int, n_columns: int) -> None:
-    """Check that a table fits into the memory."""
-    check_memory(f"{n_rows:.3g} rows of {title}", _COPIES * 8 * n_rows * n_columns)
-
-
-def _read_parquet(path: Path, check_heads: CheckHeads) -> dict[str, Numbers]:
-    """Read the columns of a Parquet file."""
-    needs("study", "pyarrow")
-    from pyarrow import ArrowException, parquet
-
-    try:
-        with open_input(path) as stream, parquet.ParquetFile(stream) as file:
-            heads = file.schema_arrow.names
-            check_heads(heads)
-            _check_size(path.name, file.metadata.num_rows, len(heads))
-            table = file.read()
-            return {head: table.column(head).to_numpy() for head in heads}
-    except (ArrowException, OSError) as error:  # pyarrow raises an OSError without a number for damaged content
-        if isinstance(error, OSError) and error.errno is not None:
-            raise
-        raise ValueError(f"{path.name} is not a readable Parquet file: {error}") from error
-
-
-_READERS = {".csv": _read_csv, ".parquet": _read_parquet}
+def _unit(text: str) -> str:
+    """Return the unit behind the name of a head, without brackets and the word "in"."""
+    bracketed = _BRACKETED.fullmatch(text)
+    unit = bracketed[1] if bracketed else text.lstrip(" \t_/,;:'-").removeprefix("in ")
+    return unit.replace("_per_", "/").replace("_", " ").strip()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TextTable:
-    """Columns of numbers in a text file, by their heads.
+class NumberTable:
+    """Columns of numbers in a file, by their heads.
 
     Attributes
     ----------
-    heads : tuple of str
-        Heads of the columns, in the order of the file, with units from the line below them.
-    columns : tuple of NumberColumn
-        Numbers of each column.
+    title : str
+        Name of the file.
+    heads : tuple of Head
+    columns : tuple of arrays
+        Numbers of each column, shape (n_rows,); NaN for cells without a number.
+    gaps : mapping of str to (int, str)
+        Line and text of the first cell without a finite number, by the name of its column.
+    left_out : mapping of str to int
+        Numbers of lines that are not used, by their description, such as "above the heads".
     in_degrees : bool, optional
         Unit of angles in an OpenSim header: True for degrees, False for radians, None if not stated.
     is_opensim : bool
         True for an OpenSim storage file.
     """
 
-    heads: tuple[str, ...]
-    columns: tuple[NumberColumn, ...]
+    title: str
+    heads: tuple[Head, ...]
+    columns: tuple[Numbers, ...]
+    gaps: Mapping[str, tuple[int, str]] = field(default_factory=dict)
+    left_out: Mapping[str, int] = field(default_factory=dict)
     in_degrees: bool | None = None
     is_opensim: bool = False
 
-    def numbers(self, head: str, name: str) -> Numbers:
-        """Return the numbers under a head, shape (n_rows,).
+    def __len__(self) -> int:
+        return len(self.columns[0]) if self.columns else 0
+
+    def remark(self, n_gaps: int = 0) -> str:
+        """Return the number of rows, and the lines that are left out; empty without such lines.
+
+        `n_gaps` is the number of rows with gaps that a result does not use.
+        """
+        counts = {**self.left_out, "with a gap": n_gaps}
+        parts = [f"{count} {'line' if count == 1 else 'lines'} {place}" for place, count in counts.items() if count]
+        return f"{self.title}: {len(self) - n_gaps} rows read, left out {', '.join(parts)}" if parts else ""
+
+    def items(self) -> Iterator[tuple[Head, Numbers]]:
+        """Yield each head with the numbers below it."""
+        return zip(self.heads, self.columns, strict=True)
+
+    def in_units(
+        self, kinds: Mapping[str, Kind], units: Mapping[str, str] = MappingProxyType({})
+    ) -> dict[str, Numbers]:
+        """Return the columns by name in mm, N, MPa or rad; `units` are the units of heads without one.
 
         Raises
         ------
         ValueError
-            A row has no finite number; the message has its line and the `name` of the column.
+            A missing unit, or the unit of another quantity.
         """
-        column = self.columns[self.heads.index(head)]
-        for line, cell in column.gaps:
+        try:
+            heads = [replace(head, unit=head.unit or units.get(head.name, "")) for head in self.heads]
+            factors = {head.name: head.factor(kinds[head.name]) for head in heads}
+        except ValueError as error:
+            raise ValueError(f"{self.title}: {error}") from error
+        return {head.name: factors[head.name] * values for head, values in self.items()}
+
+    def numbers(self, name: str) -> Numbers:
+        """Return the numbers of a column without gaps.
+
+        Raises
+        ------
+        ValueError
+            A row has no finite number; the message has its line.
+        """
+        if name in self.gaps:
+            line, cell = self.gaps[name]
             content = shown(cell) if cell else "nothing"
             raise ValueError(f"line {line} has {content} for {name}: each line needs a finite number in each column")
-        return numpy.array(column.numbers)
+        return self.columns[[head.name for head in self.heads].index(name)]
 
 
-def read_text_table(path: Path, head_words: Sequence[str], check_rows: CheckRows) -> TextTable:
-    """Read an OpenSim file (.mot, .sto), or columns separated by commas, semicolons, tabs or blanks.
+def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_COLUMNS) -> NumberTable:
+    """Read the columns of numbers in a file.
 
-    Lines that begin with # are skipped. Numbers may have a decimal comma if the separator is another character.
+    Text is in UTF-8, UTF-16 or cp1252. Its cells are separated by semicolons, tabs, commas or blanks, and may have
+    quotes. All rows decide between decimal point and decimal comma. Lines above the heads, comments (#), blank lines
+    and lines without a number are left out, and counted. Units stand in the heads, or in the line below them.
 
     Parameters
     ----------
     path : Path
-    head_words : sequence of str
-        Words with which a column head begins in the line of heads. Lines above that line are skipped.
-    check_rows : function
-        Raises ValueError for a number of rows that is not allowed.
+    names : collection of str
+        Names of the columns that are known.
+    choice : HeadChoice
+        Columns that get another name, or that are not used.
+
+    Returns
+    -------
+    NumberTable
 
     Raises
     ------
     ValueError
-        The file is too large, not text in UTF-8, has a wrong number of rows, or fewer rows than its header states.
+        A file that is too large or no table, a column that is not known or appears twice, two tables with the same
+        columns, or numbers whose decimal mark is ambiguous.
+    ImportError
+        An optional extra is not installed.
     OSError
         The file cannot be read.
     """
-    with open_input(path) as stream:
-        raw = stream.read(_MAX_TEXT_BYTES + 1)
-    if len(raw) > _MAX_TEXT_BYTES:
-        raise ValueError(f"the table is larger than {_MAX_TEXT_BYTES} bytes")
     try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"not text in UTF-8: {error.reason} at byte {error.start}") from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    for index, (_, line) in enumerate(lines):
-        if line.strip().lower() == _HEADER_END:
-            return _parse_opensim(lines[:index], lines[index + 1 :], check_rows)
-    return _parse_separated([line for line in lines if not line[1].lstrip().startswith("#")], head_words, check_rows)
+        resolved = resolve_input(path)
+        if resolved.exists() and not resolved.is_file():
+            raise ValueError("it is not a regular file")
+        with open_input(path) as stream:
+            raw = stream.read(_MAX_BYTES + 1)
+        return _parse_table(path, raw, _HeadReader(names, choice))
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
 
 
-def _parse_opensim(header: Sequence[NumberedLine], lines: Sequence[NumberedLine], check_rows: CheckRows) -> TextTable:
+def _parse_table(path: Path, raw: bytes, reader: _HeadReader) -> NumberTable:
+    """Convert the content of a file by its first bytes."""
+    if raw.startswith(b"PAR1"):
+        return _read_parquet(path, reader)
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"a table has at most {_MAX_BYTES // 1_000_000} MB: cut it, or save it as Parquet")
+    if raw.startswith(b"\xd0\xcf\x11\xe0"):
+        raise ValueError("an old Excel file (.xls) is not read: save it as .xlsx or CSV")
+    if raw.startswith(b"PK"):
+        return _parse_rows(path.name, [("", read_excel(raw))], reader)
+    text = decode_text(raw)
+    lines = text.split("\n")
+    ends = [index for index, line in enumerate(lines) if line.strip().lower() == _HEADER_END]
+    return _parse_opensim(path.name, lines, ends[0]) if ends else _parse_rows(path.name, split_text(text), reader)
+
+
+class _HeadReader:
+    """Reader of column heads, with the names that are known and the choice of the user."""
+
+    def __init__(self, names: Collection[str], choice: HeadChoice) -> None:
+        self.names = names
+        self.choice = choice
+        self.targets = {plain_name(head): name for head, name in choice.columns.items()}
+        self.skipped = {plain_name(head) for head in choice.skip}
+
+    def target(self, head: Head) -> str:
+        """Return the name that the user gives to a head; "" for none."""
+        return next((self.targets[text] for text in head.plain_texts if text in self.targets), "")
+
+    def read(self, text: str, unit: str = "") -> Head:
+        """Return the head of a column, whose unit may stand below it."""
+        head = split_head(text, self.names)
+        target = self.target(head)
+        wanted = split_head(target, self.names) if target else head
+        return Head(text, wanted.name, wanted.unit or head.unit or unit)
+
+    def skips(self, head: Head) -> bool:
+        """Return True if the column is not used."""
+        return any(text in self.skipped for text in head.plain_texts)
+
+    def count(self, cells: Iterable[Cell]) -> tuple[int, int]:
+        """Count the heads in a row that are known; with such heads, the others are a negative number."""
+        heads = [self.read(cell) for cell in cells if isinstance(cell, str) and cell]
+        known = sum((bool(head.name) and _is_one_head(head)) or self.skips(head) for head in heads)
+        return known, known - len(heads) if known else min(len(heads), 2)
+
+    def choose(self, texts: Sequence[str], units: Sequence[str]) -> dict[int, Head]:
+        """Return the heads that are used, by the indices of their columns.
+
+        Raises
+        ------
+        ValueError
+            An unknown head, two equal names, two units of a column, or a choice that matches no head.
+        """
+        heads = [self.read(text, unit) for text, unit in zip(texts, units, strict=True)]
+        present = {text for head in heads for text in head.plain_texts}
+        for key, chosen in (("columns", self.choice.columns), ("skip", self.choice.skip)):
+            for text in chosen:
+                if plain_name(text) not in present:
+                    columns = ", ".join(shown(head.text) for head in heads[:_MAX_LISTED])
+                    raise ValueError(f"{key} names {shown(text)}, but the columns are {columns}")
+        used = {index: head for index, head in enumerate(heads) if not self.skips(head)}
+        counts = Counter(head.name for head in used.values())
+        for index, head in used.items():
+            if not head.name:
+                raise ValueError(self._unknown(head))
+            if counts[head.name] > 1:
+                raise ValueError(f"the column {head.name} appears twice: skip one with skip = [...]")
+            unit = split_head(head.text, self.names).unit or units[index]
+            if unit and unit != head.unit:
+                target = shown(self.target(head))
+                raise ValueError(f"columns names {target} for {shown(head.text)}, but the file has the unit {unit}")
+        return used
+
+    def _unknown(self, head: Head) -> str:
+        """Return the message for a head that is not known."""
+        if target := self.target(head):
+            return f"columns names {shown(target)} for {shown(head.text)}{nearest(plain_name(target), self.names)}"
+        if not head.text:
+            return "a column of numbers has no head: name it, or skip it with skip = ['']"
+        names = [name for name in self.names if not name.endswith(UNCERTAINTY)]
+        text, close = shown(head.text), closest(plain_name(head.text), names)
+        hint = f"did you mean {close!r}?" if close else f"known: {', '.join(names[:_MAX_NAMES])}, ...;"
+        return (
+            f"column {text} is not known; {hint} columns = {{{text} = '{close or names[0]}'}} names it, "
+            f"skip = [{text}] leaves it out"
+        )
+
+
+def _is_one_head(head: Head) -> bool:
+    """Return False for the heads of several columns that another separator splits."""
+    if not re.search("[,;\t]", head.text) or not head.unit:
+        return True
+    try:
+        parse_units(head.unit)
+    except ValueError:
+        return False
+    return True
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Heads above rows of numbers: their score, and the indices of both."""
+
+    score: tuple[int, int]
+    head: int
+    start: int
+
+
+def _find_blocks(rows: Sequence[NumberedRow], reader: _HeadReader) -> list[_Block]:
+    """Find the heads above each group of rows with numbers; without such rows, the last heads."""
+    blocks: list[_Block] = []
+    above: list[int] = []
+
+    def add(start: int) -> None:
+        """Add the line of heads among the lines of text above a row."""
+        lines = [(reader.count(rows[index][1]), count_words(rows[index][1]), -index) for index in above]
+        score, _, index = max(lines)
+        blocks.append(_Block(score, -index, start))
+
+    for index, (_, cells) in enumerate(rows):
+        if not is_data(cells):
+            above = [*above, index][-_MAX_HEAD_ROWS:] if any(cells) else above
+            continue
+        if above and len(blocks) < _MAX_TABLES:
+            add(index)
+        above = []
+    if above and not blocks:
+        add(len(rows))
+    return blocks
+
+
+def _parse_rows(
+    title: str, candidates: Iterable[tuple[str, Sequence[NumberedRow]]], reader: _HeadReader
+) -> NumberTable:
+    """Convert the rows below the best known heads; the candidates are separators of cells, with the rows."""
+    best: tuple[tuple[int, int], str, Sequence[NumberedRow], list[_Block]] | None = None
+    for separator, rows in candidates:
+        blocks = _find_blocks(rows, reader)
+        score = max((block.score for block in blocks), default=(-1, 0))
+        if blocks and (best is None or score > best[0]):
+            best = score, separator, rows, [block for block in blocks if block.score == score]
+        if score[0] > 1 and not score[1]:
+            break  # all heads are known
+    if best is None:
+        raise ValueError("it has no line of column heads above lines of numbers")
+    score, separator, rows, blocks = best
+    if len(blocks) > 1 and score[0]:
+        lines = ", ".join(str(rows[block.head][0]) for block in blocks[:_MAX_LISTED])
+        raise ValueError(f"it has several tables with these columns, in lines {lines}: keep one")
+    return _parse_block(title, rows, blocks[0], reader, separator)
+
+
+def _parse_block(
+    title: str, rows: Sequence[NumberedRow], block: _Block, reader: _HeadReader, separator: str
+) -> NumberTable:
+    """Convert the rows below heads to columns."""
+    texts = [str(cell) for cell in rows[block.head][1]]
+    between = [cells for _, cells in rows[block.head + 1 : block.start]]
+    units = next((cells for cells in between if _are_units(cells, texts)), ())
+    body, left_out = _select_rows(rows, block.start)
+    width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
+    for line, cells in body:
+        if any(cell != "" for cell in cells[max(width, len(texts)) :]):
+            raise ValueError(
+                f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas need semicolons or "
+                "tabs between the cells, or quotes"
+            )
+    width = max([width, *(len(cells) for _, cells in body)])
+    filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
+    used = [index for index in range(width) if index in filled or any(texts[index : index + 1])]
+    below = [_unit(f"_{units[index]}") if index < len(units) else "" for index in used]
+    heads = reader.choose([texts[index] if index < len(texts) else "" for index in used], below)
+    check_memory(f"{len(body):.3g} rows of {title}", _COPIES * 8 * len(body) * len(heads))
+    return _make_table(
+        title,
+        {head: used[index] for index, head in heads.items()},
+        body,
+        separator,
+        left_out={
+            "above the heads": len([cells for _, cells in rows[: block.head] if count_words(cells)]),
+            "between heads and numbers": len([cells for cells in between if count_words(cells)]) - bool(units),
+            **left_out,
+        },
+    )
+
+
+def _are_units(cells: Sequence[Cell], texts: Sequence[str]) -> bool:
+    """Return True if a row below heads without units in brackets has a unit in each cell that is not empty."""
+    units = [str(cell) for cell in cells if count_words([cell])]
+    has_units = any(mark in text for text in texts for mark in "[(")
+    return bool(units) and not has_units and len(cells) <= len(texts) and all(map(_UNIT_CELL.fullmatch, units))
+
+
+def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[NumberedRow], dict[str, int]]:
+    """Return the rows of numbers up to the heads of another table, and the numbers of the other rows."""
+    body: list[NumberedRow] = []
+    n_text = n_blank = n_pending = 0
+    for index in range(start, len(rows)):
+        cells = rows[index][1]
+        if is_data(cells):
+            body.append(rows[index])
+            n_blank, n_pending = n_blank + n_pending, 0
+        elif (n_words := count_words(cells)) > 1:
+            n_text += sum(bool(count_words(cells)) for _, cells in rows[index:])
+            break
+        else:
+            n_text, n_pending = n_text + n_words, n_pending + (not n_words)
+    return body, {"of text below the heads": n_text, "blank or with a comment": n_blank}
+
+
+def _make_table(
+    title: str,
+    heads: Mapping[Head, int],
+    body: Sequence[NumberedRow],
+    separator: str,
+    left_out: Mapping[str, int] = MappingProxyType({}),
+) -> NumberTable:
+    """Convert rows of cells to columns, whose indices in a row the heads have."""
+    cells = {
+        head: [(line, row[index] if index < len(row) else "") for line, row in body] for head, index in heads.items()
+    }
+    mark = decimal_mark(chain.from_iterable(cells.values()), separator)
+    columns = {head: numpy.array([cell_number(cell, mark) for _, cell in column]) for head, column in cells.items()}
+    rows = {head: int(numpy.isfinite(column).argmin()) for head, column in columns.items() if len(column)}
+    gaps = {head: cells[head][row] for head, row in rows.items() if not isfinite(columns[head][row])}
+    return NumberTable(
+        title=title,
+        heads=tuple(columns),
+        columns=tuple(columns.values()),
+        gaps={head.name: (line, str(cell)) for head, (line, cell) in gaps.items()},
+        left_out=left_out,
+    )
+
+
+def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
     """Convert the lines of an OpenSim file to columns."""
-    settings = dict(_parse_setting(line) for _, line in header)
-    n_rows = len(lines) - 1
-    check_rows(n_rows)
-    stated = settings.get("nrows", settings.get("datarows", str(n_rows)))
-    if stated != str(n_rows):
-        raise ValueError(f"the header states {shown(stated)} rows, but the file has {n_rows}")
-    heads = lines[0][1].split()
-    columns = _fill_columns(((number, line.split()) for number, line in lines[1:]), len(heads))
+    settings = dict(_parse_setting(line) for line in lines[:end] if line.strip())
+    rows = [(number, line.split()) for number, line in enumerate(lines[end + 1 :], end + 2) if line.strip()]
+    if not rows:
+        raise ValueError("it has no line of column heads below its header")
+    stated = settings.get("nrows", settings.get("datarows", str(len(rows) - 1)))
+    if stated != str(len(rows) - 1):
+        raise ValueError(f"the header states {shown(stated)} rows, but the file has {len(rows) - 1}")
+    heads = {Head(text, text): index for index, text in enumerate(rows[0][1])}
     in_degrees = {"yes": True, "no": False}.get(settings.get("indegrees", "").lower())
-    return TextTable(heads=tuple(heads), columns=tuple(columns), in_degrees=in_degrees, is_opensim=True)
+    return replace(_make_table(title, heads, rows[1:], ","), in_degrees=in_degrees, is_opensim=True)
 
 
 def _parse_setting(line: str) -> tuple[str, str]:
@@ -263,32 +517,24 @@ def _parse_setting(line: str) -> tuple[str, str]:
     return name.strip().lower(), value.strip()
 
 
-def _parse_separated(lines: Sequence[NumberedLine], head_words: Sequence[str], check_rows: CheckRows) -> TextTable:
-    """Convert separated lines to columns: the heads, an optional line of units, and rows of numbers."""
-    pattern = re.compile(rf"\s*+\"?\s*+({'|'.join(head_words)})\b", re.IGNORECASE)
-    start = next((index for index, (_, line) in enumerate(lines[:_MAX_PREAMBLE]) if _is_head_line(line, pattern)), 0)
-    body = lines[start + 1 :]
-    check_rows(len(body))
-    head_line = lines[start][1]
-    separator = max(",;\t", key=head_line.count)
-    by_blanks = separator not in head_line
-    heads = _HEAD_WORDS.findall(head_line) if by_blanks else head_line.split(separator)
-    cells = [line.split(None if by_blanks else separator) for _, line in body[:2]]
-    units = cells[0]
-    if len(units) == len(heads) and all("[" not in head for head in heads) and all(map(_is_unit, units)):
-        heads = [f"{head.strip()} [{unit.strip().strip('[]()')}]" for head, unit in zip(heads, units, strict=True)]
-        body, cells = body[1:], cells[1:]
-    decimal_mark = "," if separator != "," and any("," in cell for cell in cells[0]) else "."
-    rows = ((number, line.split(None if by_blanks else separator)) for number, line in body)
-    return TextTable(heads=tuple(heads), columns=tuple(_fill_columns(rows, len(heads), decimal_mark)))
+def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:
+    """Read the columns of a Parquet file."""
+    needs("study", "pyarrow")
+    from pyarrow import ArrowException, parquet
 
-
-def _is_head_line(line: str, pattern: re.Pattern[str]) -> bool:
-    """Return True if a cell of the line begins with a head word, and the line does not end with a number."""
-    cells = re.split(r"[,;\t]|\s{2,}", line)
-    return any(pattern.match(cell) for cell in cells) and not line.strip()[-1].isdigit()
-
-
-def _is_unit(cell: str) -> bool:
-    """Return True if a cell can be a unit, and is not a missing number."""
-    return bool(_UNIT.fullmatch(cell)) and cell.strip().lower() not in ("nan", "inf")
+    try:
+        with open_input(path) as stream, parquet.ParquetFile(stream) as file:
+            texts = file.schema_arrow.names
+            heads = tuple(reader.choose(texts, [""] * len(texts)).values())
+            n_rows = file.metadata.num_rows
+            check_memory(f"{n_rows:.3g} rows of {path.name}", _COPIES * 8 * n_rows * len(heads))
+            table = file.read([head.text for head in heads])
+    except (ArrowException, OSError) as error:  # pyarrow raises an OSError without a number for damaged content
+        if isinstance(error, OSError) and error.errno is not None:
+            raise
+        raise ValueError(f"it is not a readable Parquet file: {error}") from error
+    columns = {head: table.column(head.text).to_numpy() for head in heads}
+    for head, column in columns.items():
+        if column.dtype.kind not in "iuf":
+            raise ValueError(f"column {shown(head.text)} has values of type {column.dtype}, not numbers")
+    return NumberTable(title=path.name, heads=heads, columns=tuple(columns.values()))

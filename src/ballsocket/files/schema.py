@@ -18,7 +18,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
 
 import msgspec
 
-from ..core.checks import check_text, check_whole_number, known_name
+from ..core.checks import check_text, check_whole_number, known_name, shown
 from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from .units import LONGEST, parse
@@ -126,6 +126,19 @@ class Word(Text):
 def choices_schema(choices: Sequence[str]) -> dict[str, Any]:
     """Return the JSON schema of words: their usual spelling, or one with capitals, blanks or underscores."""
     return {"type": "string", "anyOf": [{"enum": list(choices)}, {"pattern": "[A-Z_ ]"}]}
+
+
+class HeadMap(Parsed):
+    """Names of columns, such as "force_N", by their heads in a file."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "object", "additionalProperties": {"type": "string"}}
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> dict[str, str]:
+        """Check the names and the heads."""
+        if not isinstance(value, Mapping):
+            raise ValueError(f"{name} = {shown(value)} must be a table, such as {{'Kraft' = 'force_N'}}")
+        return {check_text(name, head): check_text(name, column) for head, column in value.items()}
 
 
 class Texts(Value, list[str]):

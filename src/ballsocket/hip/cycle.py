@@ -107,6 +107,8 @@ class Cycle:
         Angle in rad between cup axis and load that a standard prescribes.
     notes : tuple of str
         Notes for reports.
+    remark : str
+        Rows of the file that were read, and lines that were left out; empty without such lines.
     frame : Frame
         Reference frame of the forces; the body's by default.
     spring : Spring, optional
@@ -128,6 +130,7 @@ class Cycle:
     notes: tuple[str, ...] = ()
     frame: Frame = Frame.BODY
     spring: Spring | None = None
+    remark: str = ""
 
     def __post_init__(self) -> None:
         check_step_count(self.n_steps)

@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
 from ..core.deprecation import renamed_arguments, renamed_names
+from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..files.tables import read_table as read_schema
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
@@ -62,6 +63,8 @@ class TableOptions:
         Default 0.01.
     motion : Cycle, optional
         Cycle whose angles are used if the table has none.
+    heads : HeadChoice
+        Columns of the file that get another name, or that are not used.
 
     Raises
     ------
@@ -76,6 +79,7 @@ class TableOptions:
     end: float | None = None
     closing: float = DEFAULT_CLOSURE
     motion: Cycle | None = None
+    heads: HeadChoice = ALL_COLUMNS
 
     def __post_init__(self) -> None:
         for name, choices in (("frame", _FRAMES), ("force_on", _BODIES)):
@@ -123,12 +127,15 @@ def read_cycle(
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(name) for name in path]
     if not paths:
         raise ValueError("no table is named")
+    tables = [read_table(file, options.heads) for file in paths]
     try:
-        tables = [extract_hip_columns(read_table(file), body_weight, options.side) for file in paths]
         parts = [
-            replace(table, columns=select_time_range(table.columns, options.begin, options.end)) for table in tables
+            replace(hip, columns=select_time_range(hip.columns, options.begin, options.end))
+            for hip in (extract_hip_columns(table, body_weight, options.side) for table in tables)
         ]
-        return replace(_table_cycle(combine_columns(parts), order, options), name=paths[0].stem, n_steps=n_steps)
+        remark = "; ".join(table.remark() for table in tables if table.remark())
+        cycle = _table_cycle(combine_columns(parts), order, options)
+        return replace(cycle, name=paths[0].stem, n_steps=n_steps, remark=remark)
     except ValueError as error:
         raise ValueError(f"{', '.join(file.name for file in paths)}: {error}") from error
 
@@ -203,7 +210,7 @@ def _force_in_body_frame(force: PhaseFunction, angles: PhaseFunction, order: str
 
 
 _COMMON_KEYS = ("instants", "rotation_order", "times_body_weight")
-_TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion")
+_TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion", "columns", "skip")
 
 
 def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
@@ -312,4 +319,5 @@ def _table_options(table: CycleKeys, weight: float | None) -> TableOptions:
         end=table.end,
         closing=DEFAULT_CLOSURE if table.closing is None else table.closing,
         motion=motion,
+        heads=table.choice(),
     )

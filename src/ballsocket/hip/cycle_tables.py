@@ -14,43 +14,22 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
-from ..files.columns import TextTable, read_text_table, split_head
+from ..files.columns import Head, HeadChoice, NumberTable, read_columns
 from ..problem.cup import Side
 from .cycle import PhaseFunction
 
 _MIN_ROWS, _ROW_LIMIT = 5, 100_000
-_NAME = re.compile(r"([A-Za-z_]++)'?")
-_HEAD_WORDS = ("time", "phase", "cycle")
-"""Words that begin a head in the line of heads."""
-
-
-def read_table(path: Path) -> TextTable:
-    """Read the table of a cycle: an OpenSim file (.mot, .sto), or columns with any separator.
-
-    Raises
-    ------
-    ValueError
-        The file is too large, not text in UTF-8, has too few or too many rows, or fewer rows than its header states.
-    OSError
-        The file cannot be read.
-    """
-    return read_text_table(path, _HEAD_WORDS, _check_row_count)
-
-
-def _check_row_count(count: int) -> None:
-    """Raise ValueError if a table is too short or too long."""
-    if not _MIN_ROWS <= count < _ROW_LIMIT:
-        raise ValueError(f"{max(count, 0)} lines below the heads; a cycle has {_MIN_ROWS} to {_ROW_LIMIT}")
-
 
 FORCES = ("force_x", "force_y", "force_z")
 ANGLES = ("flexion", "adduction", "rotation")
+_SECONDS: Mapping[str, float] = MappingProxyType({"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0})
+_CYCLES: Mapping[str, float] = MappingProxyType({"%": 0.01, "1": 1.0})
 _NEWTON: Mapping[str, float] = MappingProxyType({"n": 1.0, "kn": 1e3, "%bw": 0.01, "bw": 1.0})
 _RADIAN: Mapping[str, float] = MappingProxyType({"deg": pi / 180, "°": pi / 180, "rad": 1.0})
 _UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
-        "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
-        "phase": {"%": 0.01, "1": 1.0},
+        "time": _SECONDS,
+        "phase": _CYCLES,
         **dict.fromkeys(("force", *FORCES), _NEWTON),
         **dict.fromkeys(ANGLES, _RADIAN),
     }
@@ -58,6 +37,25 @@ _UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
 _ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z", "cycle": "phase"})
 _IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")
 """Columns of OrthoLoad that repeat others, or that wear does not need."""
+
+_HEADS = (*_UNITS, *_ORTHOLOAD, *_IGNORED_ORTHOLOAD)
+
+
+def read_table(path: Path, choice: HeadChoice) -> NumberTable:
+    """Read the table of a cycle: an OpenSim file (.mot, .sto), or columns with any separator.
+
+    Raises
+    ------
+    ValueError
+        The file is not a table, has too few or too many rows, or fewer rows than its header states.
+    OSError
+        The file cannot be read.
+    """
+    table = read_columns(path, _HEADS, choice)
+    if not _MIN_ROWS <= len(table) < _ROW_LIMIT:
+        raise ValueError(f"{path.name}: {len(table)} lines below the heads; a cycle has {_MIN_ROWS} to {_ROW_LIMIT}")
+    return table
+
 
 _OPENSIM_ANGLE = re.compile(r"(?:.*/)?hip_(flexion|adduction|rotation)_([rl])(?:/value)?")
 _OPENSIM_REACTION = re.compile(r"hip_([rl])_on_(femur|pelvis)(?:_[rl])?_in_(femur|pelvis|ground)(?:_[rl])?_f([xyz])")
@@ -84,7 +82,7 @@ class HipColumns:
     frame: str | None = None
 
 
-def extract_hip_columns(table: TextTable, body_weight: float | None, side: Side) -> HipColumns:
+def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
     """Extract the columns of the hip on one side from a table.
 
     Raises
@@ -95,75 +93,59 @@ def extract_hip_columns(table: TextTable, body_weight: float | None, side: Side)
     return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
 
 
-def _convert_text_columns(table: TextTable, body_weight: float | None) -> HipColumns:
+def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
     """Convert the columns of a text table to s, N and rad."""
     columns: dict[str, Numbers] = {}
-    parsed_heads = [parse_head(head) for head in table.heads]
-    orthoload = any(name in _ORTHOLOAD and name != "cycle" for name, _ in parsed_heads)
-    for head, (written, unit) in zip(table.heads, parsed_heads, strict=True):
-        if orthoload and written in _IGNORED_ORTHOLOAD:
+    orthoload = any(head.name in _ORTHOLOAD and head.name != "cycle" for head in table.heads)
+    for head in table.heads:
+        if orthoload and head.name in _IGNORED_ORTHOLOAD:
             continue
-        name = _ORTHOLOAD.get(written, written) if orthoload else written
-        factor = _unit_factor(name, unit, written, body_weight)
+        name = _ORTHOLOAD.get(head.name, head.name) if orthoload else head.name
+        check_names([name], _UNITS, "as a column")
         if name in columns:
             raise ValueError(f"the column {name} appears twice")
-        columns[name] = factor * table.numbers(head, name)
+        columns[name] = _unit_factor(name, head, body_weight) * table.numbers(head.name)
     if orthoload and "time" in columns:
         columns.pop("phase", None)  # repeats the time
     return HipColumns(columns=columns, force_on="ball" if orthoload else None, frame="femur" if orthoload else None)
 
 
-def parse_head(head: str) -> tuple[str, str | None]:
-    """Split a head such as 'Force [N]' into its name in small letters and its unit, if any.
-
-    Raises
-    ------
-    ValueError
-        The head is not a name with a unit.
-    """
-    name, unit = split_head(head)
-    match = _NAME.fullmatch(name)
-    if match is None:
-        raise ValueError(f"the head {shown(head)} is not a name with a unit, such as 'force [N]'")
-    return match[1].lower(), unit or None
-
-
-def _unit_factor(name: str, unit: str | None, written: str, body_weight: float | None) -> float:
-    """Return the factor that converts a column to s, N or rad; `written` is its name in the file."""
-    check_names([name], _UNITS, "as a column")
+def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
+    """Return the factor that converts a column to s, N or rad."""
     factors = _UNITS[name]
-    if unit is None:
+    if not head.unit:
         example = next(iter(factors)).replace("n", "N")
-        raise ValueError(f"the column {written} has no unit: write '{written} [{example}]' as its head")
-    plain = unit.replace(" ", "").lower().replace("degrees", "deg")
+        raise ValueError(f"the column {head.text} has no unit: write '{head.text} [{example}]' as its head")
+    plain = head.unit.replace(" ", "").lower().replace("degrees", "deg")
     if plain not in factors:
         allowed = ", ".join(factors)
-        raise ValueError(f"the unit {shown(unit)} of the column {written} is unknown; allowed: {allowed}")
+        raise ValueError(f"the unit {shown(head.unit)} of the column {name} is unknown; allowed: {allowed}")
     if "bw" not in plain:
         return factors[plain]
     if body_weight is None:
-        raise ValueError(f"the column {written} is in {unit}: set body_weight")
+        raise ValueError(f"the column {name} is in {head.unit}: set body_weight")
     return factors[plain] * body_weight
 
 
-def _convert_opensim_columns(table: TextTable, side: Side) -> HipColumns:
+def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
     letter = side.value[0]
-    columns = {"time": table.numbers("time", "time")} if "time" in table.heads else {}
+    names = [head.name for head in table.heads]
+    columns = {"time": table.numbers("time")} if "time" in names else {}
     reactions: set[tuple[str, str]] = set()
-    for head in table.heads:
+    for head in names:
         if (angle := _OPENSIM_ANGLE.fullmatch(head)) and angle[2] == letter:
-            columns[angle[1]] = _angle_factor(table) * table.numbers(head, head)
+            columns[angle[1]] = _angle_factor(table) * table.numbers(head)
         elif (force := _OPENSIM_REACTION.fullmatch(head)) and force[1] == letter:
             reactions.add((force[2], force[3]))
-            columns[_OPENSIM_AXES[force[4]]] = table.numbers(head, head)
+            columns[_OPENSIM_AXES[force[4]]] = table.numbers(head)
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
     return HipColumns(columns=columns, **_reaction_frame(reactions))
 
 
-def _angle_factor(table: TextTable) -> float:
+def _angle_factor(table: NumberTable) -> float:
     """Return the factor that converts the angles of an OpenSim table to rad."""
     if table.in_degrees is None:
         raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")

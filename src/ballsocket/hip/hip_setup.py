@@ -180,6 +180,7 @@ class HipSetup(OneLine):
         """Sentences on the cycle, the cup and the laws, for reports."""
         law_notes = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
         return (
+            *filter(None, [self.cycle.remark]),
             *self.cycle.notes,
             *self.frame.notes,
             *law_notes,

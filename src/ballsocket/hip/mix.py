@@ -103,6 +103,11 @@ class Mix:
         return notes if len({cycle.cup_tilt for cycle in self.activity_cycles}) == 1 else (*notes, _NO_COMMON_TILT)
 
     @property
+    def remark(self) -> str:
+        """Lines of the files of the activities that were left out."""
+        return "; ".join(cycle.remark for cycle in self.activity_cycles if cycle.remark)
+
+    @property
     def cup_tilt(self) -> float | None:
         """Tilt of the cup in rad by a standard; None if the activities have different ones."""
         tilts = {cycle.cup_tilt for cycle in self.activity_cycles}

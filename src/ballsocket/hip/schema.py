@@ -9,6 +9,7 @@ import msgspec
 
 from ..catalogue import catalogue
 from ..core.checks import shown
+from ..files.columns import HeadKeys
 from ..files.joint_file import CupTable, JointTables, ReportTable
 from ..files.schema import (
     QUANTITIES_SCHEMA,
@@ -90,7 +91,7 @@ _PARAMETERS = {parameter.key: parameter for cycle in CYCLES.values() for paramet
         for key, parameter in _PARAMETERS.items()
     }
 )
-class CycleKeys(Table, frozen=True, kw_only=True):
+class CycleKeys(HeadKeys, frozen=True, kw_only=True):
     """Cycle of loads and rotations: by name with its parameters, or from tables of measurements."""
 
     name: Annotated[CycleName | None, meaning("name of the cycle")] = None

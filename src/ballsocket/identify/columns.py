@@ -1,9 +1,8 @@
-"""Measurements from CSV or Parquet files, whose column heads are names and units."""
+"""Measurements from tables in files, whose column heads are names and units."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from math import inf
 from pathlib import Path
@@ -15,15 +14,16 @@ from ..core.arrays import Numbers
 from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..files.columns import read_columns, split_head
+from ..files.columns import ALL_COLUMNS, HeadChoice, read_columns
+from ..files.head_names import UNCERTAINTY
 from ..files.units import parse
 from .machine import IDEAL_MACHINE, Machine
-from .measured import ALIASES, MEASURED, Measured
+from .measured import MEASURED, Measured
 
 _QUANTITIES = {**MEASURED, "angle": FIELD["angle"]}
+_KINDS = {name + end: quantity.kind for name, quantity in _QUANTITIES.items() for end in ("", UNCERTAINTY)}
 _LOADS = ("force", "indentation", "half_angle")
 _MAX_ROWS = 8  # rows that a message names
-_UNCERTAINTY = "_uncertainty"
 
 
 class Gaps(Enum):
@@ -31,43 +31,6 @@ class Gaps(Enum):
 
     REFUSE = "refuse"
     LEAVE_OUT = "leave-out"
-
-
-@dataclass(frozen=True)
-class Head:
-    """Parsed column head: name of the quantity, and factor from its unit to mm, N, MPa, rad."""
-
-    name: str
-    factor: float
-
-
-def parse_head(text: str) -> Head:
-    """Parse a column head with a unit, such as "force_N", "indentation_um" or "area [mm2]".
-
-    Raises
-    ------
-    ValueError
-        A name that is not known; a missing unit, or the unit of another quantity.
-    """
-    plain = "_".join(filter(None, split_head(text))).replace(" ", "_")
-    for alias, name in ALIASES.items():
-        if plain == alias or plain.startswith(f"{alias}_"):
-            plain = name + plain.removeprefix(alias)
-    known = [name for name in _QUANTITIES if plain == name or plain.startswith(f"{name}_")]
-    if not known:
-        raise ValueError(
-            f"column {shown(text)} is not known: a head is a name and a unit, such as force_N, indentation_um"
-        )
-    name = max(known, key=len)
-    unit, kind = plain[len(name) :], _QUANTITIES[name].kind
-    if unit.startswith(_UNCERTAINTY):
-        name, unit = name + _UNCERTAINTY, unit[len(_UNCERTAINTY) :]
-    unit = unit.removeprefix("_").replace("_per_", "/").replace("_", " ")
-    if kind is Kind.NUMBER:
-        return Head(name, parse(text, f"1 {unit}".strip(), kind))
-    if not unit:
-        raise ValueError(f"column {shown(text)} has no unit: use {name}_{kind.column_suffix}, or another unit")
-    return Head(name, parse(f"the unit of {text}", f"1 {unit}", kind))
 
 
 def read_measured(
@@ -80,12 +43,13 @@ def read_measured(
     saturation: float = inf,
     machine: Machine = IDEAL_MACHINE,
     gaps: Gaps = Gaps.REFUSE,
+    heads: HeadChoice = ALL_COLUMNS,
 ) -> tuple[Measured, ...]:
-    """Read measurements from a CSV or Parquet file, one data set for each measured quantity.
+    """Read measurements from a table in a file, one data set for each measured quantity.
 
-    Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation_um", "half_angle_deg",
+    Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation [um]", "half_angle_deg",
     "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
-    have heads such as "indentation_uncertainty_um". Lines before the heads that begin with # are skipped.
+    have heads such as "indentation_uncertainty_um". The forms of tables are those of `ballsocket.files.columns`.
 
     Parameters
     ----------
@@ -105,6 +69,8 @@ def read_measured(
         Machine that reads the indentations.
     gaps : Gaps
         Treatment of rows in which a number is missing: an error, or omission.
+    heads : HeadChoice
+        Columns of the file that get another name, or that are not used.
 
     Returns
     -------
@@ -118,7 +84,8 @@ def read_measured(
         The file cannot be read.
     """
     path = Path(path)
-    columns = _read_columns(path)
+    table = read_columns(path, _KINDS, heads)
+    columns = table.in_units(_KINDS)
     kind = _choose_load(columns, load, path.name)
     chosen = list(quantities) or [name for name in columns if name in MEASURED and name != kind]
     if not chosen:
@@ -127,8 +94,8 @@ def read_measured(
     for name in chosen:
         if name not in columns:
             raise ValueError(f"{path.name} has no column of {name}; its columns are {', '.join(columns)}")
-        heads = [head for head in (kind, name, name + _UNCERTAINTY, kind + _UNCERTAINTY, "angle") if head in columns]
-        rows, order = _complete_rows(path.name, {head: columns[head] for head in heads}, gaps)
+        needed = (kind, name, name + UNCERTAINTY, kind + UNCERTAINTY, "angle")
+        rows, order = _complete_rows(path.name, {head: columns[head] for head in needed if head in columns}, gaps)
         sets.append(
             Measured(
                 quantity=name,
@@ -138,29 +105,12 @@ def read_measured(
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
+                remark=table.remark(len(table) - len(order)),
                 **_load_arguments(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
     return tuple(sets)
-
-
-def _read_columns(path: Path) -> dict[str, Numbers]:
-    """Read the columns of a file by name, converted to mm, N, MPa, rad."""
-    heads: dict[str, Head] = {}
-
-    def parse_heads(texts: Sequence[str]) -> None:
-        """Parse all column heads; raise ValueError for duplicates."""
-        for text in texts:
-            try:
-                heads[text] = parse_head(text)
-            except ValueError as error:
-                raise ValueError(f"{path.name}: {error}") from error
-        names = [head.name for head in heads.values()]
-        if len(names) < len(texts) or len(set(names)) < len(names):
-            raise ValueError(f"{path.name} has two columns with the same name: {', '.join(texts)}")
-
-    return {heads[text].name: heads[text].factor * column for text, column in read_columns(path, parse_heads).items()}
 
 
 def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
@@ -190,8 +140,8 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
 
 def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
     """Return the uncertainties of a quantity, from its column or as stated for the file; None if unknown."""
-    if name + _UNCERTAINTY in rows:
-        return rows[name + _UNCERTAINTY]
+    if name + UNCERTAINTY in rows:
+        return rows[name + UNCERTAINTY]
     if stated is None:
         return None
     return parse_uncertainty(_QUANTITIES[name], stated, rows[name])
@@ -199,7 +149,7 @@ def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | 
 
 def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
     """Parse an uncertainty: "2 %" of each value, a text with a unit, or a number."""
-    name = f"{quantity.name}{_UNCERTAINTY}"
+    name = f"{quantity.name}{UNCERTAINTY}"
     percent = number_of_percent(stated)
     if percent is not None:
         return parse(name, percent, Kind.NUMBER) / 100 * abs(values)
@@ -210,4 +160,4 @@ def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: fl
     """Return load and load uncertainty as keyword arguments of `Measured`."""
     if not kind:
         return {}
-    return {kind: rows[kind], "load_uncertainty": rows.get(kind + _UNCERTAINTY, load_uncertainty)}
+    return {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}

@@ -13,6 +13,7 @@ from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
+from ..files.columns import HeadKeys
 from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
@@ -50,7 +51,7 @@ _QUANTITIES = {
     **{name: observable.described for name, observable in FILE_OBSERVABLES.items()},
 }
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
-_FILE_KEYS = ("quantities", "load", "gaps")
+_FILE_KEYS = ("quantities", "load", "gaps", "columns", "skip")
 """Keys of data in a file only; other data list their values."""
 
 
@@ -166,10 +167,10 @@ class MachineTable(Table, frozen=True, kw_only=True):
         for name, observable in FILE_OBSERVABLES.items()
     }
 )
-class DataTable(Table, frozen=True, kw_only=True):
+class DataTable(HeadKeys, frozen=True, kw_only=True):
     """Set of data with its loads: columns of a file, or a quantity with its values."""
 
-    file: Annotated[Text | None, meaning("CSV or Parquet file, whose heads have units")] = None
+    file: Annotated[Text | None, meaning("table of measurements, whose heads have units")] = None
     quantities: Annotated[Texts | None, meaning("measured columns; all by default")] = None
     load: Annotated[Text | None, meaning("column of the load; force by default")] = None
     gaps: Annotated[GapsName | None, meaning("rows with a missing number; refuse by default")] = None
@@ -281,7 +282,7 @@ def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder:
 
 
 def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -> tuple[Measured, ...]:
-    """Read the sets of data of a table that names a CSV or Parquet file."""
+    """Read the sets of data of a table that names a file."""
     load = str(table.load or "")
     return read_measured(
         folder / (table.file or ""),
@@ -290,6 +291,7 @@ def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -
         uncertainty=None if table.uncertainty is None else table.uncertainty.value,
         load_uncertainty=_parse_load_uncertainty(table, load or "force"),
         gaps=Gaps.REFUSE if table.gaps is None else Gaps(table.gaps),
+        heads=table.choice(),
         **common,
     )
 

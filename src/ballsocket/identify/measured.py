@@ -74,6 +74,8 @@ class Measured:
         Custom quantity; `quantity` is then its name.
     name : str
         Name of the data set in messages and figures, such as its file.
+    remark : str
+        Rows of the file that were read, and lines that were left out; empty without such lines.
 
     Raises
     ------
@@ -102,6 +104,7 @@ class Measured:
     order: Any = None
     observable: CustomObservable | None = None
     name: str = ""
+    remark: str = ""
     described: Quantity = field(init=False)
     """Quantity with its title and unit."""
     load: str = field(init=False, default="")

@@ -57,7 +57,8 @@ class IdentificationResult(FittedModel):
             _machine_notes,
             _validity_notes,
         )
-        return tuple(note for write in writers for note in write(self))
+        remarks = dict.fromkeys(measured.remark for measured in self.data if measured.remark)
+        return (*remarks, *(note for write in writers for note in write(self)))
 
     @cached_property
     def next(self) -> Experiment:

@@ -179,9 +179,10 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
     """Print the name of a hip, if any, the first cycle, the wear at each report, contacts, film, accuracy and notes."""
     terminal, use, first = console(units), history.use, history.use.first
     print_joint(terminal, use.joint, start=f"{name}: " if name else "")
+    remark = f" ({use.cycle.remark})" if use.cycle.remark else ""
     print_folded(
         terminal,
-        f"{use.cycle.name}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
+        f"{use.cycle.name}{remark}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
         f"cross-shear {first.cross_shear:.3g}, up to {first.max_force:.4g} N and {first.max_pressure:.4g} MPa",
         "",
     )
@@ -204,7 +205,7 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
         print_folded(terminal, lubricant_line(history), "dim")
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
     print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
-    print_notes(history.notes, units)
+    print_notes([note for note in history.notes if note != use.cycle.remark], units)
 
 
 def print_bands(bands: Bands, units: Units = Units.SI) -> None:

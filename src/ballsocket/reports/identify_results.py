@@ -209,13 +209,15 @@ def print_identified(result: IdentificationResult, posterior: Posterior | None) 
         print_columns(terminal, _sensitivity_table(result))
     print_columns(terminal, _next_table(result))
     for note in result.notes:
-        print_folded(terminal, note, "dim")
+        if note not in [data.remark for data in result.data]:
+            print_folded(terminal, note, "dim")
 
 
 def _data_text(result: IdentificationResult) -> str:
     """Count the measured values of each data set."""
     sets = ", ".join(f"{len(data)} x {data.quantity}" for data in result.data)
-    return f"{len(result.misfit.value)} values ({sets})"
+    remarks = dict.fromkeys(data.remark for data in result.data if data.remark)
+    return "; ".join([f"{len(result.misfit.value)} values ({sets})", *remarks])
 
 
 def _scatter_text(result: IdentificationResult) -> str:

@@ -115,7 +115,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
         "points": size,
         "valid": report.valid == size,
         **({"verdicts": {verdict.word: n for verdict, n in report.verdicts.items()}} if report.verdicts else {}),
-        "notes": report.notes(study),
+        "notes": [*filter(None, [study.attrs.get("comment")]), *report.notes(study)],
         "quantities": quantities,
         "values": _values(study) if size <= _MAX_LISTED else None,
     }
@@ -299,7 +299,8 @@ def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
 def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
     """Print least, median and largest value of each result, with the coordinates of the ends."""
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
-    Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
+    remark = f"; {study.attrs['comment']}" if "comment" in study.attrs else ""
+    Console().print(f"{study.attrs['model']}, {shape or 'one point'}{remark}", highlight=False)
     _print_held(held_in(study), units)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
     report = StudyReport.of(study)

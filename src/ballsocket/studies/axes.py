@@ -210,6 +210,8 @@ class TableAxis(Axis):
 
     columns: Mapping[str, Numbers]
     name: str = "row"
+    remark: str = ""
+    """Rows of the file that were read, and lines that were left out; empty without such lines."""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
 from ..core.storage.atomic_files import check_local
-from ..files.columns import read_columns
+from ..files.columns import ALL_COLUMNS, HeadChoice, read_columns
 from ..problem import Joint, Material
 from .axes import (
     MAX_COUNT,
@@ -281,15 +281,17 @@ def sample(
     return Design((axis,))
 
 
-_COLUMN_NAMES = {quantity.column: name for name, quantity in PARAMETERS.items()}
-"""Parameters by their column heads with units, such as `ball_radius_mm`."""
+def table(path: str | Path, heads: HeadChoice = ALL_COLUMNS) -> Design:
+    """Create a design from the rows of a table in a file with a column for each parameter.
 
+    A bare name is in mm, N, MPa or rad. A name may have a unit: `ball_radius_mm`, `force_N`, `half_angle_deg`, or
+    "force [kN]". The forms of tables are those of `ballsocket.files.columns`.
 
-def table(path: str | Path) -> Design:
-    """Create a design from the rows of a CSV or Parquet file with a column for each parameter.
-
-    A bare name is in mm, N, MPa or rad. A name may end in its unit as in the CSV of a study: `ball_radius_mm`,
-    `force_N`, `half_angle_deg` (in degrees).
+    Parameters
+    ----------
+    path : str or Path
+    heads : HeadChoice
+        Columns of the file that get another name, or that are not used.
 
     Raises
     ------
@@ -301,21 +303,12 @@ def table(path: str | Path) -> Design:
     """
     check_local(path)
     path = Path(path)
-    columns = {}
-    for head, values in read_columns(path, lambda heads: _check_heads(heads, path.name)).items():
-        name = _COLUMN_NAMES.get(head, head)
-        numbers = parameter_values(name, values, position=f" in row {{}} of {path.name}")
-        columns[name] = numbers if name == head else numbers / PARAMETERS[name].written.factor
-    return Design((TableAxis(columns),))
-
-
-def _check_heads(heads: Sequence[str], title: str) -> None:
-    """Raise ValueError for a column head that is not a parameter or appears twice."""
-    names: set[str] = set()
-    for name in (_COLUMN_NAMES.get(head, head) for head in heads):
-        check_names([name], PARAMETERS, f"among the columns of {title}")
-        if name in names:
-            raise ValueError(f"{title} has {name} twice")
-        names.add(name)
-    if not names:
-        raise ValueError(f"{title} has no columns")
+    rows = read_columns(path, PARAMETERS, heads)
+    if not len(rows):
+        raise ValueError(f"{path.name} has no rows of numbers")
+    kinds = {name: parameter.kind for name, parameter in PARAMETERS.items()}
+    columns = {
+        name: parameter_values(name, values, position=f" in row {{}} of {path.name}")
+        for name, values in rows.in_units(kinds, {name: kind.unit for name, kind in kinds.items()}).items()
+    }
+    return Design((TableAxis(columns, remark=rows.remark()),))

@@ -15,6 +15,7 @@ from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import address_of, check_local
+from ..files.columns import HeadKeys
 from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
@@ -180,10 +181,10 @@ class SamplesTable(Table, frozen=True, kw_only=True):
     ] = None
 
 
-class RowsTable(Table, frozen=True, kw_only=True):
+class RowsTable(HeadKeys, frozen=True, kw_only=True):
     """Table of cases."""
 
-    path: Annotated[Text, meaning("CSV or Parquet file with a column for each parameter")]
+    path: Annotated[Text, meaning("table in a file with a column for each parameter")]
 
 
 class EngineTable(Table, frozen=True, kw_only=True):
@@ -290,7 +291,7 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if tables.table is not None:
         path = check_filled("path", tables.table.path)
         check_local(path)
-        design = table(folder / path) * design
+        design = table(folder / path, tables.table.choice()) * design
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design

@@ -20,7 +20,7 @@ from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
 from ..core.validity import Status
-from .axes import Axis, MaterialAxis, SampleAxis
+from .axes import Axis, MaterialAxis, SampleAxis, TableAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
 from .task import BOUNDS, VERDICT, Task
@@ -77,6 +77,7 @@ def variable_attributes(name: str) -> dict[str, Any]:
 
 def study_attributes(task: Task) -> dict[str, Any]:
     """Return the attributes of a study: title, model, joint, design, publications and version."""
+    remarks = [axis.remark for axis in task.design.axes if isinstance(axis, TableAxis) and axis.remark]
     labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
     return {
         "title": f"{task.model.title}, pressed at {task.design.size} points",
@@ -90,6 +91,7 @@ def study_attributes(task: Task) -> dict[str, Any]:
         _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
         _MISSING: json.dumps(_missing_reasons(task), ensure_ascii=False),
         "Conventions": "CF-1.10",
+        **({"comment": "; ".join(remarks)} if remarks else {}),
         **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
 

@@ -1,0 +1,187 @@
+"""Cells of tables in text and in Excel files: encodings, separators and decimal marks."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from io import BytesIO
+from math import nan
+from typing import Any
+
+from ..core.checks import needs
+
+_MAX_SHEET_BYTES = 200_000_000
+"""Largest size in bytes of the content of an Excel file."""
+
+_SEPARATORS = ";\t, "
+_MARKS = (".", ",")
+_BLANKS = " '\u2019\u00a0\u2009\u202f"
+"""Blanks and apostrophes between thousands."""
+
+_WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))
+"""Words of numbers that are not finite, in small letters."""
+
+_NO_NUMBER = frozenset(("", "-", "--", "---", "n/a", "na", "#n/a", "null", "none"))
+"""Cells for a missing number, in small letters."""
+
+# possessive quantifiers (*+, ++) keep the matching time proportional to the length
+_FORMS = {
+    mark: re.compile(
+        rf"[-+]?(?:(?:[1-9]\d{{0,2}}(?:[{other}{_BLANKS}]\d{{3}})++|\d++)(?:{re.escape(mark)}\d*+)?"
+        rf"|{re.escape(mark)}\d++)(?:[eE][-+]?\d{{1,4}})?",
+        re.ASCII,
+    )
+    for mark, other in (_MARKS, _MARKS[::-1])
+}
+"""Numbers with a decimal mark, and with the other mark or blanks between thousands."""
+
+_ANY_FORM = re.compile("|".join(form.pattern for form in _FORMS.values()), re.ASCII)
+
+_DECIMALS = {mark: str.maketrans(mark, ".", _BLANKS + other) for mark, other in (_MARKS, _MARKS[::-1])}
+"""Translations of numbers to those of Python."""
+
+_BLANKS_AT_BRACKETS = re.compile(r"(?<=[^\s\])])\s++(?=[\[(])|(?<=[\[(])\s++|\s++(?=[\])])|(?<=%)\s++(?=\w)")
+
+Cell = str | float
+"""Content of a cell: text, or a number of an Excel file."""
+
+NumberedRow = tuple[int, Sequence[Cell]]
+"""Number of a line, and its cells."""
+
+
+def decode_text(raw: bytes) -> str:
+    """Decode text in UTF-8 or UTF-16, with or without a byte order mark, or in cp1252, the code page of Windows.
+
+    Raises
+    ------
+    ValueError
+        Bytes that are no text.
+    """
+    wide = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}.get(raw[:2])
+    if wide is None and b"\0" in raw[:2]:
+        wide = "utf-16-be" if raw[:1] == b"\0" else "utf-16-le"
+    for encoding in [wide] if wide else ["utf-8-sig", "cp1252"]:
+        try:
+            text = raw.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if "\0" not in text:
+            return text.replace("\r\n", "\n").replace("\r", "\n").replace("\u2212", "-")
+    raise ValueError("it is not text in UTF-8, UTF-16 or cp1252")
+
+
+def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
+    """Yield each possible separator of cells and the cells of all lines; comments (#) have none.
+
+    Raises
+    ------
+    ValueError
+        A quote that does not close, with all separators.
+    """
+    errors, n_tables = [], 0
+    for separator in _SEPARATORS:
+        if separator in ";\t" and separator not in text:
+            continue
+        lines = text.split("\n")
+        if separator == " ":
+            lines = [_BLANKS_AT_BRACKETS.sub("", line.replace("\t", " ").strip()) for line in lines]
+        plain = ("\n" if line.startswith("#") else f"{line}\n" for line in lines)
+        reader = csv.reader(plain, delimiter=separator, skipinitialspace=True, strict=True)
+        try:
+            rows: list[NumberedRow] = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
+        except csv.Error as error:
+            errors.append(f"it is not a table in text: {error}, in line {reader.line_num}")
+            continue
+        n_tables += 1
+        yield separator, rows
+    if not n_tables:
+        raise ValueError(errors[0])
+
+
+def read_excel(raw: bytes) -> list[NumberedRow]:
+    """Return the rows of an Excel file (.xlsx); a row with two words begins each further sheet.
+
+    Raises
+    ------
+    ValueError
+        Another content, or one that is too large.
+    ImportError
+        The extra `xlsx` is not installed.
+    """
+    from zipfile import BadZipFile, ZipFile
+
+    needs("xlsx", "openpyxl")
+    from openpyxl import load_workbook
+
+    rows: list[NumberedRow] = []
+    try:
+        with ZipFile(BytesIO(raw)) as archive:
+            if sum(member.file_size for member in archive.infolist()) > _MAX_SHEET_BYTES:
+                raise ValueError(f"its content is larger than {_MAX_SHEET_BYTES // 1_000_000} MB")
+        for sheet in load_workbook(BytesIO(raw), read_only=True, data_only=True).worksheets:
+            rows += [(0, ["sheet", sheet.title])] if rows else []
+            rows += [(number, [_excel_cell(cell) for cell in cells]) for number, cells in enumerate(sheet.rows, 1)]
+    except (BadZipFile, KeyError, TypeError, OSError) as error:
+        raise ValueError(f"it is not a readable .xlsx file: {error}") from error
+    return rows
+
+
+def _excel_cell(cell: Any) -> Cell:
+    """Return the content of a cell of an Excel file; a percentage as text, because its number is 100 times smaller."""
+    value = cell.value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return f"{100 * value:g} %" if "%" in cell.number_format else float(value)
+    return "" if value is None else str(value).strip()
+
+
+def is_data(cells: Iterable[Cell]) -> bool:
+    """Return True if a row has a number, or a word such as "nan"."""
+    return any(not isinstance(cell, str) or _ANY_FORM.fullmatch(cell) or cell.lower() in _WORDS for cell in cells)
+
+
+def count_words(cells: Iterable[Cell]) -> int:
+    """Count the cells of a row that are neither empty nor a sign for a missing number."""
+    return sum(str(cell).lower() not in _NO_NUMBER for cell in cells)
+
+
+def decimal_mark(cells: Iterable[tuple[int, Cell]], separator: str) -> str:
+    """Find the decimal mark with which all numbers in cells can be read; each cell has its line.
+
+    Numbers between commas have a decimal point unless one of them contains a comma.
+
+    Raises
+    ------
+    ValueError
+        Numbers with both marks, or only such with one mark that may also stand between thousands.
+    """
+    settled: dict[str, tuple[int, str]] = {}
+    ambiguous: tuple[int, str] | None = None
+    for line, cell in cells:
+        if not isinstance(cell, str) or not any(mark in cell for mark in _MARKS if mark not in settled):
+            continue
+        marks = [mark for mark, form in _FORMS.items() if form.fullmatch(cell)]
+        if len(marks) == 1:
+            settled.setdefault(marks[0], (line, cell))
+        elif marks and ("," in cell or separator != ","):
+            ambiguous = ambiguous or (line, cell)
+    if len(settled) == len(_MARKS):
+        (line, point), (other, comma) = settled["."], settled[","]
+        raise ValueError(f"line {line} has a decimal point in {point}, and line {other} a decimal comma in {comma}")
+    if not settled and ambiguous:
+        line, cell = ambiguous
+        whole = re.sub("[.,]", "", cell)
+        raise ValueError(
+            f"line {line} has {cell}, which may be {whole} or {cell.replace(',', '.')}: write {whole} without a mark "
+            f"between thousands, or {cell}0 with another number of decimals"
+        )
+    return next(iter(settled), ".")
+
+
+def cell_number(cell: Cell, mark: str) -> float:
+    """Return the number in a cell with a decimal mark; NaN for other text."""
+    if not isinstance(cell, str):
+        return cell
+    if _FORMS[mark].fullmatch(cell):
+        return float(cell.translate(_DECIMALS[mark]))
+    return float(cell) if cell.lower() in _WORDS else nan

@@ -1,0 +1,62 @@
+"""Names of columns in tables: the names that laboratories and their machines use, in English and German."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
+
+_LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
+
+_OTHER_NAMES = {
+    "time": "zeit pruefzeit test_time elapsed_time",
+    "phase": "gait_cycle gangzyklus",
+    "force": "load compressive_load axial_force axial_load standard_force kraft last standardkraft pruefkraft "
+    "axialkraft druckkraft normalkraft",
+    "force_x": "kraft_x",
+    "force_y": "kraft_y",
+    "force_z": "kraft_z",
+    "indentation": "displacement extension compressive_extension compressive_displacement standard_travel eindrueckung "
+    "weg standardweg traversenweg verschiebung",
+    "flexion": "beugung flexion_extension",
+    "adduction": "adduktion",
+    "rotation": "drehung internal_rotation innenrotation",
+    "angle": "winkel",
+    "half_angle": "contact_half_angle",
+    "area": "contact_area flaeche kontaktflaeche",
+    "pressure": "contact_pressure druck kontaktdruck",
+    "max_pressure": "maximum_pressure peak_pressure maximaldruck spitzendruck",
+    "stiffness": "steifigkeit",
+    "clearance": "radial_clearance",
+    "diametral_clearance": "diameter_clearance durchmesserspiel",
+    "cycles": "zyklen lastwechsel",
+    "volume": "wear_volume verschleissvolumen",
+    "mass": "masse mass_loss masseverlust",
+    "station": "specimen probe pruefling",
+}
+
+HEAD_NAMES: Mapping[str, str] = MappingProxyType(
+    {other: name for name, others in _OTHER_NAMES.items() for other in others.split()}
+)
+"""Names of quantities by other plain names; a displacement is positive into the socket, and 0 at first touch."""
+
+UNCERTAINTY = "_uncertainty"
+"""End of the name of a column with the standard uncertainties of another column."""
+
+
+def known_head(plain: str, names: Collection[str]) -> str:
+    """Return the one of the known names that a plain name means; "" for another one."""
+    base = plain.removesuffix(UNCERTAINTY)
+    name = plain if plain in names else HEAD_NAMES.get(base, "") + plain[len(base) :]
+    return name if name in names else ""
+
+
+def plain_name(text: str) -> str:
+    """Return a name in small letters without accents, with "_" between its words.
+
+    Examples
+    --------
+    >>> plain_name("Max. Eindrückung ")
+    'max_eindrueckung'
+    """
+    letters = text.lower().translate(_LETTERS).replace("ß", "ss")
+    return "_".join("".join(char if char.isalnum() else " " for char in letters).split())

@@ -1,0 +1,178 @@
+"""Tables as machines and offices write them: every form of the same three readings has the same numbers."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from ballsocket.files import columns
+from ballsocket.files.columns import HeadChoice, read_columns
+from ballsocket.hip.cycle_file import parse_cycle
+from ballsocket.identify.file import read_identify
+
+from ..cli.command import run
+
+NAMES = ("time", "force", "indentation", "indentation_uncertainty")
+TRUTH = {"time": [0.0, 0.25, 0.5], "force": [300.0, 1250.5, 2000.0], "indentation": [0.01, 0.0255, 0.04]}
+FACTORS = {"": 1, "s": 1, "ms": 1e-3, "N": 1, "kN": 1e3, "mm": 1, "um": 1e-3, "µm": 1e-3, "cm": 10, "m": 1e3}
+POINTS = "0,300,10\n0.25,1250.5,25.5\n0.5,2000,40\n"
+COMMAS = "0;300;10\n0,25;1250,5;25,5\n0,5;2000;40\n"
+HEADS = "time_s,force_N,indentation_um\n"
+SEMICOLONS = "Zeit [s];Kraft [N];Eindrückung [µm]\n"
+BLUEHILL = '"Results Table 1"\n"","Maximum Load","Modulus"\n"","(N)","(MPa)"\n"1","2000.0","812.3"\n\n"Raw Data"\n'
+ZWICK = "Prüfprotokoll\nPrüfer;Mayer\nVorkraft;5;N\n\nPrüfzeit;Standardkraft;Standardweg\ns;N;µm\n"
+FORMS = [  # text, encoding, number of lines that are left out
+    (HEADS + POINTS, "utf-8", 0),
+    (HEADS + POINTS, "utf-8-sig", 0),
+    (HEADS + POINTS, "utf-16", 0),
+    (HEADS + POINTS, "utf-16-le", 0),
+    (HEADS + POINTS, "utf-16-be", 0),
+    ((HEADS + POINTS).replace("\n", "\r\n"), "utf-8", 0),
+    ((HEADS + POINTS).replace("\n", "\r"), "utf-8", 0),
+    (HEADS + POINTS.rstrip(), "ascii", 0),
+    ((HEADS + POINTS).replace(",", ";"), "utf-8", 0),
+    ((HEADS + POINTS).replace(",", "\t"), "utf-8", 0),
+    ((HEADS + POINTS).replace(",", " "), "utf-8", 0),
+    ((HEADS + POINTS).replace(",", "    "), "utf-8", 0),
+    ((HEADS + POINTS).replace(",", ", "), "utf-8", 0),
+    (HEADS.replace(",", ";") + COMMAS, "utf-8", 0),
+    (HEADS.replace(",", "\t") + COMMAS.replace(";", "\t"), "utf-8", 0),
+    (HEADS.replace(",", " ") + COMMAS.replace(";", " "), "utf-8", 0),
+    (SEMICOLONS + COMMAS, "cp1252", 0),
+    (SEMICOLONS + COMMAS, "utf-8-sig", 0),
+    (SEMICOLONS.replace(";", "\t") + COMMAS.replace(";", "\t"), "utf-16", 0),
+    (SEMICOLONS + COMMAS.replace("\n", ";\n"), "cp1252", 0),
+    ("sep=;\n" + SEMICOLONS + COMMAS, "cp1252", 1),
+    ("Zeit in s;Kraft in N;Weg in µm\n" + COMMAS, "cp1252", 0),
+    ("Zeit / s;Kraft / N;Weg / µm\n" + COMMAS, "cp1252", 0),
+    ("Zeit, s;Kraft, N;Weg, µm\n" + COMMAS, "cp1252", 0),
+    ("Time (s),Load (N),Extension (um)\n" + POINTS, "utf-8", 0),
+    ("Time [ms],Force [kN],Displacement [mm]\n0,0.3,0.01\n250,1.2505,0.0255\n500,2,0.04\n", "utf-8", 0),
+    ("Time,Load,Extension\n(s),(N),(um)\n" + POINTS, "utf-8", 0),
+    ("Zeit;Kraft;Weg\n[s];[N];[µm]\n" + COMMAS, "cp1252", 0),
+    ("time force indentation\ns N um\n" + POINTS.replace(",", " "), "utf-8", 0),
+    ("time [s]  force [ N ]  indentation [um]\n" + POINTS.replace(",", "  "), "utf-8", 0),
+    (BLUEHILL + '"Time","Extension","Load"\n"(s)","(mm)","(N)"\n"0","0.01","300"\n"0.25","0.0255","1250.5"\n'
+     '"0.5","0.04","2000"\n', "utf-8", 5),
+    ("Time,Extension,Load\n(s),(mm),(N)\n0,0.01,300\n0.25,0.0255,1250.5\n0.5,0.04,2000\n\n" + BLUEHILL, "utf-8", 5),
+    (ZWICK + "0,0000;300,00;10,00\n0,2500;1250,50;25,50\n0,5000;2000,00;40,00\n", "cp1252", 3),
+    (ZWICK + "0,0;300,0;10,0\n\n0,25;1.250,5;25,5\n0,5;2.000;40\nEnde der Prüfung\n", "cp1252", 5),
+    ('"time_s";"force_N";"indentation_um"\n"0";"300";"10"\n"0,25";"1.250,50";"25,5"\n"0,5";"2.000";"40"\n', "utf-8", 0),
+    ('time_s,force_N,indentation_um\n0,"300.0",10\n0.25,"1,250.5",25.5\n0.5,"2,000",40\n', "utf-8", 0),
+    ("time_s;force_N;indentation_um\n0;300;10\n0,25;1 250,5;25,5\n0,5;2\u202f000;40\n", "utf-8", 0),
+    ("time_s;force_N;indentation_um\n0;300;10\n0.25;1'250.5;25.5\n0.5;2’000;40\n", "cp1252", 0),
+    ('time_s,force_N,indentation_um\n"0","300","10"\n"0,25","1250,5","25,5"\n"0,5","2000","40"\n', "utf-8", 0),
+    (HEADS + "0e0,3E+2,1.e1\n25e-2,1.2505e3,+25.5\n.5,2000.,40\n", "utf-8", 0),
+    ("# made by hand\n\n" + HEADS + "0,300,10\n# a pause\n0.25,1250.5,25.5\n\n,,\n0.5,2000,40\n", "utf-8", 3),
+    (HEADS + POINTS + "\n# end\n,,\n", "utf-8", 0),
+    (HEADS + POINTS + "mean of all,see page 2,\n1,2,3\n", "utf-8", 2),
+    ("Name: A, B\nDate 2024-05-06 10:00\n\n" + HEADS + POINTS, "utf-8", 2),
+    ("Test 7\nspecimen,area\n1,2\n" + HEADS + POINTS, "utf-8", 3),
+    ("time_s,force_N,indentation_m\n0,300,1e-5\n0.25,1250.5,2.55e-5\n0.5,2000,4e-5\n", "utf-8", 0),
+    ("Force [N];Compressive extension [mm];Test time\n300;0,01;0\n1250,5;0,0255;0,25\n2000;0,04;0,5\n", "utf-8", 0),
+]  # fmt: skip
+
+
+def check_truth(read):
+    """Check the numbers of a table."""
+    assert {head.name for head in read.heads} >= {"force", "indentation"}
+    for head, values in read.items():
+        assert FACTORS[head.unit] * values == pytest.approx(TRUTH[head.name], rel=1e-12), head
+
+
+def write(folder, text, encoding="utf-8", name="press.csv"):
+    (folder / name).write_bytes(text.encode(encoding))
+    return folder / name
+
+
+@pytest.mark.parametrize(("text", "encoding", "n_left_out"), FORMS, ids=range(len(FORMS)))
+def test_all_forms_have_the_same_numbers_and_count_the_lines_that_are_left_out(text, encoding, n_left_out, tmp_path):
+    read = read_columns(write(tmp_path, text, encoding), NAMES)
+    check_truth(read)
+    assert sum(read.left_out.values()) == n_left_out
+    assert bool(read.remark()) == bool(n_left_out)
+
+
+TWO = "force_N;indentation_mm\n"
+CHOSEN = [  # text, choice, force in N
+    ("K1;T;force_kN\n300;20;1\n", {"columns": {"K1": "force_N"}, "skip": ["T", "force_kN"]}, 300.0),
+    ("K1 [kN];T [°C]\n0,3;20\n", {"columns": {"K1": "force"}, "skip": ["T"]}, 300.0),
+    ("K1;T\nkN;°C\n0,3;20\n", {"columns": {"K1": "force"}, "skip": "T"}, 300.0),
+    (";force_N\n1;300\n", {"skip": [""]}, 300.0),
+]
+REFUSED = [  # text, choice, message
+    (TWO + "300;3.000\n", {}, "line 2 has 3.000, which may be 3000 or 3.000: write 3000 without a mark"),
+    (TWO + "300;3,000\n", {}, "line 2 has 3,000, which may be 3000 or 3.000: .* or 3,0000 with another"),
+    ('force_N,indentation_um\n"1,050",32\n', {}, "line 2 has 1,050, which may be 1050 or 1.050"),
+    (TWO + "0,25;1\n1.5;2\n", {}, "line 3 has a decimal point in 1.5, and line 2 a decimal comma in 0,25"),
+    ("force_N,indentation_mm\n0,5,1,5\n", {}, "line 2 has 4 cells, and there are 2 columns: decimal commas need"),
+    (TWO + "1;2\n\n" + TWO + "3;4\n", {}, "several tables with these columns, in lines 1, 4: keep one"),
+    ("force_N;Weg in Zoll;T\n1;2;3\n", {}, "column 'T' is not known; known: time, .*; columns = .'T' = .*skip = .'T'."),
+    ("K1 [kN]\n3\n", {"columns": {"K1": "force_N"}}, "'force_N' for 'K1 .kN.', but the file has the unit kN"),
+    ("K1 [kN]\n3\n", {"columns": {"K1": "fors_N"}}, "columns names 'fors_N' for 'K1 .kN.'; did you mean 'force'"),
+    (TWO + "1;2\n", {"skip": ["Zeit"]}, "skip names 'Zeit', but the columns are 'force_N', 'indentation_mm'"),
+    (";force_N\n1;300\n", {}, "a column of numbers has no head: name it, or skip it with skip = "),
+    ("", {}, "it has no line of column heads above lines of numbers"),
+    ("force_N\n" + "1\n" * 5_000_000, {}, "a table has at most 10 MB: cut it, or save it as Parquet"),
+    ("\xd0\xcf\x11\xe0", {}, "an old Excel file .*: save it as .xlsx or CSV"),
+    ("PK\x03\x04", {}, "it is not a readable .xlsx file"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "choice", "force"), CHOSEN)
+def test_columns_are_renamed_and_skipped(text, choice, force, tmp_path):
+    ((head, values),) = read_columns(write(tmp_path, text), NAMES, HeadChoice(**choice)).items()
+    assert FACTORS[head.unit] * values == pytest.approx([force])
+
+
+@pytest.mark.parametrize(("text", "choice", "message"), REFUSED, ids=range(len(REFUSED)))
+def test_a_table_with_two_meanings_is_refused_with_the_way_to_write_it(text, choice, message, tmp_path):
+    with pytest.raises(ValueError, match=f"press.csv: .*{message}"):
+        read_columns(write(tmp_path, text, "latin-1"), NAMES, HeadChoice(**choice))
+
+
+def test_a_gap_has_its_line(tmp_path):
+    read = read_columns(write(tmp_path, TWO + "1;2\n# no\nn/a;2,5\n"), NAMES)
+    assert np.isnan(read.columns[0]).tolist() == [False, True]
+    with pytest.raises(ValueError, match="line 4 has 'n/a' for force"):
+        read.numbers("force")
+
+
+def test_an_excel_file_is_read_from_the_sheet_with_the_columns(tmp_path, monkeypatch):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append(["Prüfer", "Mayer"])
+    sheet = book.create_sheet("curve")
+    for row in (["Zeit", "Kraft", "Weg"], ["s", "N", "mm"], *zip(*TRUTH.values(), strict=True), [], ["Ende"]):
+        sheet.append(row)
+    book.save(tmp_path / "press.xlsx")
+    check_truth(read_columns(tmp_path / "press.xlsx", NAMES))
+    sheet["B3"].number_format = "0.0%"  # Excel shows 30000.0 %
+    book.save(tmp_path / "press.xlsx")
+    assert np.isnan(read_columns(tmp_path / "press.xlsx", NAMES).columns[1]).tolist() == [True, False, False]
+    monkeypatch.setattr(columns, "_MAX_BYTES", 100)
+    with pytest.raises(ValueError, match="at most 0 MB"):
+        read_columns(tmp_path / "press.xlsx", NAMES)
+    monkeypatch.undo()
+    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
+    with pytest.raises(ImportError, match=r'openpyxl is not installed: pip install "ballsocket\[xlsx\]"'):
+        read_columns(tmp_path / "press.xlsx", NAMES)
+
+
+def test_all_files_that_name_a_table_have_the_keys_columns_and_skip(tmp_path):
+    """The first line of a result counts the lines that are left out."""
+    keys = 'columns = {Schritt = "%s"}\nskip = "T"\n'
+    rows = ["0;300;20", "0,5;900;20", "1;1,5e3;20", "1,5;900;20", "2;300;20"]
+    write(tmp_path, "\n".join(["Test 1", "Schritt;Last;T", "s;N;°C", *rows]), "cp1252", "walk.csv")
+    cycle = parse_cycle(tomllib.loads('[cycle]\nfile = "walk.csv"\ninstants = 8\n' + keys % "time"), tmp_path)
+    assert (cycle.duration, cycle.largest_force) == (2.0, 1500.0)
+    assert cycle.remark == "walk.csv: 5 rows read, left out 1 line above the heads"
+    write(tmp_path, "\n".join(["Test 1", "Last;Schritt;T", "N;um;°C", "300;10;1", "1250,5;;1", "2000;40;1"]), "utf-16")
+    data = 'joint = "hip-28"\n[free]\nliner.young = "0.4..2 GPa"\n[[data]]\nfile = "press.csv"\ngaps = "leave-out"\n'
+    (measured,) = read_identify(write(tmp_path, data + keys % "indentation", name="data.toml")).data
+    assert (measured.force.tolist(), measured.values.tolist()) == ([300.0, 2000.0], pytest.approx([0.01, 0.04]))
+    assert measured.remark == "press.csv: 2 rows read, left out 1 line above the heads, 1 line with a gap"
+    write(tmp_path, "\n".join(["Test 1", "Last;Schritt;T", "kN;mm;°C", "0,3;0,1;20", "2;0,05;20"]), name="rows.csv")
+    study = 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "rows.csv"\n' + keys % "clearance"
+    first = run("study", str(write(tmp_path, study, name="study.toml"))).stdout.splitlines()[0]
+    assert first == "hertz, 2 row; rows.csv: 2 rows read, left out 1 line above the heads"
