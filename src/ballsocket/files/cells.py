@@ -41,7 +41,7 @@ _ANY_FORM = re.compile("|".join(form.pattern for form in _FORMS.values()), re.AS
 _DECIMALS = {mark: str.maketrans(mark, ".", _BLANKS + other) for mark, other in (_MARKS, _MARKS[::-1])}
 """Translations of numbers to those of Python."""
 
-_BLANKS_AT_BRACKETS = re.compile(r"(?<=[^\s\])])\s++(?=[\[(])|(?<=[\[(])\s++|\s++(?=[\])])|(?<=%)\s++(?=\w)")
+_BLANKS_AT_BRACKETS = re.compile(r"(?<=[^\s\])])\s++(?=[\[(])|(?<=[\[(])\s++|(?<!\s)\s++(?=[\])])|(?<=%)\s++(?=\w)")
 
 Cell = str | float
 """Content of a cell: text, or a number of an Excel file."""

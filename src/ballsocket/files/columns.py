@@ -346,7 +346,7 @@ class _HeadReader:
         text, close = shown(head.text), closest(plain_name(head.text), names)
         hint = f"did you mean {close!r}?" if close else f"known: {', '.join(names[:_MAX_NAMES])}, ...;"
         return (
-            f"column {text} is not known; {hint} columns = {{{text} = '{close or names[0]}'}} names it, "
+            f"column {text} is not known; {hint} columns = {{{text} = '{close or 'NAME'}'}} names it, "
             f"skip = [{text}] leaves it out"
         )
 

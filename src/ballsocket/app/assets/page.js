@@ -72,7 +72,13 @@ async function read(input, request) {
   input.value = "";
   if (!file) return;
   if (file.size > LARGEST) tell(`${file.name} is larger than ${LARGEST} bytes`);
-  else request(file.name, await file.text());
+  else request(file.name, decode(await file.arrayBuffer()));
+}
+function decode(bytes) { // UTF-8, UTF-16 with a byte order mark, or the code page of Windows
+  const [first, second] = new Uint8Array(bytes.slice(0, 2));
+  const wide = { 0xfffe: "utf-16le", 0xfeff: "utf-16be" }[256 * first + second];
+  try { return new TextDecoder(wide ?? "utf-8", { fatal: true }).decode(bytes); }
+  catch { return new TextDecoder("windows-1252").decode(bytes); }
 }
 const cycle = () => new URLSearchParams(location.search).get("use.cycle");
 function sendTable() {
