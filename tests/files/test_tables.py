@@ -50,6 +50,8 @@ FORMS = [  # text, encoding, number of lines that are left out
     ("Time [ms],Force [kN],Displacement [mm]\n0,0.3,0.01\n250,1.2505,0.0255\n500,2,0.04\n", "utf-8", 0),
     ("Time,Load,Extension\n(s),(N),(um)\n" + POINTS, "utf-8", 0),
     ("Zeit;Kraft;Weg\n[s];[N];[µm]\n" + COMMAS, "cp1252", 0),
+    ("Zeit;Kraft;Weg\nt;F;s\ns;N;µm\n" + COMMAS, "cp1252", 1),
+    ('"Time\n[s]","F\n[N]","Stroke\n[um]"\n' + POINTS, "utf-8", 0),
     ("time force indentation\ns N um\n" + POINTS.replace(",", " "), "utf-8", 0),
     ("time [s]  force [ N ]  indentation [um]\n" + POINTS.replace(",", "  "), "utf-8", 0),
     (BLUEHILL + '"Time","Extension","Load"\n"(s)","(mm)","(N)"\n"0","0.01","300"\n"0.25","0.0255","1250.5"\n'
@@ -112,6 +114,7 @@ REFUSED = [  # text, choice, message
     ("K1 [kN]\n3\n", {"columns": {"K1": "fors_N"}}, "columns names 'fors_N' for 'K1 .kN.'; did you mean 'force'"),
     (TWO + "1;2\n", {"skip": ["Zeit"]}, "skip names 'Zeit', but the columns are 'force_N', 'indentation_mm'"),
     (";force_N\n1;300\n", {}, "a column of numbers has no head: name it, or skip it with skip = "),
+    (TWO + "1;2\n" + "s;N\n" + "3;4\n" * 2, {}, "line 3 has text, and more numbers are below it than above"),
     ("", {}, "it has no line of column heads above lines of numbers"),
     ("force_N\n" + "1\n" * 5_000_000, {}, "a table has at most 10 MB: cut it, or save it as Parquet"),
     ("\xd0\xcf\x11\xe0", {}, "an old Excel file .*: save it as .xlsx or CSV"),

@@ -22,7 +22,7 @@ _BLANKS = " '\u2019\u00a0\u2009\u202f"
 _WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))
 """Words of numbers that are not finite, in small letters."""
 
-_NO_NUMBER = frozenset(("", "-", "--", "---", "n/a", "na", "#n/a", "null", "none"))
+_NO_NUMBER = frozenset(("", "-", "--", "---", "[-]", "(-)", "n/a", "na", "#n/a", "null", "none"))
 """Cells for a missing number, in small letters."""
 
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length

@@ -421,7 +421,7 @@ def _parse_block(
     """Convert the rows below heads to columns."""
     texts = [str(cell) for cell in rows[block.head][1]]
     between = [cells for _, cells in rows[block.head + 1 : block.start]]
-    units = next((cells for cells in between if _are_units(cells, texts)), ())
+    units = next((cells for cells in reversed(between) if _are_units(cells, texts)), ())
     body, left_out = _select_rows(rows, block.start)
     width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
     for line, cells in body:
@@ -457,20 +457,28 @@ def _are_units(cells: Sequence[Cell], texts: Sequence[str]) -> bool:
 
 
 def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[NumberedRow], dict[str, int]]:
-    """Return the rows of numbers up to the heads of another table, and the numbers of the other rows."""
+    """Return the rows of numbers up to the heads of another table, and the numbers of the other rows.
+
+    Raises
+    ------
+    ValueError
+        The other table has more rows of numbers.
+    """
     body: list[NumberedRow] = []
-    n_text = n_blank = n_pending = 0
+    n_text = n_blank = n_pending = n_other = 0
     for index in range(start, len(rows)):
         cells = rows[index][1]
         if is_data(cells):
             body.append(rows[index])
             n_blank, n_pending = n_blank + n_pending, 0
         elif (n_words := count_words(cells)) > 1:
-            n_text += sum(bool(count_words(cells)) for _, cells in rows[index:])
+            if sum(is_data(cells) for _, cells in rows[index:]) > len(body):
+                raise ValueError(f"line {rows[index][0]} has text, and more numbers are below it than above: cut one")
+            n_other = sum(bool(count_words(cells)) for _, cells in rows[index:])
             break
         else:
             n_text, n_pending = n_text + n_words, n_pending + (not n_words)
-    return body, {"of text below the heads": n_text, "blank or with a comment": n_blank}
+    return body, {"of text": n_text, "of another table below": n_other, "blank or with a comment": n_blank}
 
 
 def _make_table(

@@ -9,14 +9,14 @@ _LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
 
 _OTHER_NAMES = {
     "time": "zeit pruefzeit test_time elapsed_time",
-    "phase": "gait_cycle gangzyklus",
-    "force": "load compressive_load axial_force axial_load standard_force kraft last standardkraft pruefkraft "
+    "phase": "cycle gait_cycle gangzyklus",
+    "force": "f load compressive_load axial_force axial_load standard_force kraft last standardkraft pruefkraft "
     "axialkraft druckkraft normalkraft",
     "force_x": "kraft_x",
     "force_y": "kraft_y",
     "force_z": "kraft_z",
-    "indentation": "displacement extension compressive_extension compressive_displacement standard_travel eindrueckung "
-    "weg standardweg traversenweg verschiebung",
+    "indentation": "displacement axial_displacement compressive_displacement crosshead_displacement extension "
+    "compressive_extension standard_travel stroke eindrueckung weg standardweg traversenweg verschiebung",
     "flexion": "beugung flexion_extension",
     "adduction": "adduktion",
     "rotation": "drehung internal_rotation innenrotation",

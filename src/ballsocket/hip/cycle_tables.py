@@ -34,7 +34,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         **dict.fromkeys(ANGLES, _RADIAN),
     }
 )
-_ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z", "cycle": "phase"})
+_ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z"})
 _IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")
 """Columns of OrthoLoad that repeat others, or that wear does not need."""
 
@@ -96,11 +96,12 @@ def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Sid
 def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
     """Convert the columns of a text table to s, N and rad."""
     columns: dict[str, Numbers] = {}
-    orthoload = any(head.name in _ORTHOLOAD and head.name != "cycle" for head in table.heads)
+    orthoload = any(head.name in _ORTHOLOAD for head in table.heads)
+    names = _ORTHOLOAD if orthoload else {"f": "force"}
     for head in table.heads:
         if orthoload and head.name in _IGNORED_ORTHOLOAD:
             continue
-        name = _ORTHOLOAD.get(head.name, head.name) if orthoload else head.name
+        name = names.get(head.name, head.name)
         check_names([name], _UNITS, "as a column")
         if name in columns:
             raise ValueError(f"the column {name} appears twice")
