@@ -91,6 +91,29 @@ def liner(radius=16.0, wall=8.0, arc_of_cover=170.0, chamfer=0.0, steps=40, segm
     return turned(np.concatenate([bore, mouth, corner, face, outer]), segments)
 
 
+def lipped(triangles, lip=15.0, offset=0.0, radius=16.0, height=-1.394, outer=True):
+    """Raise the rim of a liner to a second plane, tilted by an angle in degrees from a line at an x = offset in mm.
+
+    The main plane is at a height, -R cos(arc/2). The outer surface ends at both planes, or at the main one only.
+    """
+    distance = np.linalg.norm(triangles, axis=2)
+    polar, azimuth = np.arccos(-triangles[..., 2] / distance), np.arctan2(triangles[..., 1], triangles[..., 0])
+    tangent = np.tan(np.radians(lip)) * np.cos(azimuth)
+    level = -(height - offset * np.tan(np.radians(lip))) / radius
+    main = np.arccos(-height / radius)
+    end = np.maximum(np.arctan(tangent) + np.arccos(level / np.hypot(1.0, tangent)), main)
+    end = np.where(outer | (abs(distance - radius) < 1e-6), end, main)
+    polar *= end / main
+    directions = [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), -np.cos(polar)]
+    return distance[..., None] * np.stack(directions, axis=-1)
+
+
+def locked(triangles, radius=26.0, low=-14.0, high=-8.0):
+    """Add a locking ring around the z axis to the triangles of a liner."""
+    profile = np.array([[22.0, low], [22.0, high], [radius, high], [radius, low], [22.0, low]])
+    return np.concatenate([triangles, turned(profile[::-1], 64)])
+
+
 def head(radius=16.0, arc_of_cover=280.0, depth=12.0, steps=40, segments=96):
     """Return the triangles of a head whose taper opens upwards."""
     ball = arc(radius, 0.0, arc_of_cover / 2, steps)

@@ -26,16 +26,6 @@ def angle(first, second):
     return np.degrees(np.arccos(np.clip(first @ second, -1.0, 1.0)))
 
 
-def lipped(triangles, lift=15.0):
-    """Raise the rim by an angle over a part of the circumference."""
-    distance = np.linalg.norm(triangles, axis=2)
-    polar, azimuth = np.arccos(-triangles[..., 2] / distance), np.arctan2(triangles[..., 1], triangles[..., 0])
-    part = np.clip((np.cos(azimuth) - 0.3) / 0.2, 0, 1) * np.clip((np.degrees(polar) - 40.0) / 45.0, 0, 1)
-    polar += np.radians(lift) * part
-    directions = [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), -np.cos(polar)]
-    return distance[..., None] * np.stack(directions, axis=-1)
-
-
 def two_sided(triangles):
     """Add a second side of the bore, 1 % behind it, and leave the outer surface of the pole."""
     distance, heights = np.linalg.norm(triangles, axis=2), triangles.mean(axis=1)[:, 2]
@@ -44,7 +34,9 @@ def two_sided(triangles):
     return np.concatenate([bore, pole, 1.01 * bore[:, ::-1]])
 
 
-LIPPED = lipped(scans.liner(steps=30, segments=64))
+RAISED = scans.liner(steps=24, segments=48)
+MOVED = scans.rotated(pitch=50.0, roll=-20.0, yaw=70.0)
+LIPPED = scans.locked(scans.lipped(RAISED))
 LINERS = {
     "plain": (PLAIN, 170.0, 8.0),
     "twelve facets": (scans.liner(steps=8, segments=16), 170.0, 8.0),
@@ -70,7 +62,38 @@ def test_a_liner_is_measured_within_its_tolerances(triangles, arc_of_cover, wall
     assert np.degrees(fit.arc_of_cover) == pytest.approx(arc_of_cover, abs=0.2)
     assert angle(fit.axis, opening) < 0.1
     assert fit.wall_thickness == pytest.approx(wall, abs=0.01)
-    assert any("not plane" in note for note in fit.notes) == (triangles is LIPPED)
+    assert any("in two planes" in note for note in fit.notes) == (triangles is LIPPED)
+
+
+LIPS = {
+    "half of the rim, locking ring": ({}, True),
+    "most of the rim, locking ring": ({"lip": 20.0, "offset": -4.0}, True),
+    "half of the rim, outer surface that ends in the main plane": ({"lip": 10.0, "outer": False}, False),
+}
+
+
+@pytest.mark.parametrize(("shape", "ring"), LIPS.values(), ids=LIPS)
+@pytest.mark.parametrize("scatter", [0.0, pytest.param(0.02, marks=pytest.mark.long)])
+def test_a_lip_moves_neither_axis_nor_arc_however_the_file_is_turned(shape, ring, scatter):
+    triangles = scans.lipped(RAISED, **shape)
+    triangles = scans.scattered(scans.locked(triangles) if ring else triangles, scatter)
+    plain = fit_liner(Mesh(triangles))
+    assert angle(plain.axis, np.array([0.0, 0.0, 1.0])) < (0.002 if scatter == 0.0 else 0.1)
+    assert np.degrees(plain.arc_of_cover) == pytest.approx(170.0, abs=0.005 if scatter == 0.0 else 0.15)
+    assert np.degrees(plain.lip_angle) == pytest.approx(shape.get("lip", 15.0), abs=0.005 if scatter == 0.0 else 0.15)
+    assert not plain.ambiguous
+    for matrix in either([MOVED], [MOVED, scans.rotated(yaw=70.0)]):
+        turned = fit_liner(Mesh(triangles @ matrix.T + SHIFT))
+        assert turned.axis @ matrix == pytest.approx(plain.axis, abs=1e-6)
+        assert turned.arc_of_cover == pytest.approx(plain.arc_of_cover, abs=1e-6)
+        assert [plane.height for plane in turned.rim] == pytest.approx([plane.height for plane in plain.rim], abs=1e-6)
+
+
+def test_two_planes_between_which_nothing_decides_are_called_ambiguous():
+    fit = fit_liner(Mesh(scans.lipped(RAISED)))  # a concentric sphere, cut like the bore
+    assert fit.ambiguous
+    assert min(angle(plane.normal, np.array([0.0, 0.0, 1.0])) for plane in fit.rim) < 0.01
+    assert any("does not show which plane" in note for note in fit.notes)
 
 
 @pytest.mark.parametrize(("steps", "scatter"), [(30, 0.0), (30, 0.02), (10, 0.0)])

@@ -65,7 +65,7 @@ def fit_plane_robustly(points: Numbers, tolerance: float) -> Plane:
     """Fit a plane to points (n, 3) of which many lie off the plane.
 
     The start is the plane through three points with the most others within `tolerance`. The weights of its
-    neighbours follow from their scatter.
+    neighbours follow from their scatter, and end at `tolerance`.
     """
     triples = points[numpy.random.default_rng(_SEED).integers(len(points), size=(_TRIPLES, 3))]
     normals = numpy.cross(triples[:, 1] - triples[:, 0], triples[:, 2] - triples[:, 0])
@@ -76,7 +76,7 @@ def fit_plane_robustly(points: Numbers, tolerance: float) -> Plane:
     mask = inliers[inliers.sum(axis=1).argmax()]
     plane = fit_plane(points, numpy.where(mask, 1.0, 1e-9))
     for _ in range(_ITERATIONS):
-        scale = max(robust_scale(plane.distances[mask]), 0.01 * tolerance)
+        scale = min(max(robust_scale(plane.distances[mask]), 0.01 * tolerance), tolerance / _TUKEY)
         weights = numpy.clip(1.0 - (plane.distances / (_TUKEY * scale)) ** 2, 1e-9, None) ** 2
         plane = fit_plane(points, weights)
         mask = weights > 1e-9
@@ -104,3 +104,8 @@ def fit_sphere(points: Numbers, weights: Numbers) -> tuple[Numbers, float]:
         if numpy.linalg.norm(step) < 1e-9 * abs(radius):
             break
     return origin + centre, radius
+
+
+def angle_between(first: Numbers, second: Numbers) -> float:
+    """Return the angle in rad between two unit vectors (3,)."""
+    return float(numpy.arctan2(numpy.linalg.norm(numpy.cross(first, second)), first @ second))

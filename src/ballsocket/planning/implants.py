@@ -15,7 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.input_files import open_input
-from .geometry import fit_plane_robustly, fit_sphere, robust_scale
+from .geometry import Plane, angle_between, fit_plane_robustly, fit_sphere, robust_scale
 
 _MAX_FILE_SIZE = 200_000_000
 """Largest size of an STL file in bytes."""
@@ -85,7 +85,37 @@ _MIN_GAIN = 25.0
 """Least decrease of the sum of squares over its mean per facet that is evidence for a cylinder."""
 
 _UNEVEN_RIM = radians(3.0)
-"""Deviation of the rim from a plane from which a note is given."""
+"""Deviation of the rim from a plane from which the rim has a lip."""
+
+_SECTOR_OFFSET = 0.37
+"""Start of the sectors over their width, so that the corners of a regular mesh do not lie between two sectors."""
+
+_MIN_LIP = 0.1
+"""Least share of the rim that a lip has."""
+
+_MAX_TILT = radians(35.0)
+"""Largest angle between the axis of a liner and the planes of its rim."""
+
+_DISTINCT_AXES = radians(1.0)
+"""Angle from which two planes of a rim give different axes."""
+
+_MIN_EVIDENCE = 0.1
+"""Relative difference of the moments of the outer surface about two axes, from which one of them is the right one."""
+
+_SPHERE_MOMENTS = 0.02
+"""Moments of the normals of a faceted sphere, over its area and radius."""
+
+_MIN_OUTWARDS = 0.35
+"""Least cosine between the normal of an outer surface and the direction from the centre of the bore."""
+
+_PLANE_PASSES = 4
+"""Number of times that the ends of a bore are divided between the two planes of its rim."""
+
+_SAME_AXIS = radians(3.0)
+"""Angle from the axis of the outer surface up to which the main plane of the rim determines the axis more exactly."""
+
+_MIN_END = 0.75
+"""Least share of the end of an outer surface that lies in a plane, if the plane gives the axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,6 +260,25 @@ def _check_size(triangles: Numbers, units: str, name: str) -> None:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class RimPlane:
+    """Plane in which a part of the rim lies.
+
+    Attributes
+    ----------
+    normal : array (3,)
+        Unit normal out of the opening, in the coordinates of the file.
+    height : float
+        Distance in mm from the centre of the bore, positive out of the opening.
+    share : float
+        Share of the circumference whose rim lies in the plane.
+    """
+
+    normal: Numbers
+    height: float
+    share: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ImplantFit:
     """Fitted bearing of a liner or head.
 
@@ -242,11 +291,16 @@ class ImplantFit:
     residual : float
         Root mean square distance in mm of these corners from the sphere.
     axis : array (3,) or None
-        Unit vector from the centre out of the opening; None for a complete sphere.
+        Unit vector from the centre out of the opening; None for a complete sphere. A plane rim gives it by its normal.
+        For a liner with a lip it is the axis around which the surfaces outside the bore are turned.
     arc_of_cover : float
         Angle in rad that the spherical surface covers in a section through its axis; 2π for a complete sphere.
     rim_deviation : float
         Largest angle in rad of the end of the surface from a plane rim.
+    rim : tuple of RimPlane
+        Main plane of the rim and that of its lip, if it has one; empty for a complete sphere.
+    ambiguous : bool
+        True if both planes of the rim may be the main one: the outer surface does not decide.
     facet_depth : float
         Mean depth in mm of the middle of the facets below the sphere through their corners.
     wall_thickness : float or None
@@ -266,6 +320,8 @@ class ImplantFit:
     arc_of_cover: float
     rim_deviation: float
     facet_depth: float
+    rim: tuple[RimPlane, ...] = ()
+    ambiguous: bool = False
     wall_thickness: float | None = None
     wall_range: tuple[float, float] | None = None
     wall_residual: float | None = None
@@ -280,12 +336,33 @@ class ImplantFit:
                 f"{self.name}: the radius is that of the sphere through the corners of the facets, whose middles lie "
                 f"{self.facet_depth:.2g} mm inside it; a mesh whose facets straddle the surface has a smaller one"
             )
-        if self.rim_deviation > _UNEVEN_RIM:
+        if len(self.rim) > 1:
+            notes.append(
+                f"{self.name}: the rim lies in two planes, {self.rim_step} apart: the arc of cover ends at the main one"
+            )
+        elif self.rim_deviation > _UNEVEN_RIM:
             notes.append(
                 f"{self.name}: the end of the sphere is not plane and deviates by up to "
                 f"{degrees(self.rim_deviation):.0f}°; the arc of cover is that of most of the rim"
             )
+        if self.ambiguous:
+            notes.append(
+                f"{self.name}: the outer surface does not show which plane of the rim is the main one: if it is the "
+                f"lip, the axis is {self.rim_step} off; look at the liner"
+            )
         return tuple(notes)
+
+    @property
+    def lip_angle(self) -> float | None:
+        """Angle in rad between the planes of the main rim and of the lip; None without a lip."""
+        return angle_between(self.rim[0].normal, self.rim[1].normal) if len(self.rim) > 1 else None
+
+    @property
+    def rim_step(self) -> str:
+        """Angle between both planes of the rim as text; if they are parallel, their distance."""
+        main, lip = self.rim
+        angle = angle_between(main.normal, lip.normal)
+        return f"{degrees(angle):.1f}°" if angle > _DISTINCT_AXES else f"{abs(lip.height - main.height):.1f} mm"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -314,10 +391,10 @@ def fit_liner(mesh: Mesh) -> ImplantFit:
         solid = _find_sphere(mesh, 1.0, _RADII)
         seen = f"; its sphere of radius {solid.radius:.4g} mm is convex, as of a head" if solid is not None else ""
         raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_range_text(_RADII)}{seen}")
-    fit = _describe(mesh, bore)
+    fit, bore = _describe(mesh, bore)
     if fit.axis is None:
         raise ValueError(f"{mesh.name}: the bore of radius {bore.radius:.4g} mm has no opening")
-    return _with_wall(mesh, fit)
+    return _with_wall(mesh, _with_lip(mesh, bore, fit) if fit.rim_deviation > _RIM_TOLERANCE else fit)
 
 
 def fit_head(mesh: Mesh) -> ImplantFit:
@@ -331,7 +408,7 @@ def fit_head(mesh: Mesh) -> ImplantFit:
     ball = _find_sphere(mesh, 1.0, _RADII)
     if ball is None:
         raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_range_text(_RADII)}")
-    return _describe(mesh, ball)
+    return _describe(mesh, ball)[0]
 
 
 def _range_text(limits: tuple[float, float]) -> str:
@@ -422,8 +499,8 @@ def _fit_facets(mesh: Mesh, facets: Numbers) -> _SphereFit:
     return _SphereFit(centre=centre, radius=radius, facets=facets, residual=residual)
 
 
-def _describe(mesh: Mesh, sphere: _SphereFit, passes: int = 2) -> ImplantFit:
-    """Return the fit of a sphere with its opening, without a cylinder that continues it."""
+def _describe(mesh: Mesh, sphere: _SphereFit, passes: int = 2) -> tuple[ImplantFit, _SphereFit]:
+    """Return the fit of a sphere with its opening, and the sphere without a cylinder that continues it."""
     part = mesh.part(sphere.facets)
     corners = (part.triangles - sphere.centre) / sphere.radius
     middles, weights = corners.mean(axis=1), part.areas / part.areas.sum()
@@ -438,16 +515,18 @@ def _describe(mesh: Mesh, sphere: _SphereFit, passes: int = 2) -> ImplantFit:
             return _describe(
                 mesh, replace(reduced, facets=numpy.isin(numpy.arange(len(mesh.areas)), facets)), passes - 1
             )
-    return ImplantFit(
+    fit = ImplantFit(
         radius=sphere.radius,
         centre=sphere.centre,
         residual=sphere.residual,
         axis=axis,
         arc_of_cover=2 * angle,
         rim_deviation=deviation,
+        rim=() if axis is None else (RimPlane(normal=axis, height=-sphere.radius * cos(angle), share=1.0),),
         facet_depth=sphere.radius * (1.0 - float(weights @ numpy.linalg.norm(middles, axis=1))),
         name=mesh.name,
     )
+    return fit, sphere
 
 
 def _find_tangent_end(corners: Numbers, part: Mesh, dome: Numbers, angle: float) -> float:
@@ -489,9 +568,7 @@ def _fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float
     deviation : float
         Largest angle in rad of the rim from the plane.
     """
-    dome = pole / numpy.linalg.norm(pole)
-    steps = min(int(numpy.ceil(_largest_edge(corners) / (pi / _RIM_SECTORS))), 20) or 1
-    points = corners.reshape(-1, 3) if steps == 1 else numpy.concatenate(list(_along_edges(corners, steps)))
+    points, dome = _edge_points(corners), pole / numpy.linalg.norm(pole)
     for _ in range(8):
         ends = _farthest_points(points, dome)
         if len(ends) < _MIN_SECTORS * _RIM_SECTORS:
@@ -502,8 +579,134 @@ def _fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float
         if change > 1 - 1e-12:
             break
     angle = acos(float(numpy.clip(plane.centre @ dome, -1.0, 1.0)))
-    deviation = abs((ends - plane.centre) @ dome) / max(sin(angle), 0.1)
-    return -dome, angle, float(numpy.quantile(deviation, 0.95))
+    return -dome, angle, _deviation(ends, dome, angle)
+
+
+def _deviation(ends: Numbers, dome: Numbers, angle: float) -> float:
+    """Return the angle in rad by which most ends of a surface deviate from a plane rim at a polar angle."""
+    return float(numpy.quantile(abs(ends @ dome - cos(angle)) / max(sin(angle), 0.1), 0.95))
+
+
+def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
+    """Describe a liner whose rim is not plane: axis of the outer surface, main plane and plane of the lip.
+
+    A rim without two planes keeps its fit.
+    """
+    part, centre = mesh.part(bore.facets), bore.centre
+    points = _edge_points((part.triangles - centre) / bore.radius)
+    outer = _outer_surface(mesh, centre, bore.radius)
+    moments = numpy.cross(outer.triangles.mean(axis=1) - centre, _smooth_normals(outer)) * outer.areas[:, None]
+    axis, ambiguous = numpy.asarray(fit.axis), False
+    for _ in range(3):
+        ends = _farthest_points(points, -axis)
+        planes = _rim_planes(ends, axis, bore.radius)
+        if len(planes) < 2:
+            return fit
+        if angle_between(planes[0].normal, planes[1].normal) > _DISTINCT_AXES:
+            planes, axis, ambiguous = _main_plane_first(planes, outer, moments, centre)
+        else:
+            axis = planes[0].normal
+    angle = acos(float(numpy.clip(-planes[0].height / bore.radius, -1.0, 1.0)))
+    deviation = _deviation(ends, -planes[0].normal, angle)
+    return replace(fit, axis=axis, arc_of_cover=2 * angle, rim_deviation=deviation, rim=planes, ambiguous=ambiguous)
+
+
+def _rim_planes(ends: Numbers, axis: Numbers, radius: float) -> tuple[RimPlane, ...]:
+    """Find up to two planes in the ends of a bore (n, 3), relative to its centre in radii; the larger one first."""
+    planes: list[Plane] = []
+    remaining = ends
+    while len(planes) < 2 and len(remaining) >= max(_MIN_LIP * len(ends), 3):
+        plane = fit_plane_robustly(remaining, _RIM_TOLERANCE)
+        remaining = remaining[abs((remaining - plane.centre) @ plane.normal) > _RIM_TOLERANCE]
+        planes.append(plane)
+    for _ in range(_PLANE_PASSES):
+        distances = numpy.array([abs((ends - plane.centre) @ plane.normal) for plane in planes])
+        parts = [ends[distances.argmin(axis=0) == index] for index in range(len(planes))]
+        planes = [fit_plane_robustly(part, _RIM_TOLERANCE) for part in parts if len(part) >= _MIN_LIP * len(ends)]
+    found = [
+        RimPlane(
+            normal=plane.normal * sign,
+            height=radius * sign * float(plane.centre @ plane.normal),
+            share=float((abs(plane.distances) < _RIM_TOLERANCE).sum()) / len(ends),
+        )
+        for plane in planes
+        for sign in (1.0 if plane.normal @ axis > 0 else -1.0,)
+    ]
+    fitting = [plane for plane in found if plane.share >= _MIN_LIP and plane.normal @ axis > cos(_MAX_TILT)]
+    return tuple(sorted(fitting, key=lambda plane: -plane.share))
+
+
+def _main_plane_first(
+    planes: tuple[RimPlane, ...], outer: Mesh, moments: Numbers, centre: Numbers
+) -> tuple[tuple[RimPlane, ...], Numbers, bool]:
+    """Put the main one of two planes first, by the moments (n, 3) of the outer surface; return them, axis, and doubt.
+
+    Two planes of a rim are equally good rims. The outer surface is turned around the axis of the liner: its normals
+    meet it, so that the sum of the moments of the normals about it is smallest. A spherical outer surface has no such
+    moments, but may end in one plane.
+    """
+    sums = [float(abs(moments @ plane.normal).sum()) for plane in planes]
+    arms = numpy.linalg.norm(outer.triangles.mean(axis=1) - centre, axis=1)
+    scale = max(numpy.linalg.norm(moments, axis=1).sum(), _SPHERE_MOMENTS * float(outer.areas @ arms))
+    if abs(sums[0] - sums[1]) > _MIN_EVIDENCE * scale * sin(angle_between(planes[0].normal, planes[1].normal)):
+        main, lip = planes if sums[0] < sums[1] else planes[::-1]
+        axis = _turned_axis(moments, main.normal)
+        return (main, lip), main.normal if angle_between(axis, main.normal) < _SAME_AXIS else axis, False
+    normal = _outer_end(outer.triangles - centre, -planes[0].normal)
+    for main, lip in (planes, planes[::-1]):
+        if normal is not None and angle_between(normal, main.normal) < _DISTINCT_AXES:
+            return (main, lip), main.normal, False
+    return planes, planes[0].normal, True
+
+
+def _outer_end(corners: Numbers, dome: Numbers) -> Numbers | None:
+    """Return the normal of the plane in which the outer surface, facets (n, 3, 3), ends; None without such a plane."""
+    if not len(corners):
+        return None
+    points = _edge_points(corners / numpy.linalg.norm(corners, axis=2).mean())
+    ends = _farthest_points(points, dome)
+    plane = fit_plane_robustly(ends, _RIM_TOLERANCE)
+    if numpy.mean(abs(plane.distances) < _RIM_TOLERANCE) < _MIN_END:
+        return None
+    return plane.normal if plane.normal @ dome < 0 else -plane.normal
+
+
+def _outer_surface(mesh: Mesh, centre: Numbers, radius: float) -> Mesh:
+    """Return the facets of a liner that look away from its bore."""
+    offsets = mesh.triangles.mean(axis=1) - centre
+    distances = numpy.linalg.norm(offsets, axis=1)
+    outwards = numpy.sum(offsets * mesh.normals, axis=1) > _MIN_OUTWARDS * distances
+    return mesh.part(outwards & (distances > 1.02 * radius))
+
+
+def _smooth_normals(mesh: Mesh) -> Numbers:
+    """Return the normals (n, 3) of a mesh, on a convex sphere those of the sphere."""
+    sphere, normals = _find_sphere(mesh, 1.0, (_RADII[0], _MAX_OUTER_RADIUS)), mesh.normals
+    if sphere is not None:
+        radial = mesh.triangles.mean(axis=1) - sphere.centre
+        radial /= numpy.maximum(numpy.linalg.norm(radial, axis=1), 1e-12)[:, None]
+        normals = numpy.where(sphere.facets[:, None], radial, normals)
+    return normals
+
+
+def _turned_axis(moments: Numbers, start: Numbers) -> Numbers:
+    """Find the axis with the smallest sum of the absolute moments (n, 3) about it, by reweighted least squares."""
+    axis, floor = start, 1e-9 * float(numpy.linalg.norm(moments, axis=1).max())
+    sizes = numpy.linalg.norm(moments, axis=1)
+    for _ in range(60):
+        weights = 1.0 / numpy.maximum(abs(moments @ axis), floor + 1e-6 * sizes)
+        vector = numpy.linalg.eigh((weights[:, None] * moments).T @ moments)[1][:, 0]
+        vector = vector if vector @ axis > 0 else -vector
+        change, axis = float(numpy.linalg.norm(vector - axis)), vector
+        if change < 1e-12:
+            break
+    return axis
+
+
+def _edge_points(corners: Numbers) -> Numbers:
+    """Return points (n, 3) on the edges of facets (n, 3, 3), as near as the sectors of a rim."""
+    steps = min(int(numpy.ceil(_largest_edge(corners) / (pi / _RIM_SECTORS))), 20) or 1
+    return corners.reshape(-1, 3) if steps == 1 else numpy.concatenate(list(_along_edges(corners, steps)))
 
 
 def _largest_edge(corners: Numbers) -> float:
@@ -520,13 +723,16 @@ def _along_edges(corners: Numbers, steps: int) -> Iterable[Numbers]:
 
 
 def _farthest_points(points: Numbers, dome: Numbers) -> Numbers:
-    """Return the point of the largest polar angle from the dome in each sector around it."""
-    seed = numpy.eye(3)[abs(dome).argmin()]
-    first = numpy.cross(dome, seed)
-    first /= numpy.linalg.norm(first)
+    """Return the point of the largest polar angle from the dome in each sector around it.
+
+    The sectors begin at the first point far from the dome: they turn and move with the file.
+    """
     height = points @ dome / numpy.linalg.norm(points, axis=1)
+    reference = points[(abs(height) < 0.9).argmax()]
+    first = reference - (reference @ dome) * dome
+    first /= numpy.linalg.norm(first)
     azimuth = numpy.arctan2(points @ numpy.cross(dome, first), points @ first)
-    sector = ((azimuth + pi) * (_RIM_SECTORS / (2 * pi))).astype(int) % _RIM_SECTORS
+    sector = ((azimuth + pi) * (_RIM_SECTORS / (2 * pi)) + _SECTOR_OFFSET).astype(int) % _RIM_SECTORS
     order = numpy.argsort(-height, kind="stable")
     farthest = numpy.full(_RIM_SECTORS, -1)
     farthest[sector[order]] = order  # the last one stays

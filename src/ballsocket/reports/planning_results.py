@@ -7,6 +7,7 @@ from math import degrees
 
 from rich.table import Table
 
+from ..planning.geometry import angle_between
 from ..planning.implants import ImplantFit
 from ..planning.pelvis import CupOrientation, PelvicFrame
 from ..planning.plan import HipPlan
@@ -68,6 +69,11 @@ def _fit_rows(part: str, fit: ImplantFit | None) -> Iterator[_Row]:
     yield f"{part} radius", f"{fit.radius:.3f} mm", f"{fit.residual:.3f} mm rms"
     rim = f"rim within {degrees(fit.rim_deviation):.1f}° of a plane" if fit.axis is not None else "complete"
     yield f"{part} arc of cover", f"{degrees(fit.arc_of_cover):.1f}°", rim
+    if fit.axis is not None and fit.lip_angle is not None:
+        for title, plane in zip(("main", "lip"), fit.rim, strict=True):
+            extent = f"to the axis, {100 * plane.share:.0f} % of the rim, {plane.height:+.1f} mm from the centre"
+            yield f"rim, {title} plane", f"{degrees(angle_between(plane.normal, fit.axis)):.1f}°", extent
+        yield "rim, angle of the lip", f"{degrees(fit.lip_angle):.1f}°", "between both planes"
     if fit.wall_thickness is not None and fit.wall_range is not None and fit.wall_residual is not None:
         low, high = fit.wall_range
         yield (
