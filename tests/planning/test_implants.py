@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 
-from ballsocket.planning import Mesh, fit_head, fit_liner, read_stl
+from ballsocket.planning import Mesh, fit_head, fit_liner, read_mesh
 
 from ..extent import either
 from . import scans
@@ -143,9 +143,39 @@ def test_binary_and_ascii_files_hold_the_same_triangles(tmp_path):
     inches = scans.binary(PLAIN / 25.4)
     for content, units, triangles in ((BINARY, "mm", PLAIN), (inches, "in", PLAIN), (ASCII, "mm", SMALL)):
         path.write_bytes(content)
-        mesh = read_stl(path, units=units)
+        mesh = read_mesh(path, units=units)
         np.testing.assert_allclose(mesh.triangles, triangles, atol=1e-5)
         assert mesh.space == ("LPS" if content == BINARY else None)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"), [("a.obj", {}), ("a.ply", {"binary": False}), ("a.PLY", {"binary": True})]
+)
+def test_obj_and_ply_files_hold_the_same_liner(tmp_path, name, options):
+    meshio = pytest.importorskip("meshio")
+    corners, index = np.unique(SMALL.reshape(-1, 3).round(9), axis=0, return_inverse=True)
+    cells = [("triangle", index.reshape(-1, 3).astype(np.int32))]
+    meshio.write(tmp_path / "a", meshio.Mesh(corners, cells), file_format=name[2:].lower(), **options)
+    raw = (tmp_path / "a").read_bytes().replace(b"vertex_indices", b"vertex_index")  # both names are usual
+    (tmp_path / name).write_bytes(raw)
+    np.testing.assert_allclose(read_mesh(tmp_path / name).triangles, SMALL, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.step", b"ISO-10303-21;", r"a.step is not read: '.step' is no suffix of a mesh; save it as STL, OBJ or PLY"),
+        ("a.stl", b"ply\nformat ascii 1.0\n", "a.stl is a PLY file: name it with the suffix .ply"),
+        ("a.obj", b"v 1 2 3\nv 4 5 6\nv 7 8 0\nf -3 -2 -1\n", "a face names point -3, and the file has 3 points"),
+        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "the file is incomplete"),
+    ],
+)
+def test_other_files_are_refused_by_their_name(tmp_path, name, content, message):
+    if name[-3:] in ("obj", "ply"):
+        pytest.importorskip("meshio")
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(ValueError, match=message):
+        read_mesh(tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -169,16 +199,16 @@ def test_binary_and_ascii_files_hold_the_same_triangles(tmp_path):
 def test_damaged_files_and_impossible_sizes_are_refused(tmp_path, content, message):
     (tmp_path / "a.stl").write_bytes(content)
     with np.errstate(all="ignore"), pytest.raises(ValueError, match=message):
-        read_stl(tmp_path / "a.stl")
+        read_mesh(tmp_path / "a.stl")
 
 
 def test_large_files_are_refused_before_they_are_read(tmp_path):
     with (tmp_path / "a.stl").open("wb") as stream:
         stream.truncate(2_000_000_000)  # sparse: takes no space
     with pytest.raises(ValueError, match=r"a\.stl has 2000 MB: at most 200 are read"):
-        read_stl(tmp_path / "a.stl")
+        read_mesh(tmp_path / "a.stl")
     with pytest.raises(ValueError, match="units = 'inch' is not allowed: mm, cm, m, um, in"):
-        read_stl(tmp_path / "a.stl", units="inch")
+        read_mesh(tmp_path / "a.stl", units="inch")
 
 
 @pytest.mark.parametrize("content", [BINARY, ASCII], ids=["binary", "ASCII"])
@@ -190,7 +220,7 @@ def test_changed_bytes_give_a_mesh_or_a_sentence(tmp_path, content):
         (tmp_path / "a.stl").write_bytes(damaged[: generator.integers(len(content) // 2, 2 * len(content))].tobytes())
         try:
             with np.errstate(all="ignore"):
-                fit_liner(read_stl(tmp_path / "a.stl"))
+                fit_liner(read_mesh(tmp_path / "a.stl"))
         except ValueError as error:
             messages.append(str(error))
     assert all(message.startswith("a.stl") for message in messages)

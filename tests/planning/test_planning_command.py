@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ballsocket import Cup, read_joint
-from ballsocket.planning import HipPlan, fit_head, fit_liner, read_stl
+from ballsocket.planning import HipPlan, fit_head, fit_liner, read_mesh
 
 from ..cli.command import run
 from . import scans
@@ -95,10 +95,10 @@ def test_wrong_input_is_refused_in_a_line(folder, words, message):
 
 
 def test_a_joint_file_of_a_liner_alone_has_the_ball_that_the_clearance_leaves(folder):
-    plan = HipPlan(liner=fit_liner(read_stl(folder / "liner.stl")))
+    plan = HipPlan(liner=fit_liner(read_mesh(folder / "liner.stl")))
     file = plan.joint_file(0.1, ball="cocr")
     assert (file.joint.ball_radius, file.joint.socket_radius) == pytest.approx((15.9, 16.0), abs=1e-3)
     assert not file.cup.oriented
     assert "no clearance" not in " ".join(plan.notes)
-    head = HipPlan(head=fit_head(read_stl(folder / "head.stl")))
+    head = HipPlan(head=fit_head(read_mesh(folder / "head.stl")))
     assert head.joint_file(0.1, liner_thickness=6.0).joint.liner_thickness == 6.0

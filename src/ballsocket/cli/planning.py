@@ -12,8 +12,9 @@ from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..files.joint_toml import toml_of
 from ..files.units import parse
-from ..planning.implants import ImplantFit, Mesh, fit_head, fit_liner, read_stl
+from ..planning.implants import ImplantFit, fit_head, fit_liner
 from ..planning.landmarks import Landmarks, read_landmarks
+from ..planning.meshes import Mesh, read_mesh
 from ..planning.pelvis import PelvicFrame, pelvic_frame
 from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
 from ..reports.planning_results import print_plan
@@ -69,11 +70,11 @@ class LandmarkOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class ImplantOptions:
-    """Options of the STL files."""
+    """Options of the meshes."""
 
-    liner: Annotated[Path | None, typer.Option(help="STL file of the liner. Default: none.")] = None
-    head: Annotated[Path | None, typer.Option(help="STL file of the head. Default: none.")] = None
-    stl_units: Annotated[str, typer.Option(help="Unit of the STL files: mm, cm, m, um or in.")] = "mm"
+    liner: Annotated[Path | None, typer.Option(help="Mesh of the liner: STL, OBJ or PLY. Default: none.")] = None
+    head: Annotated[Path | None, typer.Option(help="Mesh of the head: STL, OBJ or PLY. Default: none.")] = None
+    stl_units: Annotated[str, typer.Option(help="Unit of the meshes and points: mm, cm, m, um or in.")] = "mm"
     placed: Annotated[
         str | None,
         typer.Option(
@@ -91,8 +92,8 @@ class ImplantOptions:
         return fit, head, self.placed or (None if liner is None else liner.space)
 
     def _mesh(self, path: Path) -> Mesh:
-        """Read an STL file."""
-        return read_stl(path, units=self.stl_units)
+        """Read a mesh."""
+        return read_mesh(path, units=self.stl_units)
 
 
 @dataclass(frozen=True, kw_only=True)

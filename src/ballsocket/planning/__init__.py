@@ -1,14 +1,15 @@
-"""Planning data of a hip: landmarks of the pelvis, orientation of the cup, and STL files of liner and head.
+"""Planning data of a hip: landmarks of the pelvis, orientation of the cup, and meshes of liner and head.
 
-    from ballsocket.planning import fit_liner, read_stl
-    liner = fit_liner(read_stl("liner.stl"))
+    from ballsocket.planning import fit_liner, read_mesh
+    liner = fit_liner(read_mesh("liner.stl"))
     liner.radius, liner.arc_of_cover, liner.wall_thickness
 
 Lengths are in mm, angles in rad.
 """
 
-from .implants import ImplantFit, Mesh, fit_head, fit_liner, read_stl
+from .implants import ImplantFit, RimPlane, fit_head, fit_liner
 from .landmarks import Landmarks, read_landmarks
+from .meshes import Mesh, read_mesh
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis, pelvic_frame
 from .plan import HipPlan, make_plan
 
@@ -19,6 +20,7 @@ __all__ = [
     "Landmarks",
     "Mesh",
     "PelvicFrame",
+    "RimPlane",
     "cup_orientation",
     "fit_head",
     "fit_liner",
@@ -26,5 +28,5 @@ __all__ = [
     "orientation_of_axis",
     "pelvic_frame",
     "read_landmarks",
-    "read_stl",
+    "read_mesh",
 ]

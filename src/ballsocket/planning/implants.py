@@ -1,36 +1,16 @@
-"""Liners and heads from STL files: spheres of the bearing and of the outer surface, opening, and wall thickness."""
+"""Liners and heads from triangles: spheres of the bearing and of the outer surface, opening, and wall thickness."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import acos, cos, degrees, pi, radians, sin
-from pathlib import Path
-from types import MappingProxyType
-from typing import BinaryIO
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import shown
-from ..core.input_files import open_input
 from .geometry import Plane, angle_between, fit_plane_robustly, fit_sphere, robust_scale
-
-_MAX_FILE_SIZE = 200_000_000
-"""Largest size of an STL file in bytes."""
-
-_BINARY_HEADER, _BINARY_FACET = 84, 50
-"""Bytes of the header and of a facet of a binary STL file."""
-
-_MAX_LINE = 1000
-"""Largest length of a line of an ASCII STL file in bytes; the first facet begins within as many bytes."""
-
-STL_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4})
-"""Length in mm of each unit of an STL file."""
-
-_SIZES = (12.0, 200.0)
-"""Allowed largest extent of a liner or head in mm."""
+from .meshes import Mesh
 
 _RADII = (7.0, 40.0)
 """Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""
@@ -68,9 +48,6 @@ _RIM_TOLERANCE = radians(1.0)
 
 _MIN_SECTORS = 0.5
 """Least share of the sectors around the axis in which a rim must have points."""
-
-_MAX_OPEN_AREA = 0.2
-"""Sum of the area vectors over the total area, below which the volume of a mesh has a sign in spite of holes."""
 
 _FLAT_FACETS = 0.02
 """Depth in mm of facets below the sphere through their corners from which a note is given."""
@@ -116,147 +93,6 @@ _SAME_AXIS = radians(3.0)
 
 _MIN_END = 0.75
 """Least share of the end of an outer surface that lies in a plane, if the plane gives the axis."""
-
-
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """Triangles of an STL file.
-
-    Attributes
-    ----------
-    triangles : array (n, 3, 3)
-        Corners in mm.
-    name : str
-        Name of the file, for messages.
-    space : str or None
-        "RAS" or "LPS" if the header states the coordinates of a scan, as 3D Slicer writes it.
-    """
-
-    triangles: Numbers
-    name: str = "mesh"
-    space: str | None = None
-
-    @cached_property
-    def _area_vectors(self) -> Numbers:
-        """Return the normals times the areas in mm², out of a closed body."""
-        first, second, third = self.triangles.transpose(1, 0, 2)
-        vectors: Numbers = numpy.cross(second - first, third - first) / 2
-        closed = numpy.linalg.norm(vectors.sum(axis=0)) < _MAX_OPEN_AREA * numpy.linalg.norm(vectors, axis=1).sum()
-        volume = numpy.sum((self.triangles.mean(axis=1) - self.triangles.mean(axis=(0, 1))) * vectors)
-        return -vectors if closed and volume < 0 else vectors
-
-    @cached_property
-    def areas(self) -> Numbers:
-        """Areas of the triangles in mm²: (n,)."""
-        return numpy.linalg.norm(self._area_vectors, axis=1)
-
-    @cached_property
-    def normals(self) -> Numbers:
-        """Unit normals of the triangles: (n, 3)."""
-        return self._area_vectors / self.areas[:, None]
-
-    def part(self, selection: Numbers, equal_areas: bool = False) -> Mesh:
-        """Return the triangles of a mask or of indices with their normals, and with equal areas if required."""
-        part = replace(self, triangles=self.triangles[selection])
-        part.__dict__["_area_vectors"] = (self.normals if equal_areas else self._area_vectors)[selection]
-        return part
-
-
-def read_stl(path: str | Path, *, units: str = "mm") -> Mesh:
-    """Read a binary or ASCII STL file.
-
-    Parameters
-    ----------
-    path : str or Path
-    units : str
-        Unit of the coordinates, which STL files do not state: "mm" (default), "cm", "m", "um" or "in".
-
-    Raises
-    ------
-    ValueError
-        A file that is truncated, too large or no STL; coordinates that are not finite; a size that no liner or head
-        has in that unit.
-    OSError
-        The file cannot be read.
-    """
-    path = Path(path)
-    if units not in STL_UNITS:
-        raise ValueError(f"units = {shown(units)} is not allowed: {', '.join(STL_UNITS)}")
-    with open_input(path) as stream:
-        size = stream.seek(0, 2)
-        stream.seek(0)
-        if size > _MAX_FILE_SIZE:
-            raise ValueError(f"{path.name} has {size / 1e6:.0f} MB: at most {_MAX_FILE_SIZE // 1_000_000} are read")
-        triangles, header = _read_triangles(stream, size, path.name)
-    if not len(triangles):
-        raise ValueError(f"{path.name} has no triangles")
-    if not numpy.isfinite(triangles).all():
-        raise ValueError(f"{path.name}: {(~numpy.isfinite(triangles)).sum()} coordinates are not finite numbers")
-    _check_size(triangles, units, path.name)
-    mesh = Mesh(triangles * STL_UNITS[units], path.name, _space(header))
-    return mesh.part(mesh.areas > 0)
-
-
-def _read_triangles(stream: BinaryIO, size: int, name: str) -> tuple[Numbers, bytes]:
-    """Return the triangles (n, 3, 3) of a file of some size in bytes, and its header."""
-    start = stream.read(_BINARY_HEADER)
-    count = int.from_bytes(start[80:84], "little") if len(start) == _BINARY_HEADER else -1
-    if size == _BINARY_HEADER + _BINARY_FACET * count:
-        kind = numpy.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-        return numpy.frombuffer(stream.read(), dtype=kind)["corners"].astype(float), start[:80]
-    beginning = start + stream.read(_MAX_LINE)
-    if beginning.lstrip()[:5].lower() != b"solid" or b"facet" not in beginning.lower():
-        expected = f"its header states {count} triangles, {_BINARY_HEADER + _BINARY_FACET * count} bytes"
-        raise ValueError(
-            f"{name} is a truncated or damaged binary STL: {size} bytes, "
-            + (expected if count >= 0 else f"less than the header of {_BINARY_HEADER}")
-        )
-    stream.seek(0)
-    try:
-        numbers = numpy.fromiter(_ascii_coordinates(stream), float)
-    except ValueError as error:
-        raise ValueError(f"{name} is a truncated or damaged ASCII STL: {error}") from error
-    return numbers.reshape(-1, 3, 3), beginning[:80]
-
-
-def _ascii_coordinates(stream: BinaryIO) -> Iterator[float]:
-    """Yield the coordinates of an ASCII STL file, nine for each facet."""
-    vertices, facets, complete = 0, 0, False
-    for line in iter(lambda: stream.readline(_MAX_LINE), b""):
-        words = line.split()
-        keyword = words[0].lower() if words else b""
-        if keyword == b"vertex":
-            if len(words) != 4:
-                raise ValueError(f"a vertex is not three numbers, {shown(line.decode('latin-1').strip())}")
-            vertices += 1
-            yield from map(float, words[1:])
-        elif keyword == b"endfacet":
-            facets += 1
-            if vertices != 3 * facets:
-                raise ValueError(f"facet {facets} has not three vertices")
-        complete = keyword == b"endsolid" or (complete and not words)
-    if not complete or vertices != 3 * facets:
-        raise ValueError("`endsolid` is missing at its end")
-
-
-def _space(header: bytes) -> str | None:
-    """Return the coordinate system in a header of 3D Slicer, "SPACE=LPS"."""
-    return next((word for word in ("RAS", "LPS") if f"SPACE={word}".encode() in header), None)
-
-
-def _check_size(triangles: Numbers, units: str, name: str) -> None:
-    """Raise ValueError for an extent that no liner or head has."""
-    low, high = _SIZES
-    extent = float(numpy.ptp(triangles.reshape(-1, 3), axis=0).max())
-    if not low <= extent * STL_UNITS[units] <= high:
-        fitting = [f"{unit} ({extent * length:.3g} mm)" for unit, length in STL_UNITS.items()]
-        fitting = [
-            text for text, length in zip(fitting, STL_UNITS.values(), strict=True) if low <= extent * length <= high
-        ]
-        raise ValueError(
-            f"{name} is {extent:.3g} {units} large: a liner or head has {low:g} to {high:g} mm; "
-            + (f"its unit may be {' or '.join(fitting)}" if fitting else "in no known unit it is one")
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

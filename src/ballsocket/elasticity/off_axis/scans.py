@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from functools import cached_property
-from io import StringIO
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -13,8 +11,8 @@ from typing import Any
 import numpy
 
 from ...core.arrays import Numbers
-from ...core.checks import check_number, needs, require
-from ...core.input_files import open_input, resolve_input
+from ...core.checks import check_number, require
+from ...core.mesh_files import read_mesh_file
 from ...core.quantities import AIM
 from .bore_shapes import InterpolatedDeviation
 
@@ -33,9 +31,6 @@ _MAX_ROUGHNESS = 0.03
 
 _MAX_AVERAGING_ANGLE = 0.35
 _AVERAGING_ANGLE = radians(4.0)
-
-_HEADER_BYTES = 2**16
-"""Number of bytes in which the header of a file ends."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,28 +111,9 @@ def read_scan(path: str | Path, finest: float = _AVERAGING_ANGLE, azimuth: float
     OSError
         A file that cannot be read.
     """
-    needs("fem", "meshio")
     path = Path(path)
-    return scan_from_points(numpy.unique(_read_points(path), axis=0), path.name, finest, azimuth)
-
-
-def _read_points(path: Path) -> Numbers:
-    """Read the points (points, 3) of a mesh file."""
-    import meshio
-
-    message = f"{path.name} cannot be read as a mesh: the file is incomplete or its suffix is wrong"
-    with open_input(path) as file:
-        header = file.read(_HEADER_BYTES)
-    if path.suffix.lower() == ".ply" and b"end_header" not in header:
-        raise ValueError(message)  # meshio would read for ever
-    try:
-        with numpy.errstate(all="ignore"), redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints
-            points = numpy.asarray(meshio.read(resolve_input(path)).points, dtype=float)
-    except (meshio.ReadError, ValueError, TypeError, LookupError, AttributeError, AssertionError, SystemExit) as error:
-        raise ValueError(message) from error
-    if points.ndim != 2 or points.shape[1] < 3:
-        raise ValueError(message)
-    return points[:, :3]
+    points, _ = read_mesh_file(path)
+    return scan_from_points(numpy.unique(points, axis=0), path.name, finest, azimuth)
 
 
 def scan_from_points(

@@ -1,0 +1,75 @@
+"""Points and triangles of mesh files, read by meshio."""
+
+from __future__ import annotations
+
+from contextlib import redirect_stderr, redirect_stdout
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy
+
+from .arrays import Numbers
+from .checks import needs
+from .input_files import open_input, resolve_input
+
+_HEADER_BYTES = 2**16
+"""Number of bytes in which the header of a file ends."""
+
+_MAX_BYTES = 200_000_000
+"""Largest size of a mesh file."""
+
+
+def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:
+    """Read the points (n, 3) and the triangles (m, 3), as indices of points, of an STL, OBJ or PLY file.
+
+    Polygons are split into triangles. A file of points alone has no triangles.
+
+    Raises
+    ------
+    ValueError
+        A file that is too large, incomplete or no mesh; indices of points that are not in the file.
+    ImportError
+        The package meshio is not installed.
+    OSError
+        The file cannot be read.
+    """
+    needs("fem", "meshio")
+    import meshio  # slow to import
+
+    message = f"{path.name} cannot be read as a mesh: the file is incomplete or its suffix is wrong"
+    with open_input(path) as file:
+        raw = file.read(_MAX_BYTES + 1)
+    if len(raw) > _MAX_BYTES:
+        raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
+    source: Any = resolve_input(path)
+    if path.suffix.lower() == ".ply":
+        head, end, body = raw[:_HEADER_BYTES].partition(b"end_header")
+        if not end:
+            raise ValueError(message)  # meshio would read for ever
+        head = head.replace(b" vertex_index\n", b" vertex_indices\n").replace(b" vertex_index\r", b" vertex_indices\r")
+        source = BytesIO(head + end + body + raw[_HEADER_BYTES:])
+    try:
+        with numpy.errstate(all="ignore"), redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints
+            mesh = meshio.read(source, file_format="ply" if isinstance(source, BytesIO) else None)
+            points = numpy.asarray(mesh.points, dtype=float)
+            blocks = [_fans(numpy.asarray(cells.data, dtype=int)) for cells in mesh.cells]
+    except (meshio.ReadError, ValueError, TypeError, LookupError, AttributeError, AssertionError, SystemExit) as error:
+        raise ValueError(message) from error
+    if points.ndim != 2 or points.shape[1] < 3:
+        raise ValueError(message)
+    triangles = numpy.concatenate([numpy.zeros((0, 3), dtype=int), *blocks])
+    if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
+        first = triangles.min() + 1 if triangles.min() < 0 else triangles.max() + 1
+        raise ValueError(
+            f"{path.name}: a face names point {first}, and the file has {len(points)} points: count them from 1, not "
+            "back from the last one"
+        )
+    return points[:, :3], triangles
+
+
+def _fans(faces: Numbers) -> Numbers:
+    """Split polygons (n, corners) into triangles (m, 3) around their first corner; lines have none."""
+    corners = faces.shape[1] if faces.ndim == 2 else 0
+    fans = [faces[:, [0, index, index + 1]] for index in range(1, corners - 1)]
+    return numpy.concatenate([numpy.zeros((0, 3), dtype=int), *fans])
