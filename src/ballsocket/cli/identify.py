@@ -112,7 +112,7 @@ def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
     else:
         print_wear_fit(fit)
     if figure is not None:
-        save(wear_fit_figure(fit), figure)
+        save(wear_fit_figure(fit, hip_file.cycles), figure)
 
 
 def _summary(result: IdentificationResult, posterior: Posterior | None) -> dict[str, Any]:

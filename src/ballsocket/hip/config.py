@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import degrees, pi
+from math import degrees, inf, pi
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -32,6 +32,7 @@ from .film_limit import FilmLimit
 from .law_fields import select_law_class
 from .schema import FilmTable, HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles
+from .station_file import read_stations
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 from .wear_fit import RATES, MeasuredWear
 from .wear_law import COEFFICIENT, coefficient_field, wear_factor
@@ -104,7 +105,7 @@ def read_wear_test(path: str | Path) -> HipFile:
     path = Path(path)
     hip_file = read_toml(path, "wear test", lambda content: _parse_hip(_with_coefficient(content), path.parent))
     if not hip_file.data:
-        raise ValueError(f"{path.name}: no measured wear: add [[data]] with quantity, values, and cycles or rate")
+        raise ValueError(f"{path.name}: no measured wear: add [[data]] with quantity, values and cycles, or a file")
     return hip_file
 
 
@@ -145,7 +146,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         report_at=report_at,
         lubricant=lubricant,
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
-        data=tuple(_parse_measured_wear(table, cycle.per_year, tables) for table in tables.data or ()),
+        data=tuple(_parse_measured_wear(table, cycle.per_year, tables, folder) for table in tables.data or ()),
         name=str(tables.name or ""),
         report=joint_file.report if tables.report is None else report_details(tables.report, folder),
     )
@@ -166,38 +167,77 @@ def _lubricant(table: FilmTable) -> Lubricant:
     return Lubricant(**values, friction=Stribeck(boundary=boundary))
 
 
-def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable) -> MeasuredWear:
-    """Create the measured wear of a table [[data]]."""
-    for key in ("quantity", "values"):
-        if getattr(table, key) is None:
-            raise ValueError(f"[[data]] of measured wear needs its {key}")
-    assert table.quantity is not None
-    assert table.values is not None
+_DENSITY_UNIT = "mg/mm^3"
+_WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}
+"""Units of measured wear; others are in mm."""
+
+
+def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable, folder: Path) -> MeasuredWear:
+    """Create the measured wear of a table [[data]]; a mass becomes a volume by its density."""
+    if table.quantity is None:
+        raise ValueError("[[data]] of measured wear needs its quantity")
+    quantity = str(table.quantity)
+    stated, cycles, station = _stated_readings(table, quantity, folder)
     if per_year is None and tables.cycles_per_year is not None:
         per_year = float(tables.cycles_per_year)
-    unit = "mm^3" if table.quantity == "volume" else "mm"
-    stated = table.values.value if isinstance(table.values.value, list) else [table.values.value]
-    values = [_parse_wear("values", value, unit, table.rate is not None, per_year) for value in stated]
-    uncertainty: Any = None
-    if table.uncertainty is not None:
-        text = table.uncertainty.value
-        percent = number_of_percent(text)
-        if percent is not None:
-            uncertainty = [parse("uncertainty", percent, Kind.NUMBER) / 100 * value for value in values]
-        else:
-            numbers = text if isinstance(text, list) else [text]
-            uncertainty = [_parse_wear("uncertainty", n, unit, table.rate is not None, per_year) for n in numbers]
+    unit, density = _WEAR_UNITS.get(quantity, "mm"), _density(table, quantity)
+
+    def parse_all(name: str, numbers: Any) -> list[float]:
+        """Convert a number or a list of numbers with units to mm³ or mm."""
+        listed = numbers if isinstance(numbers, list) else [numbers]
+        return [_parse_wear(name, number, unit, table.rate is not None, per_year) / density for number in listed]
+
+    text = None if table.uncertainty is None else table.uncertainty.value
+    percent = number_of_percent(text)
     begin, end = (None if count is None else float(count) for count in (table.begin, table.end))
     return MeasuredWear(
-        quantity=str(table.quantity),
-        values=values,
-        cycles=table.cycles,
+        quantity="volume" if quantity == "mass" else quantity,
+        values=parse_all("values", stated),
+        cycles=cycles,
         rate=None if table.rate is None else str(table.rate),
         begin=begin,
         end=end,
-        uncertainty=uncertainty,
+        uncertainty=None if text is None or percent is not None else parse_all("uncertainty", text),
+        relative_uncertainty=None if percent is None else parse("uncertainty", percent, Kind.NUMBER) / 100,
+        station=station,
         name=str(table.name or ""),
     )
+
+
+def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple[Any, Any, Any]:
+    """Return values with units, cycles and stations of a table [[data]], as stated or from its file."""
+    if (table.values is None) == (table.file is None):
+        raise ValueError("[[data]] of measured wear needs its values, or else the file with a table of them")
+    if table.values is not None:
+        if table.unit is not None:
+            raise ValueError("unit belongs to a file: write the values with it, such as '38 mm^3'")
+        names = table.station
+        return table.values.value, table.cycles, names[0] if names is not None and len(names) == 1 else names
+    for key in ("cycles", "station"):
+        if getattr(table, key) is not None:
+            raise ValueError(f"{key} and file exclude each other: the file has a column of them; remove {key}")
+    readings = read_stations(folder / str(table.file), quantity, table.unit)
+    return list(readings.values), list(readings.cycles) or None, readings.stations
+
+
+def _density(table: WearDataTable, quantity: str) -> float:
+    """Return the density in mg/mm³ by which a mass is a volume; 1 for other quantities."""
+    if (table.density is None) == (quantity == "mass"):
+        raise ValueError(
+            "a mass needs the density of the worn material, such as density = '0.94 g/cm^3'"
+            if quantity == "mass"
+            else f"density belongs to quantity = 'mass', and the quantity is {quantity}"
+        )
+    if table.density is None:
+        return 1.0
+    value = table.density.value
+    try:
+        number, text = split_quantity(str(value))
+        density = convert(number, parse_units(text), parse_units(_DENSITY_UNIT))
+    except ValueError as error:
+        raise ValueError(f"density = {shown(value)} must be a number with a unit, such as '0.94 g/cm^3'") from error
+    require("density", density, 0 < density < inf, "a density (mg/mm³) is positive and finite")
+    return density
 
 
 def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float | None) -> float:

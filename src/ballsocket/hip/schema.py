@@ -297,7 +297,7 @@ class UncertaintyTable(Table, frozen=True, kw_only=True):
 class WearQuantity(Word):
     """Measured wear."""
 
-    noun, choices = "quantity", tuple(WEAR_QUANTITIES)
+    noun, choices = "quantity", (*WEAR_QUANTITIES, "mass")
 
 
 class WearRate(Word):
@@ -328,6 +328,14 @@ class WearDataTable(Table, frozen=True, kw_only=True):
 
     quantity: Annotated[WearQuantity | None, meaning("measured quantity")] = None
     values: Annotated[WearValues | None, meaning("measured totals, or rates: '38 mm^3/Mc'")] = None
+    station: Annotated[
+        Texts | None, meaning("station (specimen) of the values, one or one for each; its readings are cumulative")
+    ] = None
+    file: Annotated[
+        Text | None, meaning("table of readings: a column for each station, or columns station and quantity")
+    ] = None
+    unit: Annotated[Text | None, meaning("unit of the columns of the file whose heads have none")] = None
+    density: Annotated[WearValues | None, meaning("density of the worn material, for a mass: '0.94 g/cm^3'")] = None
     cycles: Annotated[CycleCounts | None, meaning("numbers of cycles of the totals")] = None
     rate: Annotated[WearRate | None, meaning("kind of the rate: of the new bore, between two counts, from 0")] = None
     begin: Annotated[Cycles | None, meaning("number of cycles at which a steady rate begins")] = msgspec.field(
@@ -337,7 +345,8 @@ class WearDataTable(Table, frozen=True, kw_only=True):
         name="to", default=None
     )
     uncertainty: Annotated[
-        WearValues | None, meaning("standard uncertainty, or '10 %'; by default from the scatter")
+        WearValues | None,
+        meaning("standard uncertainty, or '10 %' of the fitted values; by default from the scatter"),
     ] = None
     name: Annotated[Text | None, meaning("name of the data in messages")] = None
 

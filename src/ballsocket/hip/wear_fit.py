@@ -16,6 +16,7 @@ from ..core.checks import known_name, require, shown
 from .history import History, NumericalError, Report
 from .law_fields import law_summary
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
+from .specimens import mean_of_specimens
 from .wear_integrator import WearIntegrator
 from .wear_law import coefficient_field, with_coefficient
 
@@ -38,13 +39,17 @@ _MAX_SHIFT = 0.3
 """Largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted."""
 
 _MAX_CENTRES = 6
+_MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
 _MAX_LOG_RANGE = 20.0
-"""Range of ln(coefficient) beside the best one in which an end of the band is searched."""
+"""Range of ln(coefficient) on both sides of the best one in which other readings of a rate are searched."""
 
 _SIGNIFICANCE = 0.05
 """Probability of the scatter below which Student's quantile applies."""
 
 _MIN_NOTED_WIDENING = 1.05
+
+_PREDICTED, _LEAST = 10, 1e-6
+"""Number of steps of a prediction, and the share of the coefficient that stands for an end of the band at 0."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,7 +69,14 @@ class MeasuredWear:
     begin, end : float, optional
         Cycle counts of a rate.
     uncertainty : number or array, optional
-        Standard uncertainty (k = 1) in the unit of the values. Without it, it is estimated from the scatter.
+        Standard uncertainty (k = 1) in the unit of the values. Without any, it is estimated from the scatter.
+    relative_uncertainty : float, optional
+        Standard uncertainty as a share of each true value, for which the fit has its fitted values: a reading that is
+        low by chance has no larger weight.
+    station : str or sequence of str, optional
+        Station (specimen) of all values, or of each. Readings of one station at several cycle counts are cumulative
+        and no independent values. Without it a data set is one specimen, and further values at the same cycle counts
+        are further specimens, in the order of the values.
     name : str
         Name in messages.
 
@@ -86,6 +98,8 @@ class MeasuredWear:
     begin: float | None = None
     end: float | None = None
     uncertainty: Any = None
+    relative_uncertainty: float | None = None
+    station: str | Sequence[str] | None = None
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -102,6 +116,15 @@ class MeasuredWear:
             if sigma.size not in (1, values.size):
                 raise ValueError(f"uncertainty must have 1 or {values.size} numbers, got {sigma.size}")
             object.__setattr__(self, "uncertainty", numpy.broadcast_to(sigma, values.shape))
+        if (share := self.relative_uncertainty) is not None:
+            require("relative_uncertainty", share, 0 < share < inf, "a share of each value is positive and finite")
+            if self.uncertainty is not None:
+                raise ValueError("uncertainty and relative_uncertainty exclude each other: state one of them")
+        if self.station is not None:
+            names = (self.station,) * values.size if isinstance(self.station, str) else tuple(self.station)
+            if len(names) != values.size:
+                raise ValueError(f"station has {len(names)} names for {values.size} values: one name, or one for each")
+            object.__setattr__(self, "station", names)
 
     def _check_totals(self, values: Numbers) -> None:
         """Check the cycle counts of totals; ValueError otherwise."""
@@ -136,6 +159,19 @@ class MeasuredWear:
 
     def __len__(self) -> int:
         return len(self.values)
+
+    @property
+    def specimen_numbers(self) -> list[int]:
+        """Number of the specimen of each value in a data set without stations, from 0: its repetition of a count."""
+        counts = [nan] * len(self) if self.rate is not None else self.cycles.tolist()
+        keys = [str(count) for count in counts]
+        return [keys[:index].count(key) for index, key in enumerate(keys)]
+
+    def standard_uncertainty(self, fitted: Numbers) -> Numbers:
+        """Compute the standard uncertainty of each value from its fitted value; the fitted value itself if unknown."""
+        if self.uncertainty is not None:
+            return numpy.asarray(self.uncertainty)
+        return fitted if self.relative_uncertainty is None else self.relative_uncertainty * fitted
 
     @property
     def unit(self) -> str:
@@ -198,16 +234,22 @@ class WearFit:
         Best coefficient in the unit of the law, such as mm³/(N m).
     low, high : float
         Ends of the 95 % band; NaN for a single value without an uncertainty.
+    stations : mapping of str to float
+        Coefficient of each specimen, by the name of its station.
+    scatter : float
+        Relative standard deviation (k = 1) of the coefficient between specimens; NaN for one specimen.
     results : tuple of array
         Values of the simulation at the best coefficient, for each data set.
     uncertainty : array (data,)
-        Standard uncertainties, stated or estimated.
+        Standard uncertainties of the readings, stated or estimated; NaN without a scatter within specimens.
     noise_estimated : bool
         True if uncertainties were not stated and are estimated from the scatter.
     widening : float
-        Factor on the stated uncertainties by the scatter of the data, at least 1.
+        Factor on the stated uncertainties of one specimen by the scatter of its readings, at least 1.
     readings : mapping of str to float
         Coefficient for each kind of the measured rates, by its description.
+    specimens : mapping of str to array
+        Indices of the values of each specimen, by the name of its station.
     """
 
     simulation: HipSimulation
@@ -215,11 +257,14 @@ class WearFit:
     coefficient: float
     low: float
     high: float
+    stations: Mapping[str, float]
+    scatter: float
     results: tuple[Numbers, ...]
     uncertainty: Numbers
     noise_estimated: bool
     widening: float
     readings: Mapping[str, float]
+    specimens: Mapping[str, Numbers]
 
     @property
     def law_name(self) -> str:
@@ -237,11 +282,21 @@ class WearFit:
         """Measured minus simulated values, in standard uncertainties: (data,); NaN without an uncertainty."""
         return (_join(self.data) - numpy.concatenate(self.results)) / self.uncertainty
 
-    @cached_property
-    def history(self) -> History:
-        """Simulation with the best coefficient, with reports at the cycle counts of the data."""
+    def predict(self, cycles: float = 0.0) -> tuple[History, History, History]:
+        """Simulate the coefficient and both ends of its band, with reports at the cycle counts of the data.
+
+        Parameters
+        ----------
+        cycles : float
+            Number of cycles of the prediction, where it goes further than the data.
+        """
         counts = sorted({count for measured in self.data for count in measured.counts}) or [_MILLION]
-        return self.simulation.after(counts[-1], counts)
+        counts += [count for count in numpy.linspace(0, cycles, _PREDICTED + 1).tolist() if count > counts[-1]]
+        best = self.coefficient
+        ends = (end if isfinite(end) else best for end in (max(self.low, _LEAST * best), self.high))
+        runs = (replace(self.simulation, wear=with_coefficient(self.simulation.wear, end)) for end in (best, *ends))
+        best_run, low_run, high_run = (run.after(counts[-1], counts) for run in runs)
+        return best_run, low_run, high_run
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -253,17 +308,39 @@ class WearFit:
         kinds = dict.fromkeys(measured.description for measured in self.data if measured.rate is not None)
         if kinds:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
+        yield from self._specimen_notes()
         if not isfinite(self.high):
             yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"
-        elif self.noise_estimated:
-            share = float((self.uncertainty / _join(self.data)).mean())
+        elif self.noise_estimated and numpy.isfinite(self.uncertainty).all():
+            share = float((self.uncertainty / numpy.concatenate(self.results)).mean())
             yield (
-                f"no uncertainty was stated: it is estimated from the scatter, {100 * share:.2g} % of each value "
-                "(k = 1), and the band is by Student's quantile"
+                f"no uncertainty was stated: it is estimated from the scatter of the readings, {100 * share:.2g} % of "
+                "each value (k = 1)"
             )
         if self.widening > _MIN_NOTED_WIDENING:
             yield f"the data scatter more than stated: the band is {self.widening:.3g} times as wide"
         yield "the band has the uncertainty of the measured wear alone, not that of loads, geometry or law"
+
+    def _specimen_notes(self) -> Iterator[str]:
+        """Yield sentences on stations, and on values whose station is not stated."""
+        count, unnamed = len(self.stations), [measured for measured in self.data if measured.station is None]
+        if count > 1:
+            yield (
+                f"the coefficient is the mean of {count} specimens, which scatter by {100 * self.scatter:.2g} % "
+                f"(k = 1); the band is by Student's quantile with {count - 1} degree{'s' * (count > 2)} of freedom"
+            )
+            if unnamed:
+                yield (
+                    "no station is stated: each data set is a specimen of its own, and so is each further value at the "
+                    "same cycles, in the order of the values; name the stations by the key station"
+                )
+        elif sum(map(len, self.data)) > 1:
+            by = "the scatter of its readings as one value" if self.noise_estimated else "its stated uncertainty"
+            yield (
+                f"all {sum(map(len, self.data))} values are cumulative readings of one specimen"
+                f"{', since no station is stated' if unnamed else ''}: the band is for this specimen alone, by {by}; "
+                "other specimens scatter more, which takes several stations to see (key station)"
+            )
 
     def summary(self) -> dict[str, Any]:
         """Return the fit as a dictionary for JSON."""
@@ -277,6 +354,7 @@ class WearFit:
                 "unit": measured.unit,
                 "measured": measured.values.tolist(),
                 "simulated": values.tolist(),
+                "stations": None if measured.station is None else list(measured.station),
             }
             for measured, values in zip(self.data, self.results, strict=True)
         ]
@@ -284,6 +362,8 @@ class WearFit:
         return {
             "law": law_summary(self.simulation.wear),
             "coefficient": {"value": self.coefficient, "low": low, "high": high, "unit": self.unit},
+            "stations": dict(self.stations),
+            "station_scatter": self.scatter if isfinite(self.scatter) else None,
             "readings": dict(self.readings),
             "data": data,
             "noise_estimated": self.noise_estimated,
@@ -295,8 +375,9 @@ class WearFit:
 def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequence[MeasuredWear]) -> WearFit:
     """Fit the coefficient of a wear law to measured wear, with its 95 % band.
 
-    The simulation runs at several coefficients. Between them, ln(result) is a polynomial of ln(coefficient). The best
-    coefficient minimises χ², and the band ends where χ² has risen by the square of the quantile.
+    The simulation runs at several coefficients. Between them, ln(result) is a polynomial of ln(coefficient). The
+    coefficient of each specimen minimises χ² of its readings. That of several specimens is their mean, whose band has
+    the scatter between them: see `mean_of_specimens`.
 
     Parameters
     ----------
@@ -322,7 +403,7 @@ def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequenc
     sets = (data,) if isinstance(data, MeasuredWear) else tuple(data)
     if not sets:
         raise ValueError("data must have at least one measured wear, got none")
-    stated = {measured.uncertainty is not None for measured in sets}
+    stated = {measured.uncertainty is not None or measured.relative_uncertainty is not None for measured in sets}
     if len(stated) > 1:
         raise ValueError("some data have an uncertainty and others have none: state it for all, or for none")
     field = coefficient_field(simulation.wear)
@@ -330,33 +411,48 @@ def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequenc
         raise ValueError("the wear law has no coefficient: use a WearLaw such as Archard")
     start = float(getattr(simulation.wear, field.name)) or float(field.example)
     model = _WearModel(simulation=simulation, start=start, data=sets)
-    values = _join(sets)
-    sigma = numpy.concatenate([m.values if m.uncertainty is None else m.uncertainty for m in sets])
-    nodes, best = _find_best(model, values, sigma)
-    results = numpy.exp(nodes.interpolate(best)[: len(values)])
-    noise_estimated = False in stated
-    if noise_estimated:
-        freedom = len(values) - 1
-        relative = float(numpy.sum((results / values - 1) ** 2) / freedom) ** 0.5 if freedom else nan
-        sigma = relative * values
-    low, high, widening = _band(nodes, values, sigma, best, noise_estimated)
+    nodes = _find_nodes(model)
+    best = _mean_coefficient(nodes, sets, noise_estimated=False in stated)
+    results = nodes.results(best.coefficient)
     return WearFit(
-        simulation=replace(simulation, wear=with_coefficient(simulation.wear, exp(best))),
+        simulation=replace(simulation, wear=with_coefficient(simulation.wear, best.coefficient)),
         data=sets,
-        coefficient=exp(best),
-        low=low,
-        high=high,
+        coefficient=best.coefficient,
+        low=max(best.coefficient - best.half_band, 0.0),
+        high=best.coefficient + best.half_band,
+        stations=MappingProxyType(best.stations),
+        scatter=best.scatter,
         results=tuple(numpy.split(results, numpy.cumsum([len(measured) for measured in sets])[:-1])),
-        uncertainty=sigma,
-        noise_estimated=noise_estimated,
-        widening=widening,
+        uncertainty=best.share * _standard_uncertainty(sets, results),
+        noise_estimated=False in stated,
+        widening=best.widening,
         readings=MappingProxyType(_readings(model, nodes)),
+        specimens=MappingProxyType(_specimens(sets)),
     )
 
 
 def _join(sets: Sequence[MeasuredWear]) -> Numbers:
     """Join the values of all data sets: (data,)."""
     return numpy.concatenate([measured.values for measured in sets])
+
+
+def _standard_uncertainty(sets: Sequence[MeasuredWear], fitted: Numbers) -> Numbers:
+    """Join the standard uncertainties of all values, from their fitted values: (data,)."""
+    parts = numpy.split(fitted, numpy.cumsum([len(measured) for measured in sets])[:-1])
+    return numpy.concatenate([m.standard_uncertainty(part) for m, part in zip(sets, parts, strict=True)])
+
+
+def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
+    """Find the indices of the values of each specimen, by its name."""
+    names: list[str] = []
+    for number, measured in enumerate(sets, start=1):
+        if measured.station is not None:
+            names += measured.station
+            continue
+        title, numbers = measured.name or f"data {number}", measured.specimen_numbers
+        title = f"{title} ({number})" if title in names else title
+        names += [f"{title}, specimen {n + 1}" if max(numbers) else title for n in numbers]
+    return {name: numpy.flatnonzero(numpy.array(names) == name) for name in dict.fromkeys(names)}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -447,64 +543,124 @@ class _Nodes:
         ln(coefficient) of the middle node.
     polynomials : array (degree + 1, results)
         Coefficients by ascending power of ln(coefficient) minus the centre.
+    n_data : int
+        Number of the first results that belong to measured values.
     """
 
     centre: float
     polynomials: Numbers
+    n_data: int
 
     def interpolate(self, log_coefficient: float) -> Numbers:
         """Compute ln of all results at a value of ln(coefficient): (results,)."""
         shift = log_coefficient - self.centre
         inside = float(numpy.clip(shift, _NODES[0], _NODES[-1]))
-        powers = numpy.arange(len(self.polynomials))
-        value = (inside**powers) @ self.polynomials
-        slope = (powers[1:] * inside ** (powers[1:] - 1)) @ self.polynomials[1:]
-        return numpy.asarray(value + slope * (shift - inside))
+        value = inside ** numpy.arange(len(self.polynomials)) @ self.polynomials
+        return numpy.asarray(value + self.slopes(log_coefficient) * (shift - inside))
 
-    def chi_squared(self, log_coefficient: float, values: Numbers, sigma: Numbers) -> float:
-        """Compute χ² of the measured values at a value of ln(coefficient)."""
-        results = numpy.exp(self.interpolate(log_coefficient)[: len(values)])
-        return float(numpy.sum(((results - values) / sigma) ** 2))
+    def slopes(self, log_coefficient: float) -> Numbers:
+        """Compute d ln(result) / d ln(coefficient) of all results: (results,)."""
+        inside = float(numpy.clip(log_coefficient - self.centre, _NODES[0], _NODES[-1]))
+        powers = numpy.arange(1, len(self.polynomials))
+        return numpy.asarray((powers * inside ** (powers - 1)) @ self.polynomials[1:])
+
+    def results(self, coefficient: float) -> Numbers:
+        """Compute the results for all measured values: (data,)."""
+        return numpy.exp(self.interpolate(log(coefficient))[: self.n_data])
+
+    def fit(self, sets: Sequence[MeasuredWear], rows: Numbers) -> float:
+        """Find ln of the coefficient that fits some of the measured values, weighted by their fitted values."""
+        values = _join(sets)[rows]
+        log_coefficient = self.centre
+        for _ in range(_MAX_STEPS):  # Gauss-Newton, with the weights of the last step
+            results = self.results(exp(log_coefficient))
+            gradient = self.slopes(log_coefficient)[rows] * results[rows]
+            weights = _standard_uncertainty(sets, results)[rows] ** -2.0
+            step = float(weights * gradient @ (values - results[rows]) / (weights * gradient @ gradient))
+            log_coefficient += min(max(step, -1.0), 1.0)
+            if abs(step) < _STEP_TOLERANCE:
+                break
+        return log_coefficient
 
 
-def _find_best(model: _WearModel, values: Numbers, sigma: Numbers) -> tuple[_Nodes, float]:
-    """Find ln of the best coefficient, with nodes about it."""
-    from scipy.optimize import minimize_scalar
-
+def _find_nodes(model: _WearModel) -> _Nodes:
+    """Find nodes about the coefficient that fits all measured values."""
+    values = _join(model.data)
     first = model.log_results(numpy.array([model.start]))[0, : len(values)]
     centre = log(model.start) + float(numpy.mean(numpy.log(values) - first))
     for _ in range(_MAX_CENTRES):
-        log_results = model.log_results(numpy.exp(centre + _NODES))
-        nodes = _Nodes(centre=centre, polynomials=numpy.polynomial.polynomial.polyfit(_NODES, log_results, _DEGREE))
-        ends = (centre - 1.0, centre + 1.0)
-        best = float(minimize_scalar(nodes.chi_squared, bounds=ends, args=(values, sigma), method="bounded").x)
+        polynomials = numpy.polynomial.polynomial.polyfit(
+            _NODES, model.log_results(numpy.exp(centre + _NODES)), _DEGREE
+        )
+        nodes = _Nodes(centre=centre, polynomials=polynomials, n_data=len(values))
+        best = nodes.fit(model.data, numpy.arange(len(values)))
         if abs(best - centre) < _MAX_SHIFT:
             break
         centre = best
-    return nodes, best
+    return nodes
 
 
-def _band(
-    nodes: _Nodes, values: Numbers, sigma: Numbers, best: float, noise_estimated: bool
-) -> tuple[float, float, float]:
-    """Compute both ends of the 95 % band of the coefficient, and the factor by which scatter widens it."""
-    from scipy.optimize import brentq
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _MeanCoefficient:
+    """Coefficient of all specimens.
+
+    Attributes
+    ----------
+    coefficient, half_band : float
+        Mean, and half of its 95 % band.
+    stations : dict of str to float
+    scatter : float
+        Relative standard deviation between specimens; NaN for one.
+    share : float
+        Estimated relative uncertainty of the readings; 1 for stated uncertainties.
+    widening : float
+    """
+
+    coefficient: float
+    half_band: float
+    stations: dict[str, float]
+    scatter: float = nan
+    share: float = 1.0
+    widening: float = 1.0
+
+
+def _mean_coefficient(nodes: _Nodes, sets: Sequence[MeasuredWear], noise_estimated: bool) -> _MeanCoefficient:
+    """Compute the coefficient of each specimen, their mean and its band."""
     from scipy.stats import chi2, norm, t
 
-    if numpy.isnan(sigma).any():
-        return nan, nan, 1.0
-    least, freedom = nodes.chi_squared(best, values, sigma), len(values) - 1
-    widening = max(1.0, (least / freedom) ** 0.5) if freedom and not noise_estimated else 1.0
-    scattered = noise_estimated or (widening > 1 and chi2.sf(least, freedom) < _SIGNIFICANCE)
-    quantile = float(t.ppf(0.975, freedom) if scattered else norm.ppf(0.975))
-
-    def excess(log_coefficient: float) -> float:
-        """Compute the rise of χ² minus the allowed rise."""
-        return (nodes.chi_squared(log_coefficient, values, sigma) - least) / widening**2 - quantile**2
-
-    low, high = best - _MAX_LOG_RANGE, best + _MAX_LOG_RANGE
-    low_end = exp(brentq(excess, low, best)) if excess(low) > 0 else 0.0
-    return low_end, exp(brentq(excess, best, high)), widening
+    values, specimens = _join(sets), _specimens(sets)
+    logs = [nodes.fit(sets, rows) for rows in specimens.values()]
+    own, slopes = numpy.empty_like(values), numpy.empty_like(values)
+    for rows, log_coefficient in zip(specimens.values(), logs, strict=True):
+        own[rows] = nodes.results(exp(log_coefficient))[rows]
+        slopes[rows] = nodes.slopes(log_coefficient)[: len(values)][rows]
+    sigma, freedom = _standard_uncertainty(sets, own), len(values) - len(specimens)
+    chi_squared = float((((values - own) / sigma) ** 2).sum())
+    share = (chi_squared / freedom) ** 0.5 if freedom else nan
+    precision = numpy.array([((slopes[rows] * own[rows] / sigma[rows]) ** 2).sum() for rows in specimens.values()])
+    coefficients = numpy.exp(logs)
+    errors = coefficients * precision**-0.5 * (share if noise_estimated else 1.0)
+    stations = dict(zip(specimens, coefficients.tolist(), strict=True))
+    if len(specimens) == 1:
+        widening = max(1.0, share) if freedom and not noise_estimated else 1.0
+        scattered = noise_estimated or (widening > 1 and chi2.sf(chi_squared, freedom) < _SIGNIFICANCE)
+        quantile = float(t.ppf(0.975, freedom) if scattered else norm.ppf(0.975))
+        count = len(values) if noise_estimated else 1  # errors of cumulative readings do not cancel
+        return _MeanCoefficient(
+            coefficient=float(coefficients[0]),
+            half_band=quantile * widening * count**0.5 * float(errors[0]),
+            stations=stations,
+            share=share if noise_estimated else 1.0,
+            widening=widening,
+        )
+    mean = mean_of_specimens(coefficients, numpy.nan_to_num(errors) ** 2, min_ratio=0.0 if noise_estimated else 1.0)
+    return _MeanCoefficient(
+        coefficient=mean.mean,
+        half_band=float(t.ppf(0.975, len(specimens) - 1)) * mean.standard_error,
+        stations=stations,
+        scatter=mean.scatter / mean.mean,
+        share=share if noise_estimated else 1.0,
+    )
 
 
 def _readings(model: _WearModel, nodes: _Nodes) -> dict[str, float]:

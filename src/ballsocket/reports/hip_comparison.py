@@ -161,6 +161,9 @@ def print_wear_fit(fit: WearFit) -> None:
     band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
     table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
     table.add_row("coefficient", f"{fit.coefficient:.4g}", band)
+    if len(fit.stations) > 1:
+        for station, coefficient in fit.stations.items():
+            table.add_row(station, f"{coefficient:.4g}", "")
     print_columns(terminal, table)
     if fit.readings:
         print_folded(terminal, "the same number as a rate of another kind:", "")
@@ -174,23 +177,30 @@ def print_wear_fit(fit: WearFit) -> None:
 
 def _measured_table(fit: WearFit) -> Any:
     """Make the table of measured and simulated wear."""
-    table = table_with_units({"measured": "", "value": "", "fit": "", "unit": ""}, left=("measured", "unit"))
+    several = ["station"] if len(fit.specimens) > 1 else []
+    heads = dict.fromkeys(["measured", "value", "fit", "unit", *several], "")
+    table = table_with_units(heads, left=("measured", "unit", "station"))
+    rows = {int(row): station for station, indices in fit.specimens.items() for row in indices}
+    stations = ([rows[row]] if several else [] for row in range(len(rows)))
     for measured, results in zip(fit.data, fit.results, strict=True):
         cycles = [""] * len(measured) if measured.rate else [f" after {count:g} cycles" for count in measured.cycles]
         for value, result, count in zip(measured.values, results, cycles, strict=True):
             title = measured.description if measured.rate else f"{measured.quantity.replace('_', ' ')}{count}"
-            table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit)
+            table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit, *next(stations))
     return table
 
 
-def wear_fit_figure(fit: WearFit) -> Figure:
-    """Draw the fitted simulation over the cycles, with the measured totals and rates."""
+def wear_fit_figure(fit: WearFit, cycles: float = 0.0) -> Figure:
+    """Draw the fitted simulation with its band over the cycles, with the measured totals and rates of each station.
+
+    `cycles` is the number of cycles of the prediction, where it goes further than the data.
+    """
     from .notebook_figure import NotebookFigure
 
-    quantities = list(dict.fromkeys(measured.quantity for measured in fit.data))
-    figure = NotebookFigure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
+    quantities, runs = list(dict.fromkeys(measured.quantity for measured in fit.data)), fit.predict(cycles)
+    figure = NotebookFigure(figsize=(6.4 * len(quantities), 4.6), layout="constrained")
     for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
-        _draw_fit(axes, fit, quantity)
+        _draw_fit(axes, fit, runs, quantity)
         axes.set_xlim(left=0)
         axes.set_ylim(bottom=0)
         finish(axes, "million cycles", f"{quantity.replace('_', ' ')} [{WEAR_QUANTITIES[quantity]}]")
@@ -198,27 +208,33 @@ def wear_fit_figure(fit: WearFit) -> Figure:
     return figure
 
 
-def _draw_fit(axes: Axes, fit: WearFit, quantity: str) -> None:
-    """Draw one quantity of the fitted simulation with its measured values."""
-    rows = fit.history.table()
+def _draw_fit(axes: Axes, fit: WearFit, runs: Sequence[History], quantity: str) -> None:
+    """Draw one quantity of the fitted simulation and of both ends of its band, with its measured values."""
     column = f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"
-    cycles = [0.0, *(row["cycles"] / 1e6 for row in rows)]
-    totals = [0.0, *(row[column] for row in rows)]
+    tables = [run.table() for run in runs]
+    cycles = [0.0, *(row["cycles"] / 1e6 for row in tables[0])]
+    totals, low, high = ([0.0, *(row[column] for row in table)] for table in tables)
     axes.plot(cycles, totals, color=BLUE, label=f"coefficient {fit.coefficient:.3g} {fit.unit}")
-    for index, measured in enumerate(fit.data):
-        colour = _COLOURS[1 + index % (len(_COLOURS) - 1)]
-        if measured.quantity != quantity:
-            continue
-        if measured.rate is None:
-            axes.plot(measured.cycles / 1e6, measured.values, "o", color=colour, label="measured")
-            continue
-        begin, end = (measured.begin or 0.0) / 1e6, (measured.end or 1e6) / 1e6
-        for number, value in enumerate(measured.values):
-            start = float(numpy.interp(begin, cycles, totals))
-            line = [start, start + value * (end - begin)]
-            axes.plot(
-                [begin, end], line, "--", color=colour, label=None if number else f"measured {measured.rate} rate"
-            )
+    if isfinite(fit.high):
+        band = f"95 %: {fit.low:.3g} to {fit.high:.3g}"
+        axes.fill_between(cycles, low, high, color=BLUE, alpha=0.15, linewidth=0, label=band)
+    starts = numpy.cumsum([0, *map(len, fit.data)])
+    for number, (station, indices) in enumerate(fit.specimens.items()):
+        colour, marker = _COLOURS[1 + number % (len(_COLOURS) - 1)], "os^Dv"[number % 5]
+        label: str | None = f"measured, {station}" if len(fit.specimens) > 1 else "measured"
+        for measured, start in zip(fit.data, starts[:-1], strict=True):
+            rows = indices[(indices >= start) & (indices < start + len(measured))] - start
+            if measured.quantity != quantity or not len(rows):
+                continue
+            if measured.rate is None:
+                axes.plot(measured.cycles[rows] / 1e6, measured.values[rows], marker, color=colour, label=label)
+            else:
+                begin, end = (measured.begin or 0.0) / 1e6, (measured.end or 1e6) / 1e6
+                first = float(numpy.interp(begin, cycles, totals))
+                last = first + float(measured.values[rows].mean()) * (end - begin)
+                rate_label = label and label.replace("measured", f"measured {measured.rate} rate")
+                axes.plot([begin, end], [first, last], "--", color=colour, label=rate_label)
+            label = None
 
 
 def check_table(path: Path) -> None:
