@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import ballsocket as bs
 from ballsocket.core.arrays import Numbers
-from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, simulators
+from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, separations, simulators
 from ballsocket.hip import Archard, Film, HipSimulation, Lubricant, Stribeck, in_vivo
 from ballsocket.reports.style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 
@@ -143,6 +143,20 @@ def ratio_table(found: Iterable[Ratio]) -> str:
     return _table(("measured over measured", "measured", "Archard", "area law", "source"), rows)
 
 
+def separation_table(found: Iterable[tuple[str, float, float]]) -> str:
+    rows = [
+        (
+            PUBLISHED[name].description,
+            f"{PUBLISHED[name]} mm",
+            f"{lateral:.1f} mm",
+            f"{distance:.1f} mm",
+            PUBLISHED[name].source,
+        )
+        for name, lateral, distance in found
+    ]
+    return _table(("what", "measured", "predicted", "distance of the centres", "source"), rows)
+
+
 def band_table(found: Iterable[Predicted]) -> str:
     rows = []
     for each in found:
@@ -220,6 +234,7 @@ def main() -> None:
     found = {
         "inputs": inputs(),
         "ratios": ratio_table(ratios()),
+        "separations": separation_table(separations()),
         "bands": band_table([*shaken, *walked]),
         "friction": friction_table(),
     }

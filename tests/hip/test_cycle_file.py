@@ -12,7 +12,7 @@ from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
 from ballsocket.hip.kinematics import rotation_matrices
 
 from ..cli.command import run
-from .hips import COUNTS, CYCLE, refuses, write_edited_file
+from .hips import COUNTS, CYCLE, QUICK, hip, refuses, write_edited_file
 
 PHASES = np.linspace(0.0, 1.0, 201)
 ISO = iso_14242_1()
@@ -81,6 +81,7 @@ def test_three_components_of_the_force(tmp_path):
     expected = np.column_stack([100 * np.sin(angle), 0 * angle, 2000 + 1000 * np.cos(angle)])
     assert cycle.forces == pytest.approx(expected, abs=3.0)
     assert not cycle.rotation_increments.any()
+    assert "no columns of flexion, adduction, rotation: they are assumed to be 0" in cycle.notes[0]
     assert read_cycle(path, options=LEFT).forces == pytest.approx(cycle.forces * [-1, 1, 1], abs=1e-9)
     on_ball = read_cycle(path, options=TableOptions(force_on="ball")).forces
     assert on_ball == pytest.approx(-cycle.forces, abs=1e-9)
@@ -169,6 +170,17 @@ def opensim(path, columns, time=1.1 * PHASES, header="nRows=201\nnColumns=4\ninD
 def coordinates(path, side="r", **words):
     names = (f"hip_{name}_{side}" for name in ("flexion", "adduction", "rotation"))
     return opensim(path, dict(zip(names, ANGLES, strict=True)), **words)
+
+
+def test_a_motion_in_one_plane_is_named_in_every_answer(tmp_path):
+    """Models of walking in the sagittal plane have flexion alone: cross-shear is 0 by assumption."""
+    path = opensim(tmp_path / "plane.sto", {"hip_flexion_r": ANGLES[0]})
+    use = hip(cycle=read_cycle([path, reactions(tmp_path / "reactions.sto")], 16), ring_width=QUICK["ring_width"])
+    (note,) = (note for note in use.after(1e3).summary()["notes"] if "no columns" in note)
+    assert note.startswith("the motion has no columns of adduction, rotation: they are assumed to be 0")
+    assert "cross-shear and crossing angle mean nothing" in note
+    complete = read_cycle([coordinates(tmp_path / "complete.sto"), reactions(tmp_path / "reactions.sto")])
+    assert complete.notes == ()
 
 
 def reactions(path, side="r", on="femur", frame="pelvis", force=-FORCE, **words):

@@ -86,14 +86,15 @@ def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
 def test_the_interval_of_a_separation_may_pass_the_end_of_the_cycle():
     cycle = iso_14242_1(10)
     displacement, azimuth = np.array([[0.0, 3.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.radians([-20, 30, 50])
-    apart = Microseparation(steps=np.array([0, 8, 9]), displacement=displacement, azimuth=azimuth)
+    apart = Microseparation(steps=np.array([0, 8, 9]), displacement=displacement, azimuth=azimuth, side=np.eye(3)[0])
     summary = apart.summary(cycle)
     assert (summary["from"], summary["to"]) == ("85.0 % of the cycle", "5.0 % of the cycle")
-    assert (summary["largest_mm"], summary["place_deg"]) == (3.0, pytest.approx(-20.0))
+    assert (summary["centre_distance_mm"], summary["place_deg"]) == (3.0, pytest.approx(-20.0))
+    assert summary["medial_lateral_mm"] == 1.0
     within = replace(apart, steps=np.array([4, 5, 6])).summary(cycle)
     assert (within["from"], within["to"]) == ("45.0 % of the cycle", "65.0 % of the cycle")
     assert apart.describe(cycle).startswith("microseparation from 85.0 % of the cycle to 5.0 % of the cycle: the ball")
-    assert replace(apart, steps=apart.steps[:0], displacement=displacement[:0]).largest == 0.0
+    assert replace(apart, steps=apart.steps[:0], displacement=displacement[:0]).centre_distance == 0.0
 
 
 def spring_ball(mismatch=4.0, stiffness=100.0):
@@ -133,13 +134,15 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase(short
     use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(8.0))
     apart = use.separation
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
-    assert apart.largest < 8.0
+    assert apart.medial_lateral < 4.0  # the mismatch
+    assert apart.medial_lateral < apart.centre_distance < 8.0
     assert np.degrees(apart.azimuth) == pytest.approx(0.0, abs=1e-9)
     (note,) = (note for note in use.notes if note.startswith("microseparation from"))
     assert "wear by the contact with the rim is not included" in note
+    assert "0.9 ± 0.2 mm and 2.1 ± 0.5 mm medial-lateral" in note
     assert len(use.loaded) + len(apart.steps) == 100
     summary = use.after(1e4).summary()["cycle"]["microseparation"]
-    assert summary["largest_mm"] == apart.largest
+    assert summary["centre_distance_mm"] == apart.centre_distance
     assert (summary["from"], summary["to"]) == ("59.5 % of the cycle", "2.5 % of the cycle")  # of the next
 
 

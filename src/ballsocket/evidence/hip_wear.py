@@ -15,6 +15,7 @@ from ..core.deprecation import renamed_fields, renamed_names
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
+from ..hip.rim import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.uncertainty import population
@@ -83,6 +84,17 @@ PUBLISHED: Mapping[str, Published] = MappingProxyType(
         "ali-65": _published("36 mm, cup at 65°", 15.4, _RATE, _ALI, half_width=5.0, spread="95 %"),
         "ali-45-off": _published("36 mm, 45°, centres 4 mm off", 21.5, _RATE, _ALI, half_width=5.5, spread="95 %"),
         "ali-65-off": _published("36 mm, 65°, centres 4 mm off", 23.0, _RATE, _ALI, half_width=5.7, spread="95 %"),
+        **{
+            f"ali-{angle[:-1]}-separation": _published(
+                f"medial-lateral separation, 36 mm, {angle}, centres 4 mm off",
+                value,
+                "mm",
+                _ALI,
+                half_width=interval,
+                spread="as stated",
+            )
+            for angle, (value, interval) in MEASURED_SEPARATIONS.items()
+        },
         "cooper": _published("ISO 14242-1", 12.5, _RATE, _COOPER),
         "cooper-off": _published("then ISO 14242-4", 22.3, _RATE, _COOPER),
         "walking": _published("ISO walking", 15.24, _RATE, _JOGGING, half_width=0.55, spread="deviation"),
@@ -207,6 +219,14 @@ def ratios() -> Iterator[Ratio]:
     ):
         hips = [make_hip(36.0, cycle, tilt) for cycle, tilt in zip(cycles, tilts, strict=True)]
         yield Ratio(numerator=numerator, denominator=denominator, archard=_rate(hips[0]) / _rate(hips[1]))
+
+
+def separations() -> Iterator[tuple[str, float, float]]:
+    """Compute medial-lateral separation and distance of the centres in mm, with the name of the measured one."""
+    for angle, tilt in zip(MEASURED_SEPARATIONS, (30.0, 50.0), strict=True):
+        apart = make_hip(36.0, iso_14242_4(), tilt).separation
+        assert apart is not None
+        yield f"ali-{angle[:-1]}-separation", apart.medial_lateral, apart.centre_distance
 
 
 def _rate(hip: HipSimulation) -> float:

@@ -100,12 +100,12 @@ def read_cycle(
 
     In a text table one line names the columns with their units: `time [s]` or `phase [%]`; `force [N]` along z, or
     `force_x [N]`, `force_y [N]`, `force_z [N]`; `flexion [deg]`, `adduction [deg]`, `rotation [deg]`. Missing angles
-    are zero. Forces may be in kN, or in %BW, which needs the body weight. Columns are separated by commas, semicolons,
-    tabs or blanks; lines that begin with # are ignored. Columns `Fx`, `Fy`, `Fz`, as OrthoLoad names them, are forces
-    on the ball in the femur's frame. OpenSim files (.mot, .sto) have the coordinates `hip_flexion_r`,
-    `hip_adduction_r`, `hip_rotation_r` and the joint reaction, such as `hip_r_on_femur_r_in_pelvis_fx`, or those of the
-    left hip. The last line must repeat the first, one cycle later. Between the lines, values are interpolated
-    smoothly and monotonically.
+    are zero, which a note states. Forces may be in kN, or in %BW, which needs the body weight. Columns are separated by
+    commas, semicolons, tabs or blanks; lines that begin with # are ignored. Columns `Fx`, `Fy`, `Fz`, as OrthoLoad
+    names them, are forces on the ball in the femur's frame. OpenSim files (.mot, .sto) have the coordinates
+    `hip_flexion_r`, `hip_adduction_r`, `hip_rotation_r` and the joint reaction, such as
+    `hip_r_on_femur_r_in_pelvis_fx`, or those of the left hip. The last line must repeat the first, one cycle later.
+    Between the lines, values are interpolated smoothly and monotonically.
 
     Parameters
     ----------
@@ -162,8 +162,21 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
         order=order,
         duration=duration,
         frame=Frame.CUP if frame == "cup" else Frame.BODY,
-        notes=() if motion is None else (f"the motion is that of {motion.name}",),
+        notes=_missing_angle_notes(columns) if motion is None else (f"the motion is that of {motion.name}",),
     )
+
+
+def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:
+    """Return a note on the rotations without a column, which are zero."""
+    missing = [name for name in ANGLES if name not in columns]
+    if not missing:
+        return ()
+    meaning = (
+        "the ball does not rotate: no sliding and no wear"
+        if len(missing) == len(ANGLES)
+        else "cross-shear and crossing angle mean nothing, nor does wear by a law with cross-shear"
+    )
+    return (f"the motion has no columns of {', '.join(missing)}: they are assumed to be 0, so that {meaning}",)
 
 
 def _check_force(title: str, values: Numbers) -> None:
