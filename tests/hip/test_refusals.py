@@ -277,6 +277,13 @@ UNCERTAIN = [
     ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
 ]
 
+VALUES = 'values = "38 mm^3/Mc"\n'
+STATION_TABLES = {
+    "head.csv": "cycles,A [mm^3]\n",
+    "unit.csv": "cycles,A\n1,2\n",
+    "text.csv": "cycles,A [mm^3/Mc]\n1,2\n2,x\n",
+    "long.csv": "station,mass [mg]\nA,2\n",
+}
 MEASURED = [
     ('rate = "mean"\nto = 2e5\n', "", r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'"),
     ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
@@ -285,6 +292,19 @@ MEASURED = [
     ('values = "38 mm^3/Mc"\n', "", "needs its values"),
     ('quantity = "volume"\n', "", "needs its quantity"),
     (WEAR_DATA, "", "no measured wear: add "),
+    (VALUES, 'unit = "mg"\n' + VALUES, "unit belongs to a file"),
+    (VALUES, 'station = ["A", "B"]\n' + VALUES, "station has 2 names for 1 values"),
+    ('"volume"', '"mass"', "a mass needs the density of the worn material"),
+    (VALUES, 'density = "0.94 g/cm^3"\n' + VALUES, "density belongs to quantity = 'mass'"),
+    *(
+        (VALUES, f'file = "{name}"\n', message)
+        for name, message in {
+            "head.csv": "head.csv: the table needs a line of heads",
+            "unit.csv": r"unit.csv: the column 'A' has no unit: write 'A \[mg\]'",
+            "text.csv": "text.csv: row 2 has 'x' under 'A ",
+            "long.csv": "long.csv: the column volume is missing; the columns are station, mass",
+        }.items()
+    ),
     ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
 ]
 
@@ -302,6 +322,8 @@ def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
 
 @pytest.mark.parametrize(("old", "new", "message"), MEASURED)
 def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
+    for name, table in STATION_TABLES.items():
+        (tmp_path / name).write_text(table, encoding="utf-8")
     with pytest.raises(ValueError, match=message):
         read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{WEAR_DATA}"))
 
