@@ -147,7 +147,7 @@ def test_readings_of_one_station_are_one_specimen(tmp_path, form):
 
 
 def test_a_relative_uncertainty_is_a_share_of_the_fitted_value():
-    """The mean of 15 % less and 15 % more is right; weights by the readings would give 2.2 % less."""
+    """The mean of 15 % less and 15 % more is right; weights by the readings would give 4.4 % less."""
     use = hip(wear=Archard(coefficient=1e-6), **QUICK)
     readings = np.array([0.85, 1.15]) * use.first.volume
     one = volume(readings, rate="initial", relative_uncertainty=0.3, station="A")

@@ -210,7 +210,7 @@ def test_a_file_chooses_columns_load_and_gaps(question, tmp_path):
         (FRAME, 'machine = "fram"', "data.toml: machine 'fram' is not known; did you mean 'frame'?"),
         (FRAME, "values = 3", "[[data]] needs either a file, or a quantity with its values"),
         (FRAME, 'force = "3 kN"', "'force' in [[data]] with a file is not known"),
-        (PERCENT, 'uncertainty = "-1 %"', "data.toml: area_uncertainty[0] = "),
+        (PERCENT, 'uncertainty = "-1 %"', "data.toml: area_uncertainty = "),
         (PERCENT, PERCENT + '\nmass = "2 kg"', "mass belongs to [[data]] of a frequency, not of area"),
         (AREA, "", "data.toml: [[data]] with values needs its quantity"),
         (AREA, AREA + '\ngaps = "refuse"', "'gaps' in [[data]] with values is not known"),

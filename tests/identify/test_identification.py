@@ -57,6 +57,14 @@ def test_data_without_error_identify_the_true_joint(data):
     assert identified(*data, seed=5).point == pytest.approx(result.point, rel=1e-5)
 
 
+def test_a_relative_uncertainty_is_a_share_of_the_fitted_value():
+    """The mean of 15 % less and 15 % more is right; weights by the readings would give 4.4 % less."""
+    play = Measured(quantity="diametral_clearance", values=[0.17, 0.23], relative_uncertainty=0.15)
+    result = identified(play, free={"clearance": (0.02, 0.3)})
+    assert result.point["clearance"] == pytest.approx(0.1, rel=1e-6)
+    assert result.uncertainties[0] == pytest.approx([0.03, 0.03], rel=1e-6)
+
+
 def test_errors_of_the_machine_are_identified_with_the_joint():
     machine = Machine(compliance=(0.0, 2e-5), offset=(-0.02, 0.02))
     by_force = measured("indentation", READ - 0.007, share=1e-3, machine=machine)

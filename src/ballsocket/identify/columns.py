@@ -100,7 +100,7 @@ def read_measured(
             Measured(
                 quantity=name,
                 values=rows[name],
-                uncertainty=_choose_uncertainty(name, rows, uncertainty),
+                **_choose_uncertainty(name, rows, uncertainty),
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
@@ -138,22 +138,25 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
-    """Return the uncertainties of a quantity, from its column or as stated for the file; None if unknown."""
+def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> dict[str, Any]:
+    """Return the uncertainties of a quantity, from its column or as stated for the file, as arguments of `Measured`."""
     if name + UNCERTAINTY in rows:
-        return rows[name + UNCERTAINTY]
-    if stated is None:
-        return None
-    return parse_uncertainty(_QUANTITIES[name], stated, rows[name])
+        return {"uncertainty": rows[name + UNCERTAINTY]}
+    return parse_uncertainty(_QUANTITIES[name], stated)
 
 
-def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
-    """Parse an uncertainty: "2 %" of each value, a text with a unit, or a number."""
+def parse_uncertainty(quantity: Quantity, stated: float | str | None) -> dict[str, Any]:
+    """Parse an uncertainty, "2 %" of each value, a text with a unit or a number, to arguments of `Measured`."""
     name = f"{quantity.name}{UNCERTAINTY}"
+    if stated is None:
+        return {}
     percent = number_of_percent(stated)
-    if percent is not None:
-        return parse(name, percent, Kind.NUMBER) / 100 * abs(values)
-    return parse(name, stated, quantity.kind)
+    if percent is None:
+        return {"uncertainty": parse(name, stated, quantity.kind)}
+    share = parse(name, percent, Kind.NUMBER) / 100
+    if not 0 < share < inf:
+        raise ValueError(f"{name} = {shown(stated)} is not allowed: a share of each value is above 0 and finite")
+    return {"relative_uncertainty": share}
 
 
 def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:

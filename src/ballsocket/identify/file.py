@@ -306,7 +306,7 @@ def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[s
     return Measured(
         quantity=quantity.name,
         values=values,
-        uncertainty=None if table.uncertainty is None else parse_uncertainty(quantity, table.uncertainty.value, values),
+        **parse_uncertainty(quantity, None if table.uncertainty is None else table.uncertainty.value),
         observable=_parse_observable(quantity.name, table),
         load_uncertainty=_parse_load_uncertainty(table, next((name for name in LOADS if name in loads), "force")),
         name=str(table.name or ""),

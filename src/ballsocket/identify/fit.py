@@ -209,7 +209,9 @@ class FittedModel:
         changes: dict[str, Any] = {measured.load: loads, "values": numpy.ones(count), "saturation": inf}
         load_order = numpy.argsort(measured.loads)
         reading_numbers = numpy.interp(loads, measured.loads[load_order], measured.order[load_order])
-        curve_data = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=reading_numbers, **changes)
+        curve_data = replace(
+            measured, uncertainty=1.0, relative_uncertainty=0.0, load_uncertainty=0.0, order=reading_numbers, **changes
+        )
         forward = replace(self.misfit.forward, data=(curve_data,))
         return loads, forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
 

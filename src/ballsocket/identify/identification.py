@@ -25,7 +25,7 @@ from .scatter import NormalScatter, ScatterModel
 from .unknowns import ParameterTransform, Prior, Unknown, collect_unknowns
 
 _NORMAL = NormalScatter()
-_LOAD_ITERATIONS = 2  # fits with weights that depend on the best point, for uncertain loads
+_WEIGHT_ITERATIONS = 2  # fits with weights that depend on the best point
 _NOISE_ITERATIONS = 20  # largest number of fits with estimated uncertainties
 _NOISE_TOLERANCE = 1e-3  # relative tolerance of an estimated uncertainty
 _MIN_NOISE_FREEDOM = 0.5  # smallest number of degrees of freedom of an estimated uncertainty
@@ -104,10 +104,12 @@ def identify(
     best = find_best_fit(misfit, seed)
     if any(measured.has_unknown_noise for measured in sets):
         misfit, best = _estimate_noise(misfit, best)
-    uncertain_loads = any(
-        measured.load and measured.load_uncertainty.any() and not measured.has_unknown_noise for measured in sets
+    has_fitted_weights = any(
+        measured.relative_uncertainty
+        or (measured.load and measured.load_uncertainty.any() and not measured.has_unknown_noise)
+        for measured in sets
     )
-    for _ in range(_LOAD_ITERATIONS if uncertain_loads else 0):
+    for _ in range(_WEIGHT_ITERATIONS if has_fitted_weights else 0):
         misfit = replace(misfit, uncertainty=_combine_uncertainties(misfit, best))
         best = find_best_fit(misfit, seed)
     return IdentificationResult(*compute_bands(misfit, best))
@@ -163,13 +165,15 @@ def _prior_information(misfit: Misfit) -> Numbers:
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
     """Combine the uncertainties of values and loads to one uncertainty for each value.
 
-    The slope of the results over the load converts those of the loads.
+    Relative ones are of the results. The slope of the results over the load converts those of the loads.
     """
     data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
     of_loads = _join_data_sets(_relative_load_uncertainty(measured) for measured in data)
-    stated = _join_data_sets(measured.uncertainty for measured in data)
+    results, stated = misfit.forward.results_at(values)[0], _join_data_sets(measured.uncertainty for measured in data)
+    shares = _join_data_sets(numpy.full(len(measured), measured.relative_uncertainty) for measured in data)
+    stated = numpy.where((shares > 0) & (results != 0), shares * abs(results), stated)
     is_estimated = _join_data_sets(numpy.full(len(measured), measured.has_unknown_noise) for measured in data)
     of_values = numpy.where(is_estimated, misfit.uncertainty, stated)
     return numpy.hypot(of_values, numpy.where((of_loads > 0) & ~is_estimated, slope * of_loads, 0.0))

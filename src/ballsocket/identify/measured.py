@@ -60,6 +60,9 @@ class Measured:
         data set from the scatter about the fit.
     force, indentation, half_angle : array
         Loads in N, mm or rad; exactly one of the three is given.
+    relative_uncertainty : float
+        Standard uncertainty as a share of each true value, in place of `uncertainty`: `identify` takes it of the fitted
+        values, so that a reading that is low by chance has no larger weight. Default 0: none.
     load_uncertainty : float or array
         Standard uncertainty of the loads.
     angle : array
@@ -97,6 +100,7 @@ class Measured:
     force: Any = None
     indentation: Any = None
     half_angle: Any = None
+    relative_uncertainty: float = 0.0
     load_uncertainty: Any = 0.0
     angle: Any = None
     saturation: float = inf
@@ -124,6 +128,10 @@ class Measured:
         values = _to_float_array(self._message_label(self.quantity), self.values)
         self._set_field("values", values)
         self._check_measured_values(values)
+        share = self.relative_uncertainty
+        require("relative_uncertainty", share, 0 <= share < inf, "a share of each value is at least 0 and finite")
+        if self.uncertainty is None and share:
+            self._set_field("uncertainty", share * abs(values))
         if self.uncertainty is None:
             self._set_field("has_unknown_noise", True)
             self._set_field("uncertainty", _FIRST_NOISE * float(abs(values).max()) or 1.0)
