@@ -121,9 +121,11 @@ def check_page(path, *texts):
     assert not any(text in page for text in ("<script", "src='http"))
 
 
-def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch):
+def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(paper_report, "_write_picture", lambda *words: b"picture")  # drawn in the long form
-    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1")
+    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1", claims.SCALE)
+    paper_report.print_verdicts(JUDGED)
+    assert all(f"{row['name']} " in capsys.readouterr().out for row in CLAIMS[:1])
     worst = max(read_table(tmp_path / "accuracy.csv"), key=lambda row: float(row["worst"]))
     assert worst["model"] == "cosine-limit"
     assert json.loads((tmp_path / "accuracy.json").read_text(encoding="utf-8")) == ACCURACY

@@ -205,10 +205,11 @@ def reproduce(
 ) -> None:
     """Recompute the results of Heß & Forsbach 2021.
 
-    The report shows every table, figure and claim of the paper with a verdict. The same command resumes a stopped run.
+    The verdict on each claim of the paper is printed, and the report also shows its tables and figures. A stopped run
+    is resumed by the same command.
     """
     from ..paper.plan import full_plan, quick_plan
-    from ..reports.paper_report import write_report
+    from ..reports.paper_report import print_verdicts, write_report
 
     if not quick:
         needs("fem", "skfem", "meshio", "psutil")
@@ -220,4 +221,5 @@ def reproduce(
         results = plan.results(out / "data", lambda name: advance(description=name), engine)
         advance(advance=0, description="drawing")
         report = write_report(results, out, engine)
+    print_verdicts(results)
     echo_path(report)

@@ -171,7 +171,7 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
         table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
     terminal.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
     print_columns(terminal, table)
-    text = f"{len(RATIOS)} joints of 24 mm outer radius, clearance 0.1 mm, steel on 1 GPa; mean of p0/d at 1, 2, 3 kN."
+    text = f"{len(RATIOS)} joints, outer radius 24 mm, c 0.1 mm, steel head on 1 GPa; mean of p0/d at 1, 2, 3 kN."
     print_folded(terminal, text, "dim")
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy
+from rich.table import Table
 
 from ..catalogue import judge
 from ..core.executors.processes import Engine, Serial
@@ -21,11 +22,13 @@ from ..core.storage.atomic_files import write_atomically, write_text
 from ..models.foundation import HessForsbach
 from ..paper.accuracy import RANGES, THICKNESS
 from ..paper.cases import OUTER_RADII, RATIOS
+from ..paper.claims import SCALE
 from ..paper.curves import FIT, Figure, Map, Panel
 from ..paper.plan import ELEMENTS
 from . import accuracy_results
 from .pages import data_address, render_page
 from .style import LEGEND, finish, in_matplotlib, line_of
+from .terminal import console, print_columns, print_folded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +43,7 @@ _VERDICT_COUNTS = ("hold", "hold within some percent", "fail")
 """Words after the number of each verdict, in the order of `_VERDICT_STYLES`."""
 
 Row = Mapping[str, Any]
-Table = dict[str, Sequence[Any]]
+PageTable = dict[str, Sequence[Any]]
 
 
 def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Engine = _SERIAL) -> Path:
@@ -78,6 +81,7 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Eng
         sections,
         about=results["about"][0],
         claims=results["claims"],
+        scale=SCALE,
         elsewhere=results["elsewhere"],
         verdict_styles=_VERDICT_STYLES,
         number=_number_text,
@@ -155,12 +159,24 @@ def _tally(findings: Iterable[Row]) -> str:
     return ", ".join(f"{verdicts.count(verdict)} {words}" for verdict, words in counts)
 
 
+def print_verdicts(results: Mapping[str, Sequence[Any]]) -> None:
+    """Print the verdict on each claim, the scale of the words, and the number of each verdict."""
+    terminal = console()
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in ("claim", "verdict"):
+        table.add_column(head)
+    for finding in (*results["claims"], *results["elsewhere"]):
+        table.add_row(finding["name"], finding["text"])
+    print_columns(terminal, table)
+    print_folded(terminal, f"Claims of the paper: {_tally(results['claims'])}. {SCALE}", "dim")
+
+
 def _number_text(value: float) -> str:
     """Write a number with three digits; a large one in full, with spaces between thousands."""
     return f"{value:,.0f}".replace(",", " ") if abs(value) >= 1e4 else f"{value:.3g}"
 
 
-def _geometry() -> Table:
+def _geometry() -> PageTable:
     """Return Table 1 of the paper: the ranges of the geometry."""
     ranges = {"liner_thickness": THICKNESS, **{name: RANGES[name] for name in JOINT if name in RANGES}}
     return {
@@ -175,7 +191,7 @@ def _fits(columns: Sequence[Row]) -> list[dict[str, Any]]:
     return [{"reference": name, **_fit_table(name, list(group))} for name, group in groups]
 
 
-def _fit_table(name: str, columns: Sequence[Row]) -> Table:
+def _fit_table(name: str, columns: Sequence[Row]) -> PageTable:
     """Return the constants fitted to one reference, by Poisson's ratio."""
     rows: list[tuple[str, ...]] = []
     for i, constant in enumerate(("C1", "C2", "C3")):
@@ -340,7 +356,9 @@ def _draw_map(axes: Axes, field: Map) -> None:
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.6})
     radius = numpy.array(field.x)
     for outer in OUTER_RADII:
-        axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
+        (limit,) = axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
+    label = f"outer radius {OUTER_RADII[0]:g}, {OUTER_RADII[1]:g} mm"
+    axes.legend(handles=[limit], labels=[label], loc="upper right", **LEGEND)
     axes.set_ylim(field.y[0], field.y[-1])
     axes.set_xlabel(field.x_label)
     axes.set_ylabel(field.y_label)

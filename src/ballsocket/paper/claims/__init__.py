@@ -11,7 +11,7 @@ from typing import Any
 
 from ...contact import Model
 from ...core.checks import nearest, shown
-from .evaluation import Claim, Finding, Verdict, judge
+from .evaluation import SCALE, Claim, Finding, Verdict, judge
 from .table import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE
 
 _BY_NAME = {claim.name: claim for claim in (*CLAIMS, *MESHED_CLAIMS, *ELSEWHERE, *MESHED_ELSEWHERE)}
@@ -50,6 +50,7 @@ __all__ = [
     "ELSEWHERE",
     "MESHED_CLAIMS",
     "MESHED_ELSEWHERE",
+    "SCALE",
     "Claim",
     "Finding",
     "Verdict",

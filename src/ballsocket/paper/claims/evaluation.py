@@ -21,8 +21,26 @@ Interval = tuple[float, float]
 ZERO: Interval = (0.0, 0.0)
 """Expected value of a relative difference."""
 
-CLOSE, WIDE = 2.0, 5.0
-"""Default tolerances in percent: up to the first a claim holds, up to the second it holds within its deviation."""
+VERY_WELL: Interval = (2.0, 5.0)
+"""Tolerances in percent of "very well", "almost nothing", "a little", "about constant": the default.
+
+Up to the first number a claim holds, up to the second it holds within its deviation.
+"""
+
+ACCEPTABLY: Interval = (2.0, 15.0)
+"""Tolerances in percent of "acceptable", "slightly higher", "within limits"; the second is the promise of springs."""
+
+CONSIDERABLE: Interval = (ACCEPTABLY[1], inf)
+"""Expected deviation in percent of "considerable", "noticeable", "not adequate"."""
+
+SCALE = (
+    f"One scale for all claims: a difference up to {VERY_WELL[1]:g} % is very good agreement, "
+    f"up to {ACCEPTABLY[1]:g} % acceptable, above that considerable."
+)
+"""The scale of words in one sentence."""
+
+STATED: Interval = (0.5, 5.0)
+"""Tolerances of a number that a publication states without decimals."""
 
 EXACTLY = (0.0, 0.0)
 """Tolerances of a claim that is true or false."""
@@ -72,9 +90,11 @@ class Finding:
 
     @property
     def text(self) -> str:
-        """Verdict in words: "holds", "holds within 3.3 %", "does not hold"."""
-        within = f" {self.miss:.2g} {self.unit}" if self.verdict is Verdict.WITHIN else ""
-        return self.verdict.value + within
+        """Verdict in words: "holds", "holds within 3.3 %", "does not hold: 11 %"."""
+        if self.verdict is Verdict.HOLDS or self.miss == inf:
+            return self.verdict.value
+        separator = "" if self.verdict is Verdict.WITHIN else ":"
+        return f"{self.verdict.value}{separator} {self.miss:.2g} {self.unit}"
 
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON."""
@@ -138,7 +158,7 @@ class Claim:
     statement: str
     quantity: Callable[[Model], Computed | Evaluation]
     expected: Expected = ZERO
-    tolerance: tuple[float, float] = (CLOSE, WIDE)
+    tolerance: Interval = VERY_WELL
     unit: str = "%"
     comment: str | Callable[[Computed], str] = ""
     joints: Callable[[], tuple[Joint, Numbers]] | None = None
@@ -158,6 +178,8 @@ def judge(claim: Claim, reference: Model) -> Finding:
     result = claim.quantity(reference)
     evaluation = result if isinstance(result, Evaluation) else Evaluation(result, True)
     miss = _deviation(claim.expected, evaluation)
+    if claim.tolerance == EXACTLY and miss > 0.0:
+        miss = inf
     close, wide = claim.tolerance
     comment = claim.comment(evaluation.numbers) if callable(claim.comment) else claim.comment
     return Finding(

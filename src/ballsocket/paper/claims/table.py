@@ -11,7 +11,17 @@ from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
 from .. import cases
 from . import quantities
-from .evaluation import BY_EVALUATION, EXACTLY, ZERO, Claim, Computed, percent
+from .evaluation import (
+    ACCEPTABLY,
+    BY_EVALUATION,
+    CONSIDERABLE,
+    EXACTLY,
+    STATED,
+    ZERO,
+    Claim,
+    Computed,
+    percent,
+)
 
 
 def _outer_radius(numbers: Computed) -> str:
@@ -29,9 +39,13 @@ def _excess_of_the_elements(numbers: Computed) -> str:
 
 
 def _deviation_grows(numbers: Computed) -> bool:
-    """Check that the deviation grows with ν, and exceeds 15 % at ν 0.46."""
+    """Check that the deviation grows with ν, and is considerable at ν 0.46."""
     values = list(numbers.values())
-    return all(first <= second for first, second in pairwise(values)) and values[-2] > 15
+    return all(first <= second for first, second in pairwise(values)) and values[-2] > CONSIDERABLE[0]
+
+
+_DECADES = "A decade of loads is compared with a decade."
+_HEADS = "Judged with the steel head of Table 2, and with the rigid head that Section 3.1 assumes."
 
 
 CLAIMS: tuple[Claim, ...] = (
@@ -69,6 +83,7 @@ CLAIMS: tuple[Claim, ...] = (
         source="Section 3.1, Figure 2 left",
         statement="The foundation modulus p0/d is constant above 1000 N, with slight deviations only at ν 0.45.",
         quantity=partial(quantities.variation_over_force, poisson=quantities.COMMON),
+        comment=lambda numbers: f"Up to ν 0.4 it varies by ± {sorted(numbers.values())[-2]:.1g} %.",
     ),
     Claim(
         name="constant-at-0.49",
@@ -80,9 +95,19 @@ CLAIMS: tuple[Claim, ...] = (
     Claim(
         name="varies-below-one-kilonewton",
         source="Section 3.1, Figure 2 left",
-        statement="Only for loads above 1000 N can the modulus be taken as constant: below it varies more.",
-        quantity=quantities.variation_below_one_kilonewton,
+        statement="Only for loads above 1000 N can the modulus be taken as constant: below it varies more (ν up to "
+        "0.4).",
+        quantity=partial(quantities.variations_over_decades, poisson=quantities.SOFT),
         expected=BY_EVALUATION,
+        comment=_DECADES,
+    ),
+    Claim(
+        name="varies-below-one-kilonewton-above-0.4",
+        source="Section 3.1, Figure 2 left",
+        statement="It varies more below 1000 N at ν 0.45 and 0.49, too.",
+        quantity=partial(quantities.variations_over_decades, poisson=quantities.CONFINED),
+        expected=BY_EVALUATION,
+        comment=_DECADES,
     ),
     Claim(
         name="independent-of-clearance",
@@ -110,6 +135,7 @@ CLAIMS: tuple[Claim, ...] = (
         statement="Eq. (18) with Table 3 agrees very well with finite elements for all Poisson's ratios, for liners of "
         "R2/L up to 4.1.",
         quantity=partial(quantities.errors_of_table_3, thin=False),
+        comment=_HEADS,
     ),
     Claim(
         name="quality-of-the-fit-on-thin-liners",
@@ -117,13 +143,14 @@ CLAIMS: tuple[Claim, ...] = (
         statement="Eq. (18) with Table 3 agrees very well with finite elements for all Poisson's ratios, for thinner "
         "liners.",
         quantity=partial(quantities.errors_of_table_3, thin=True),
+        comment=f"{_HEADS} The published constants are too stiff on the thinnest liners.",
     ),
     Claim(
         name="hertz-is-inadequate",
         source="Section 3.2, Figure 3",
         statement="Hertz' theory is not adequate for this contact.",
         quantity=lambda reference: quantities.deviations_of(Hertz(), reference, 0.4, "{} off by, %"),
-        expected=lambda numbers: all(abs(value) > 20 for value in numbers.values()),
+        expected=lambda numbers: all(abs(value) > CONSIDERABLE[0] for value in numbers.values()),
     ),
     Claim(
         name="good-agreement-at-0.4",
@@ -138,8 +165,7 @@ CLAIMS: tuple[Claim, ...] = (
         quantity=lambda reference: quantities.pressure_deviations(
             reference, {model.name: model for model in (Bartel(), BondedLayer())}, 0.4
         ),
-        expected=(0.0, 10.0),
-        tolerance=EXACTLY,
+        tolerance=ACCEPTABLY,
     ),
     Claim(
         name="minor-deviations-at-0.45",
@@ -156,7 +182,7 @@ CLAIMS: tuple[Claim, ...] = (
             reference, {"Bartel": Bartel(), "bonded layer": BondedLayer()}, 0.45
         ),
         expected={"Bartel, %": (17.0, 17.0), "bonded layer, %": (25.0, 25.0)},
-        tolerance=(1.0, 5.0),
+        tolerance=STATED,
         unit="% of p0",
         comment=_excess_of_the_elements,
     ),
@@ -166,7 +192,7 @@ CLAIMS: tuple[Claim, ...] = (
         statement="The closed form's half angle is 3 to 8 % larger than that of finite elements (ν 0.4, 3 kN).",
         quantity=quantities.excess_half_angle,
         expected=(3.0, 8.0),
-        tolerance=(0.5, 5.0),
+        tolerance=STATED,
         unit="% of ε",
         comment="Springs do not press their neighbours down: the real pressure falls to the edge as a root, theirs "
         "as a line that goes farther, and the more so the thicker the liner.",
@@ -213,17 +239,18 @@ CLAIMS: tuple[Claim, ...] = (
         source="Conclusions, 1",
         statement="The closed form gives acceptable results for liners of every thickness, also for ν above 0.45.",
         quantity=quantities.errors_above_0_45,
-        tolerance=(10.0, 20.0),
-        comment="ν 0.46 and 0.49, 1 and 3 kN, R2/L 0.8 to 7.5. One modulus cannot follow how p0/d grows with the load.",
+        tolerance=ACCEPTABLY,
+        comment="Largest error of indentation, peak pressure and half angle at 1 and 3 kN, R2/L 0.8 to 7.5. Only on "
+        "thin liners at ν 0.49 it is considerable: one modulus cannot follow how p0/d grows with the load.",
     ),
     Claim(
         name="older-models-err-considerably",
         source="Conclusions",
         statement="All existing models accept considerable errors under these conditions.",
         quantity=quantities.errors_of_older_models,
-        expected=(10.0, inf),
+        expected=CONSIDERABLE,
         tolerance=EXACTLY,
-        comment="Over the outline of Table 1 at ν 0.4 and 0.45, 3 kN.",
+        comment="These conditions are ν 0.46 and 0.49, with the joints and loads of the claim before.",
     ),
 )
 """Claims of the paper."""
@@ -234,8 +261,8 @@ MESHED_CLAIMS: tuple[Claim, ...] = (
         source="Section 3",
         statement="With twice as many elements force, contact angle and peak pressure grow by less than 1 %.",
         quantity=quantities.changes_by_refinement,
-        expected=dict.fromkeys(("force, %", "half angle, %", "peak pressure, %"), ZERO),
-        tolerance=(1.0, 1.0),
+        expected=dict.fromkeys(("force, %", "half angle, %", "peak pressure, %"), (-1.0, 1.0)),
+        tolerance=EXACTLY,
         comment="Four-node elements of 0.05 mm along the contact, then of 0.0315 mm, at one indentation.",
     ),
 )
@@ -262,7 +289,7 @@ ELSEWHERE: tuple[Claim, ...] = (
         statement="The half angle lies between 40° and 50° at 2.5 kN for all heads and cups of that time.",
         quantity=quantities.half_angles_of_jin,
         expected=(40.0, 50.0),
-        tolerance=(0.5, 5.0),
+        tolerance=STATED,
         unit="°",
         comment="Their pairs are not listed in the abstract; these are heads of 22 to 32 mm with usual liners and "
         "clearances. Half as much clearance again is 4 to 5° less.",
