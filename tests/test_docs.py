@@ -9,6 +9,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 
 import ballsocket as bs
 from ballsocket.core.sources import bibliography
@@ -19,6 +20,7 @@ from .places import ROOT
 from .printed import Checker, with_numbers_of
 
 DOCS = ROOT / "docs"
+RESULTS = ROOT / "benchmarks" / "RESULTS.md"
 FILES = (ROOT / "README.md", DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md"))
 PAGES = sorted(path for path in FILES if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
@@ -116,6 +118,45 @@ def test_valid_models_are_within_ten_percent_on_the_presets():
         exact = answers["exact"].max_pressure
         for name, contact in answers.items():
             assert not contact.valid or contact.max_pressure == pytest.approx(exact, rel=0.1), (joint.name, name)
+
+
+def test_promises_of_the_readme_are_those_of_the_models():
+    text = re.sub(r"\s+", " ", (ROOT / "README.md").read_text("utf-8"))
+    stated = re.search(r"promise (\S+) % for .*?, `refined` (\S+) %, `tabulated` (\S+) % \(`model.promise`\)", text)
+    models = bs.HessForsbach(), bs.Refined(), bs.Tabulated()
+    assert [float(number) / 100 for number in stated.groups()] == pytest.approx([one.promise.within for one in models])
+
+
+TIME = r"([\d.]+) (ns|µs|ms|s)"
+LINKED_TIME = rf'\[{TIME}\]\([\w/.]*(?:RESULTS|measured)\.md "(.+?)"\)'
+SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
+TIMED = ("README", "index", "choosing", "many", "law", "multibody", "finite_elements", "paper", "method")
+
+
+def test_times_of_pages_are_measured():
+    """Each is a link to the results, whose title names the row; of several such rows the slowest counts."""
+    measured = {}
+    for work, number, unit in re.findall(rf"^\| [\w-]+ \| (.+?) \| {TIME} ", RESULTS.read_text("utf-8"), flags=re.M):
+        measured[work] = max(float(number) * SECONDS[unit], measured.get(work, 0.0))
+    for path in (*FILES, DOCS / "paper" / "paper.md", DOCS / "paper" / "method.md"):
+        text = re.sub(r"^```.*?^```", "", path.read_text("utf-8"), flags=re.M | re.DOTALL)
+        for number, unit, work in re.findall(LINKED_TIME, text):
+            digit = 10.0 ** -len(number.partition(".")[2])
+            assert float(number) == pytest.approx(measured[work] / SECONDS[unit], abs=0.51 * digit), (path.name, work)
+        loose = re.search(rf"{TIME}\b|(half a |nano|micro|milli)second", re.sub(LINKED_TIME, "", text))
+        assert path.stem not in TIMED or loose is None, f"{path.name}: {loose[0]!r} names no row of the results"
+
+
+PICTURES = {"press": "--all --figure", "section": "--model fem --section", "tilted_cup": "--figure"}
+
+
+@pytest.mark.parametrize("name", list(PICTURES) if extent.whole else ["press"])
+def test_pictures_are_those_of_the_printed_commands(name, folder):
+    """On another system letters differ by some pixels: 0.5 % of the light of the picture."""
+    command = f"press examples/{'tilted_hip' if name == 'tilted_cup' else 'hip'}.toml {PICTURES[name]}"
+    assert run(*command.split(), "new.png").stderr == ""
+    new, shown = (imread(path)[..., :3] for path in ("new.png", DOCS / f"{name}.png"))
+    assert np.mean(abs(new - shown)) < 0.005, f"write it again: ballsocket {command} docs/{name}.png"
 
 
 def test_references_of_the_short_paper_are_in_the_bibliography():

@@ -18,6 +18,7 @@ from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
 from ballsocket.mcp.tools import FILE_TABLES, file_table
+from ballsocket.paper.claims import SCALE
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_results import markdown
 from ballsocket.reports.paper_report import write_report
@@ -41,7 +42,7 @@ def write(folder: Path) -> None:
         "bibliography": _bibliography(),
         "catalogue": "\n".join(map(_model, listed_models.values())),
         "accuracy": markdown(results["accuracy"][0]),
-        "claims": _claims(results["claims"]),
+        "claims": f"{SCALE}\n\n{_claims(results['claims'])}",
         "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
         "comparators": "\n".join(_comparator(make()) for make in PUBLISHED.values()),

@@ -83,8 +83,8 @@ class KelvinVoigtChain(CreepLaw):
 class LogarithmicCreep(CreepLaw):
     """Creep law of UHMWPE: strain per MPa of 3.491e-3 + 7.966e-4 (log10 t - 4) after a time t in minutes.
 
-    It is accurate within 2 % from ten minutes on, and 3 % off at one minute. It has one element for each decade of time, all with the same
-    compliance. Its coefficients are not verified, as its notes state.
+    It is accurate within 2 % from ten minutes on, and 3 % off at one minute. It has one element for each decade of
+    time, all with the same compliance. Its coefficients are not verified, as its notes state.
 
     Parameters
     ----------

@@ -116,7 +116,6 @@ class Evaluation:
 
     numbers: Computed
     holds: bool
-    comment: str = ""
 
 
 Expected = Interval | Mapping[str, Interval] | Callable[[Computed], bool]
@@ -190,7 +189,7 @@ def judge(claim: Claim, reference: Model) -> Finding:
         verdict=Verdict.HOLDS if miss <= close else Verdict.WITHIN if miss <= wide else Verdict.FAILS,
         miss=miss,
         unit=claim.unit,
-        comment=evaluation.comment or comment,
+        comment=comment,
         code=f"ballsocket.paper.claims.claim({claim.name!r})",
     )
 
