@@ -258,11 +258,6 @@ def test_verdicts_follow_from_expected_values_and_tolerance(numbers, fields, tex
     assert judge(claim_of(numbers, **fields), EXACT).text == text
 
 
-def test_a_comment_is_a_text_or_follows_from_the_numbers():
-    assert claim_of({"a": 0.0}, comment="why")(EXACT).comment == "why"
-    assert claim_of({"a": 0.0}, comment=lambda numbers: f"a is {numbers['a']}")(EXACT).comment == "a is 0.0"
-
-
 def test_claims_are_found_by_name_and_by_the_name_of_their_function_in_version_1_0():
     from ballsocket.paper.claims.agreement import overestimated_pressure
     from ballsocket.paper.claims.elsewhere import half_angles_of_jin
