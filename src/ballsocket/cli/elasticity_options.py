@@ -115,11 +115,11 @@ def mesh_remark(contact: MeshedContact, seconds: float) -> str:
 
 
 def _error_text(contact: SolvedContact) -> str:
-    """Return the estimated relative errors of load, displacement and peak pressure as text."""
+    """Return the estimated relative errors of load, displacement, peak pressure and stiffness as text."""
     return ", ".join(
         f"{CONTACT[name].symbol} ±{100 * error:.1g} %"
         for name, error in contact.error.items()
-        if name in (*LOADS, "max_pressure") and error > 1e-9
+        if name in (*LOADS, "max_pressure", "stiffness") and error > 1e-9
     )
 
 

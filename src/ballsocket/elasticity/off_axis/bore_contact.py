@@ -196,14 +196,25 @@ class BoreContact:
         return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
 
     def pressure_sensitivity(
-        self, displacement: Numbers, pressure: Numbers, start: Numbers | None = None, tolerance: float = 0.1
+        self,
+        displacement: Numbers,
+        share: Numbers,
+        start: Numbers | None = None,
+        tolerance: float = 0.1,
+        edge_compliance: Numbers | float = 1.0,
     ) -> Numbers:
-        """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians)."""
-        shape = (len(pressure), 3, *pressure.shape[1:])
+        """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians).
+
+        See `solve_pressure_change` for the shares (batch, rings, meridians) of the cells in contact.
+        """
+        shape = (len(share), 3, *share.shape[1:])
         overlap_slope = numpy.broadcast_to(self.gap.overlap_slope(displacement), shape).reshape(-1, *shape[2:])
-        touching = numpy.broadcast_to((pressure > 0)[:, None], shape).reshape(-1, *shape[2:])
+        shares = numpy.broadcast_to(share[:, None], shape).reshape(-1, *shape[2:])
         initial = None if start is None else start.reshape(-1, *shape[2:])
-        return solve_pressure_change(self.compliance, touching, overlap_slope, initial, tolerance).reshape(shape)
+        change = solve_pressure_change(
+            self.compliance, shares, overlap_slope, initial, tolerance, edge_compliance=edge_compliance
+        )
+        return change.reshape(shape)
 
     def tangent(self, sensitivity: Numbers) -> Numbers:
         """Compute the tangent stiffness of contact and tether in N/mm: (batch, 3, 3).

@@ -313,45 +313,72 @@ def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) ->
     return Sensitivity(pressure=change, tangent=_symmetric(_forces_by_axis(bore, change)) + bore.tether)
 
 
-def solve_sensitivity(bore: BoreArrays, touching: Array, iterations: int) -> Sensitivity:
-    """Compute the sensitivity of pressures in touching cells (meridians, rings, lanes) by conjugate gradients.
+def solve_sensitivity(bore: BoreArrays, share: Array, iterations: int, edge_compliance: Array = 1.0) -> Sensitivity:
+    """Compute the sensitivity of pressures in cells in contact (meridians, rings, lanes) by conjugate gradients.
 
     With the residual r = n - S q of the derivative q, the tangent n·q + q·r is accurate to the square of the residual.
+    See `solve_change` for the shares of the cells in contact.
     """
-    xp = arrays.namespace(touching)
+    xp = arrays.namespace(share)
     components = len(bore.tether)
-    mask = xp.tile(touching, (1, 1, components))
-    normals = xp.repeat(bore.normals.reshape(*touching.shape[:2], components), touching.shape[-1], axis=-1)
-    change, residual = solve_change(bore, mask, normals, iterations)
+    shares = xp.tile(share, (1, 1, components))
+    normals = xp.repeat(bore.normals.reshape(*share.shape[:2], components), share.shape[-1], axis=-1)
+    change, residual = solve_change(bore, shares, normals, iterations, edge_compliance)
     changes, residuals = (xp.split(fields, components, axis=-1) for fields in (change, residual))
     missing = xp.stack([xp.stack([integrate(bore, q, r) for r in residuals]) for q in changes])
     tangent = _forces_by_axis(bore, change) + bore.scale * missing.transpose(2, 0, 1)
     return Sensitivity(pressure=change, tangent=_symmetric(tangent) + bore.tether)
 
 
-def solve_change(bore: BoreArrays, touching: Array, overlap: Array, iterations: int) -> tuple[Array, Array]:
-    """Compute changes of pressure in touching cells under overlaps (mm), and the overlaps that remain.
+def solve_change(
+    bore: BoreArrays, share: Array, overlap: Array, iterations: int, edge_compliance: Array = 1.0
+) -> tuple[Array, Array]:
+    """Compute changes of pressure in cells in contact under overlaps (mm), and the overlaps that remain.
 
     Both are fields (meridians, rings, lanes), from preconditioned conjugate gradients.
+
+    Parameters
+    ----------
+    bore : BoreArrays
+    share : array (meridians, rings, lanes)
+        Mask of the cells in contact, or the share w of each cell in contact, 0 to 1. With t² = w and the edge
+        compliance C, the pressures are t u of (t S t + C (1 - w)) u = t overlap: the solution for a mask of 0 and 1,
+        and in between it changes steadily as the edge crosses a cell.
+    overlap : array (meridians, rings, lanes)
+    iterations : int
+    edge_compliance : array (rings, 1)
+        Compliance C in mm/MPa of a ring next to the contact.
     """
-    xp = arrays.namespace(touching)
-    target = overlap * touching
-    change = apply_operator(bore, bore.stiffness, target) * touching
-    residual = (target - apply_operator(bore, bore.softness, change)) * touching
+    xp = arrays.namespace(overlap)
+    root = xp.sqrt(share + 0.0 * overlap)
+    open_part = 1.0 - root * root
+    open_compliance, open_stiffness = open_part * edge_compliance, open_part / edge_compliance
+    target = overlap * root
+
+    def precondition(residual: Array) -> Array:
+        """Apply the stiffness of a bore under pressure everywhere."""
+        return apply_operator(bore, bore.stiffness, residual * root) * root + open_stiffness * residual
+
+    def respond(change: Array) -> Array:
+        """Compute the overlaps that changes cause."""
+        return apply_operator(bore, bore.softness, change * root) * root + open_compliance * change
+
+    change = precondition(target)
+    residual = target - respond(change)
 
     def advance(state: tuple[Array, ...]) -> tuple[Array, ...]:
         """Make one iteration."""
         change, residual, direction, descent = state
-        gradient = apply_operator(bore, bore.stiffness, residual) * touching
+        gradient = precondition(residual)
         next_descent = integrate(bore, residual, gradient)
         direction = gradient + next_descent / descent * direction
-        response = apply_operator(bore, bore.softness, direction) * touching
+        response = respond(direction)
         length = next_descent / positive_or_one(integrate(bore, direction, response))
         return change + length * direction, residual - length * response, direction, positive_or_one(next_descent)
 
     start = change, residual, 0.0 * change, xp.full_like(change[0, 0], inf)
     change, residual, *_ = arrays.repeat_step(advance, start, iterations)
-    return change, residual
+    return change * root, residual / xp.where(share > 0, root, 1.0)
 
 
 def _forces_by_axis(bore: BoreArrays, change: Array) -> Array:

@@ -255,7 +255,7 @@ class _NewtonSearch:
             stale = self.stale
             start = self.sensitivity[stale] if self.sensitivity[stale].any() else None
             self.sensitivity[stale] = self.bore.pressure_sensitivity(
-                self.displacement[stale], self.pressure[stale], start
+                self.displacement[stale], self.pressure[stale] > 0, start
             )
             self.tangent[stale] = self.bore.tangent(self.sensitivity[stale])
         along = self.load / self.force_scale[:, None]

@@ -39,6 +39,7 @@ from .model import Sphere, check_sphere
 from .patch_measures import (
     CellArrays,
     Patches,
+    cell_shares,
     contact_centres,
     edge_angles,
     edge_loaded,
@@ -378,12 +379,13 @@ def _press_loads(
     displacement, pressure = differentiable_search()(bores.grids, load, gap, start, tolerance)
     lanes = start_lanes(load, force, displacement, pressure, measure(fine, load, displacement, pressure))
     fields = pressure.transpose(2, 1, 0)
-    half_angle, margin = jax.lax.map(
+    half_angle, margin, share = jax.lax.map(
         partial(_measure_outline, bores),
         (fields, lanes.remaining.transpose(2, 1, 0), axes),
         batch_size=min(_MEASURED_CONTACTS, len(force)),
     )
-    touching, error = jax.lax.stop_gradient((pressure > 0, lanes.error))
+    touching, error, share = jax.lax.stop_gradient((pressure > 0, lanes.error, share.transpose(2, 1, 0)))
+    fixed, edge_compliance = jax.lax.stop_gradient((fine, bores.edge_compliance))
     loaded, largest = edge_loaded(fields), largest_pressures(bores.cells, fields, axes)[0]
     contacts = JaxContacts(
         converged=(error <= tolerance) & touching.any(axis=(0, 1)) & _holds_ball(fine, displacement),
@@ -395,7 +397,7 @@ def _press_loads(
         half_angle=half_angle,
         edge_margin=margin,
         edge_loaded=loaded,
-        stiffness_matrix=solve_sensitivity(jax.lax.stop_gradient(fine), touching, TANGENT_ITERATIONS).tangent,
+        stiffness_matrix=solve_sensitivity(fixed, share, TANGENT_ITERATIONS, edge_compliance).tangent,
         pressure=fields,
     )
     return _mask_unconverged(contacts)
@@ -436,8 +438,8 @@ def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
     return contacts._replace(**numbers)
 
 
-def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array]:
-    """Compute half angle and margin of one contact from its pressures, remaining overlaps and axis."""
+def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+    """Compute half angle, margin and `cell_shares` of one contact from its pressures, remaining overlaps and axis."""
     import jax
     import jax.numpy as xp
 
@@ -447,8 +449,9 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
     fixed_level, fixed_centres = jax.lax.stop_gradient((patches.level, centres))
     edges = edge_angles(bores.cells, fixed_level, fixed_centres, steps)
+    share = cell_shares(bores.cells, patches, fixed_centres, edges)[0]
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
-    return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0]
+    return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0], share
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:

@@ -44,6 +44,9 @@ _SINGLE_FACTOR = 0.8
 _MAX_CHECKS = 3
 """Number of checks in double precision; the search continues after a failed one."""
 
+_SYMMETRY = 1e-6
+"""Largest difference of the shares of two cells of a symmetric contact, by rounding."""
+
 _DROPPED_FRACTION = 0.25
 """Fraction of converged lanes from which the others continue without them."""
 
@@ -58,30 +61,31 @@ def coarser_lanes(bore: BoreContact) -> BoreContact | None:
     return bore.coarser_bore if can_solve_lanes(bore) else None
 
 
-def solve_tangents(bore: BoreContact, pressure: Numbers) -> Numbers:
-    """Compute the tangent stiffness in N/mm, (batch, 3, 3), of contacts with pressures (batch, rings, meridians).
+def solve_tangents(bore: BoreContact, share: Numbers, edge_compliance: Numbers) -> Numbers:
+    """Compute the tangent stiffness in N/mm, (batch, 3, 3), of contacts with shares (batch, rings, meridians).
 
     In a contact that is symmetric about the plane of φ = 0, motions in the plane and across it are solved separately.
+    See `solve_change` for shares and edge compliance.
     """
     bore_arrays = make_bore_arrays(bore)
     even, odd = (fold_bore(bore_arrays, even=parity) for parity in (True, False))
-    touching = pressure > 0
-    symmetric = (touching == touching[..., ::-1]).all(axis=(1, 2))
-    tangents = numpy.tile(bore.tether, (len(pressure), 1, 1))
-    half = touching[symmetric][..., : len(even.gap)]
+    symmetric = (abs(share - share[..., ::-1]) < _SYMMETRY).all(axis=(1, 2))
+    tangents = numpy.tile(bore.tether, (len(share), 1, 1))
+    half = share[symmetric][..., : len(even.gap)]
     plane = numpy.ix_(numpy.flatnonzero(symmetric), _PLANE, _PLANE)
-    tangents[plane] = _solve_block_tangents(even, half)
-    tangents[symmetric, 1, 1] = _solve_block_tangents(odd, half)[:, 0, 0]
-    tangents[~symmetric] = _solve_block_tangents(bore_arrays, touching[~symmetric])
+    tangents[plane] = _solve_block_tangents(even, half, edge_compliance)
+    tangents[symmetric, 1, 1] = _solve_block_tangents(odd, half, edge_compliance)[:, 0, 0]
+    tangents[~symmetric] = _solve_block_tangents(bore_arrays, share[~symmetric], edge_compliance)
     return tangents
 
 
-def _solve_block_tangents(bore: BoreArrays, touching: Numbers) -> Numbers:
-    """Compute the tangents (batch, components, components) of touching cells (batch, rings, meridians), in blocks."""
-    components = len(bore.tether)
-    size = max(_BLOCK_CELLS // (components * touching[0].size), 1) if len(touching) else 1
-    blocks = [touching[i : i + size].T for i in range(0, len(touching), size)]
-    tangents = [solve_sensitivity(bore, block, TANGENT_ITERATIONS).tangent for block in blocks]
+def _solve_block_tangents(bore: BoreArrays, share: Numbers, edge_compliance: Numbers) -> Numbers:
+    """Compute the tangents (batch, components, components) of shares (batch, rings, meridians), in blocks."""
+    components, dtype = len(bore.tether), bore.gap.dtype
+    size = max(_BLOCK_CELLS // (components * share[0].size), 1) if len(share) else 1
+    blocks = [share[i : i + size].T.astype(dtype) for i in range(0, len(share), size)]
+    compliance = edge_compliance.astype(dtype)
+    tangents = [solve_sensitivity(bore, block, TANGENT_ITERATIONS, compliance).tangent for block in blocks]
     return numpy.concatenate([numpy.zeros((0, components, components)), *tangents])
 
 

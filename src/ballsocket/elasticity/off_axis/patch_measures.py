@@ -372,6 +372,27 @@ def _polar_edges(cells: CellArrays, level: Array) -> Array:
     return xp.where(xp.any(loaded, axis=1), low + fraction * (cells.edge_nodes[after] - low), 0.0)
 
 
+def cell_shares(cells: CellArrays, patches: Patches, centres: Array, edges: Array) -> Array:
+    """Compute the share of each cell inside the edge of its contact, 0 to 1: (contacts, rings, meridians).
+
+    A cell is half inside at its first load, so that on average as much is inside as in the loaded cells. Beyond a
+    ring's width from the edge along the rays, the loaded cells have 1 and the others 0.
+    """
+    xp = arrays.namespace(edges)
+    first, second = tangents_at(centres)
+    points = _flattened(cells.middles.reshape(3, -1)).T
+    along, across = (points @ direction[..., None] for direction in (first, second))
+    angle = xp.acos(xp.clip((points @ centres[..., None])[..., 0], -1.0, 1.0))
+    turn = xp.atan2(across[..., 0], along[..., 0]) * (RAYS / (2 * pi))
+    ray = xp.floor(turn)
+    ends = xp.where(edges > 0, edges + cells.inset, 2 * pi)  # a ray that never leaves its contact has the angle 0
+    ends = xp.where(edges < rim_angles(cells, centres), ends, ends + 2 * cells.width)  # the rim does not give way
+    before, after = (xp.take_along_axis(ends, ((ray + shift) % RAYS).astype(int), axis=1) for shift in (0.0, 1.0))
+    share = 0.5 + (before + (turn - ray) * (after - before) - angle) / cells.width
+    loaded = _flattened(patches.pressure) > 0
+    return xp.where((share > 0) & (share < 1), share, 1.0 * loaded).reshape(patches.pressure.shape)
+
+
 def measure_edges(cells: CellArrays, patches: Patches) -> tuple[Numbers, Numbers]:
     """Compute the centres (contacts, 3) and edge angles (contacts, rays) of contacts in NumPy."""
     centres = contact_centres(cells, patches)

@@ -163,21 +163,28 @@ class _ConjugateGradients:
 
 
 def solve_pressure_change(
-    compliance: Compliance, touching: Numbers, overlap: Numbers, start: Numbers | None = None, tolerance: float = 1e-3
+    compliance: Compliance,
+    share: Numbers,
+    overlap: Numbers,
+    start: Numbers | None = None,
+    tolerance: float = 1e-3,
+    edge_compliance: Numbers | float = 1.0,
 ) -> Numbers:
-    """Solve the change of pressure in a fixed set of touching cells under an additional overlap.
+    """Solve the change of pressure in a fixed set of cells in contact under an additional overlap.
 
     Parameters
     ----------
     compliance : Compliance
-    touching : array of bool (batch, rings, meridians)
-        Cells in contact.
+    share : array (batch, rings, meridians)
+        Mask of the cells in contact, or the share of each cell in contact: see `coupled_search.solve_change`.
     overlap : array (batch, rings, meridians)
         Additional overlap in mm, or its derivative.
     start : array (batch, rings, meridians), optional
         Initial change of pressure.
     tolerance : float
         Largest relative residual in the norm of the energy.
+    edge_compliance : array (rings, 1)
+        Compliance in mm/MPa of a ring next to the contact.
 
     Returns
     -------
@@ -187,21 +194,29 @@ def solve_pressure_change(
     integrate = compliance.grid.integrate_product
     single = tolerance > _MIN_SINGLE_TOLERANCE
     displacement = compliance.displacement_in_single_precision if single else compliance.displacement
-    target = numpy.where(touching, overlap.astype(numpy.float32) if single else overlap, 0)
-    change = numpy.where(touching, compliance.pressure(target) if start is None else start, 0)
-    residual = numpy.where(touching, target - displacement(change), 0)
+    root = numpy.sqrt(share, dtype=numpy.float32 if single else float)
+    open_part = 1 - root * root
+    open_compliance, open_stiffness = open_part * edge_compliance, open_part / edge_compliance
+    target = overlap * root
+
+    def precondition(residual: Numbers) -> Numbers:
+        """Apply the stiffness of a bore under pressure everywhere."""
+        return root * compliance.pressure(root * residual) + open_stiffness * residual
+
+    change = precondition(target) if start is None else root * start
+    residual = target - root * displacement(root * change) - open_compliance * change
     scale = abs(integrate(target, change))
     direction, descent = numpy.zeros_like(change), numpy.full(len(change), numpy.inf)
     for _ in range(_MAX_ITERATIONS):
-        gradient = numpy.where(touching, compliance.pressure(residual), 0)
+        gradient = precondition(residual)
         next_descent = integrate(residual, gradient)
         if (next_descent <= tolerance**2 * scale).all():
             break
         direction = gradient + _divide_or_zero(next_descent, descent)[:, None, None] * direction
-        response = numpy.where(touching, displacement(direction), 0)
+        response = root * displacement(root * direction) + open_compliance * direction
         length = _divide_or_zero(next_descent, integrate(direction, response))[:, None, None]
         change, residual, descent = change + length * direction, residual - length * response, next_descent
-    return change
+    return root * change
 
 
 def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
