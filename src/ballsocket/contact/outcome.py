@@ -13,6 +13,7 @@ from ..core import arrays
 from ..core.arrays import Array
 from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
+from ..core.records import cached_array
 from ..core.sources import Source
 from ..core.validity import Promise, Range, Remark, Status, is_missing
 from ..problem import Joint
@@ -102,13 +103,13 @@ class Outcome(ABC):
     def _load(self) -> Array:
         """Load of the result, a float for a single contact; all quantities have its shape and array library."""
 
-    @cached_property
+    @cached_array
     def valid(self) -> Array:
         """Mask of the valid points: joint and result lie inside the model's validity."""
         mask = (self.status == int(Status.OK)) & (self.broken_limit == 0)
-        return mask if self._is_plain else arrays.read_only(arrays.broadcast(mask, self._load))
+        return mask if self._is_plain else arrays.broadcast(mask, self._load)
 
-    @cached_property
+    @cached_array
     def broken_limit(self) -> Array:
         """Number of the first range of the validity that a point lies outside of, from 1; 0 inside of all."""
         limits = list(enumerate(self._validity_ranges, 1))
@@ -117,7 +118,7 @@ class Outcome(ABC):
         broken = 0 * self.status
         for number, limit in reversed(limits):
             broken = arrays.where(limit.holds(self), broken, number)
-        return arrays.read_only(broken)
+        return broken
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:

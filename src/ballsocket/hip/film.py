@@ -15,6 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
 from ..core.display import load_plot
+from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
 from ..lubrication.cycle_film import CYCLES
@@ -40,7 +41,7 @@ _MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Film:
+class Film(Record):
     """Lubricant film and friction in the loaded instants of a cycle.
 
     Attributes

@@ -17,6 +17,7 @@ from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.display import OneLine, html_table, load_plot
+from ..core.records import Record
 from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
 from .hip_setup import HipSetup
@@ -25,7 +26,7 @@ from .rim import ClosestApproach, RimDistance
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Report(OneLine):
+class Report(Record, OneLine):
     """Results of a wear simulation after a number of cycles.
 
     Attributes

@@ -13,6 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_fields, renamed_names
+from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from .cycle import Spring
 
@@ -108,7 +109,7 @@ class ClosestApproach:
 
 @renamed_fields(place="azimuth", nearest="closest_index", worst="closest_approach")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RimDistance:
+class RimDistance(Record):
     """Distance of each contact of a cycle from the rim of the cup.
 
     Attributes

@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require
 from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.records import Record
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution
@@ -292,7 +293,7 @@ def _tabulate_cycle(cycle: Cycle) -> Cycle:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CohortResult:
+class CohortResult(Record):
     """Results of several patients as arrays.
 
     Attributes

@@ -13,6 +13,7 @@ from ..contact import Contact
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_number, check_vectors, known_name, require
 from ..core.display import load_plot
+from ..core.records import Record
 from ..core.validity import Status
 from .dry_contact import DryContact, check_single_contact, dry_contact
 from .film_problem import check_reynolds, make_contact_film
@@ -51,7 +52,7 @@ _MOLECULES_NOTE = "the smallest film is below 1 nm: a few molecules are not a fl
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FilmResult:
+class FilmResult(Record):
     """Lubricating film of a single contact.
 
     Attributes

@@ -16,6 +16,7 @@ import numpy
 from ..contact.contact import ELASTIC
 from ..contact.strength import unchecked_strength_reason
 from ..contact.verdict import Verdict
+from ..core import arrays
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
@@ -150,7 +151,10 @@ def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
     coordinates = parameter_coordinates(task.design).items()
     return order_coordinates(
         xarray.Dataset(
-            {name: (task.design.dims, values, variable_attributes(name)) for name, values in results.items()},
+            {
+                name: (task.design.dims, arrays.read_only(values), variable_attributes(name))
+                for name, values in results.items()
+            },
             coords={name: (dims, values, variable_attributes(name)) for name, (dims, values) in coordinates},
             attrs=study_attributes(task),
         )

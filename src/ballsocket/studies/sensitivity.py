@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..contact import Model
+from ..core import arrays
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
 from ..core.deprecation import renamed_names
@@ -123,7 +124,7 @@ def sensitivity(
     attributes |= {"correlation": correlation_text(correlation)} if correlation else {}
     return xarray.Dataset(
         {
-            **{name: (dims[: values.ndim], values) for name, values in indices.items()},
+            **{name: (dims[: values.ndim], arrays.read_only(values)) for name, values in indices.items()},
             "elasticity": (dims[:2], [[local[quantity][name] for name in distributions] for quantity in names]),
             "mean": ("quantity", samples.mean(axis=1)),
             "deviation": ("quantity", samples.std(axis=1)),

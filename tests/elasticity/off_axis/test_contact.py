@@ -36,6 +36,8 @@ def test_summary_has_the_values_of_the_contact(tilted):
     many = COARSE.press(RIGID, force=[100.0, 2500.0], tilt=[0.1, 1.2]).summary()
     assert many["edge_loaded"] == [False, True]
     assert len(many["status"]) == 2
+    for array in (tilted.force_vector, tilted.stiffness_matrix, tilted.max_pressure_at, tilted.moment):
+        assert not array.flags.writeable
 
 
 def test_force_in_the_body_is_the_load():

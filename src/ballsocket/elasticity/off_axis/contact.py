@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -13,6 +12,7 @@ from ...contact.per_joint import JointContacts, SolvedContact, joint_at
 from ...contact.strength import von_mises_ratio
 from ...core import arrays
 from ...core.arrays import Array, Numbers
+from ...core.records import cached_array
 from ...core.validity import Status
 from .directions import TILT_TOLERANCE, check_direction, polar_angle
 
@@ -43,28 +43,27 @@ class OffAxisContact(SolvedContact):
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
-    @cached_property
+    @cached_array
     def force_vector(self) -> Array:
         """Force of the ball on the cup in N: components towards the rim, across, towards the dome."""
         return self._collect_vector("force_vector")
 
-    @cached_property
+    @cached_array
     def displacement(self) -> Array:
         """Displacement of the ball's centre from the centre of the bore, in mm."""
         return self._collect_vector("displacement")
 
-    @cached_property
+    @cached_array
     def moment(self) -> Array:
         """Moment of the contact on the ball about the ball's centre, without friction, in N mm."""
-        moment = arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
-        return arrays.read_only(moment)
+        return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
 
-    @cached_property
+    @cached_array
     def edge_slope(self) -> Array:
         """Mean slope of the pressure along the edge of the contact in MPa/mm; NaN unless the bore is of springs."""
         return self._mean_edge_constant(1.0)
 
-    @cached_property
+    @cached_array
     def edge_coefficient(self) -> Array:
         """Mean of p/sqrt(s) along the edge of the contact in MPa/mm^(1/2), with the arc s; NaN on springs."""
         return self._mean_edge_constant(0.5)
@@ -102,25 +101,25 @@ class OffAxisContact(SolvedContact):
         lever = self.laws.combine(lambda contacts: contacts.state.friction_levers(axis_angle))
         return self._match_load(coefficient * self.joint.ball_radius * self.joint.socket_radius**2 * lever)
 
-    @cached_property
+    @cached_array
     def stiffness_matrix(self) -> Array:
         """Tangent stiffness: derivative of the force vector by the displacement in N/mm, (..., 3, 3), symmetric."""
         rows = self.laws.combine(lambda contacts: contacts.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
-        return arrays.read_only(arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3)))
+        return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
-    @cached_property
+    @cached_array
     def max_pressure_at(self) -> Array:
         """Unit vector from the centre of the bore to the point of the largest pressure."""
         return self._collect_vector("max_pressure_at")
 
-    @cached_property
+    @cached_array
     def edge_loaded(self) -> Array:
         """True where the contact reaches the end of the bore."""
         loaded = self.laws.combine(lambda contacts: contacts.state.edge_loaded) == 1
-        return bool(loaded) if self._is_plain else arrays.read_only(loaded)
+        return bool(loaded) if self._is_plain else loaded
 
-    @cached_property
+    @cached_array
     def edge_margin(self) -> Array:
         """Angle in rad from the edge of the contact to the end of the bore, negative for edge loading.
 
@@ -130,7 +129,7 @@ class OffAxisContact(SolvedContact):
 
         return self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
 
-    @cached_property
+    @cached_array
     def error(self) -> dict[str, Array]:
         """Estimated relative errors, one array for each quantity name; `edge_margin` has its error in rad.
 
@@ -227,7 +226,7 @@ class OffAxisContact(SolvedContact):
         """Collect a named vector of all contacts: (..., 3), NaN where there is no solution."""
         rows = self.laws.combine(lambda contacts: getattr(contacts.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
-        return arrays.read_only(arrays.namespace(rows).moveaxis(rows, 0, -1))
+        return arrays.namespace(rows).moveaxis(rows, 0, -1)
 
     def summary(self) -> dict[str, Any]:
         """Return the contact as a dictionary for JSON, with vectors in the cup's frame.
