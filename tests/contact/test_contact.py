@@ -45,6 +45,36 @@ def test_a_finished_contact_is_independent_of_the_arrays_of_the_caller(model):
             array[0] = 7
 
 
+@pytest.mark.parametrize(
+    ("scale", "notes"),
+    [
+        ({}, 0),
+        ({"ball_radius": 0.014, "clearance": 1e-4, "liner_thickness": 0.008}, 1),
+        ({"liner": bs.Material(young=1e9, poisson=0.4, yield_stress=2e7)}, 2),
+        ({"ball": bs.Material(young=210e9, poisson=0.3)}, 1),
+        ({"ball_radius": np.array([14.0, 0.014])}, 1),
+    ],
+)
+def test_joints_in_metres_and_pascals_have_a_note(scale, notes):
+    lengths = {"ball_radius": 14.0, "clearance": 0.1, "liner_thickness": 8.0, "liner": bs.UHMWPE}
+    contact = bs.Bartel().press(bs.Joint(**{**lengths, **scale}), indentation=1e-5)
+    assert sum("as if" in note for note in contact.notes) == notes
+
+
+def test_no_preset_looks_like_metres_or_pascals():
+    for joint in bs.joints.values():
+        assert not any("as if" in note for note in bs.Hertz().press(joint, indentation=0.01).notes)
+
+
+def test_an_error_that_is_not_known_is_absent():
+    """Closed forms have that of their promise where they are valid."""
+    assert bs.Steuermann().press(HIP, force=1000.0).error == {}
+    spring = bs.HessForsbach().press(HIP, force=[1000.0, 1e7])
+    assert spring.error["max_pressure"][0] == spring.model.promise.within
+    assert np.isnan(spring.error["indentation"][1])
+    assert "energy" not in spring.error
+
+
 def test_a_comparison_has_a_row_per_model_and_reasons_of_missing_models():
     answers = bs.compare(bs.joints["tilting-pad-pivot"], force=1000.0)
     assert "use hertz" in answers.missing["plane-layer"]

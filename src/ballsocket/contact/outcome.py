@@ -15,7 +15,7 @@ from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
 from ..core.records import cached_array
 from ..core.sources import Source
-from ..core.validity import Promise, Range, Remark, Status, is_missing
+from ..core.validity import UNIT_REMARKS, Promise, Range, Remark, Status, is_missing
 from ..problem import Joint
 
 
@@ -121,18 +121,30 @@ class Outcome(ABC):
         return broken
 
     @property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative error of each quantity by name; a quantity whose error is not known is absent.
+
+        Solvers estimate the error of each point. Other models have the measured error of their promise, relative to the
+        elastic solution at equal force, and NaN at points that are not valid. Without a promise it is empty.
+        """
+        if self.model.promise is None:
+            return {}
+        within = self._match_load(arrays.where(self.valid, self.model.promise.within, numpy.nan + 0.0 * self._load))
+        return dict.fromkeys(self.model.promise.quantities, within)
+
+    @property
     def _validity_ranges(self) -> tuple[Range, ...]:
         """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Messages on failed points and points outside the model's validity, and remarks of the model."""
+        """Messages on failed points, points outside the model's validity, remarks of the model, and on units."""
         notes = []
         for status in list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
             notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
-        for limit in (*self.model.validity, *self.model.remarks):
+        for limit in (*self.model.validity, *self.model.remarks, *UNIT_REMARKS):
             notes += self._note_on_invalid_points(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)
 

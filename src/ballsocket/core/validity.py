@@ -307,3 +307,44 @@ def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
         Remark(quantity=infinite_layer_share, symbol="share of the infinite layer in d", high=0.02, why=spaces),
         Remark(quantity="joint.modulus_ratio", high=0.05, why=balls),
     )
+
+
+def _largest_young(contact: Any) -> Array:
+    """Return the largest Young's modulus of liner, ball and backing in MPa."""
+    joint = contact.joint
+    largest = joint.liner.young
+    for part in (joint.ball, *(layer.material for layer in joint.backing)):
+        if part is not None:
+            largest = where(part.young > largest, part.young, largest)
+    return largest
+
+
+def _largest_strength(contact: Any) -> Array:
+    """Return the largest strength of liner and ball in MPa; 0 if none is known."""
+    largest: Array = 0.0 * contact.joint.liner.young
+    for strength in contact.joint.strengths():
+        largest = where(strength > largest, strength, largest)
+    return largest
+
+
+UNIT_REMARKS = (
+    Remark(
+        quantity="joint.ball_radius",
+        low=0.1,
+        why="R1 is below 0.1 mm, as if lengths were in metres: give lengths in mm, moduli in MPa and forces in N",
+    ),
+    Remark(
+        quantity=_largest_young,
+        symbol="E",
+        high=2e6,
+        why="a Young's modulus is above 2 million MPa, as if it were in pascals (diamond has 1.1 million MPa): give "
+        "moduli in MPa, and a rigid ball as None",
+    ),
+    Remark(
+        quantity=_largest_strength,
+        symbol="σy",
+        high=1e5,
+        why="a strength is above 100 000 MPa, as if it were in pascals: give strengths in MPa",
+    ),
+)
+"""Remarks of all models on joints whose numbers look like SI base units: no joint or material has such numbers."""

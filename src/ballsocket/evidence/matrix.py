@@ -196,7 +196,7 @@ def _friction_torque(question: Question, contact: Contact, friction: float) -> A
 
 def known_errors(contact: Contact) -> Mapping[str, Any]:
     """Return the relative errors that a solver reports, by quantity; otherwise its tolerance."""
-    known: Mapping[str, Any] = getattr(contact, "error", None) or {}
+    known: Mapping[str, Any] = contact.error
     tolerance = getattr(contact.model, "tolerance", None)
     return known if known or tolerance is None else dict.fromkeys(COMPUTED, tolerance)
 

@@ -230,3 +230,9 @@ def test_gap_is_open_where_there_is_no_pressure_and_undeformed_far_away(tilted, 
 def test_contacts_without_a_solution_or_in_batches_raise(load, tmp_path):
     with pytest.raises(ValueError, match="pressure maps"):
         write_vtk(COARSE.press(RIGID, **load), tmp_path / "contact.vtu")
+
+
+@pytest.mark.parametrize(("inclination", "count"), [(radians(0.7), 1), (0.0, 0), (0.7, 0)])
+def test_inclination_in_radians_for_degrees_has_a_note(inclination, count):
+    contact = replace(SPRINGS, cup=bs.Cup(inclination=inclination)).press(RIGID, force=100.0, tilt=0.2)
+    assert sum("0.7 rad are 40.1°" in note for note in contact.notes) == count

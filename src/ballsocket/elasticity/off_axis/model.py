@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, pi, radians
+from math import degrees, inf, pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -26,7 +26,7 @@ from ...core.checks import (
 )
 from ...core.deprecation import RenamedAttribute
 from ...core.sources import Source
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status
 from ...problem import Joint
 from ...problem.cup import UP, Cup
 from ...problem.gaps import CircularGap, LinearGap, check_gap
@@ -157,6 +157,18 @@ class Sphere(Model):
             why="a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg",
         )
         return (SMALL_STRAIN, narrow, held, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
+
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        """Note on an inclination that looks like radians: no cup is tilted by less than 1.6° but not at all."""
+        small_inclination = Remark(
+            quantity=lambda _: abs(self.cup.inclination) or inf,
+            symbol="inclination",
+            low=radians(pi / 2),
+            why=f"the cup's inclination is {degrees(self.cup.inclination):.3g}°, as if radians were given as degrees: "
+            f"{degrees(self.cup.inclination):.3g} rad are {degrees(degrees(self.cup.inclination)):.3g}°",
+        )
+        return (small_inclination,)
 
     @property
     def parameters(self) -> tuple[Array, ...]:
