@@ -239,7 +239,7 @@ def test_a_bore_worn_to_the_rim_is_no_edge_loading(short_film):
     edge = worn.summary()["history"][-1]["edge"]
     assert (edge["kind"], edge["instants_edge_loaded"], edge["instants_at_rim"]) == ("worn to the rim", 0, 16)
     (note,) = (note for note in worn.notes if "rim" in note)
-    assert note.startswith("worn to the rim: after 1e+06 cycles the worn bore fits the ball")
+    assert note.startswith("worn to the rim: after 1000000 cycles the worn bore fits the ball")
     assert "this is not edge loading" in note
 
 

@@ -233,18 +233,27 @@ def test_patients_without_a_result_are_left_out():
     assert none.summary()["bands"][0]["volume"] == {"low": None, "median": None, "high": None}
 
 
+def changed(result, name, index, values):
+    """Return a result with other values in one array."""
+    array = getattr(result, name).copy()
+    array[index] = values
+    return replace(result, **{name: array})
+
+
 def test_edge_loading_is_the_fraction_of_patients_whose_contact_reaches_the_edge():
     result = cohort(4)
-    result.table[:, 1, COLUMNS.index("edge_distance")] = [0.0, 0.0, 0.1, 0.0]
+    result = changed(result, "table", np.s_[:, 1, COLUMNS.index("edge_distance")], [0.0, 0.0, 0.1, 0.0])
     assert [report["edge_loading"] for report in bands(result).summary()["bands"]] == [0.0, 0.75]
-    result.contact[1, 2, 2] = 1.0  # the others are worn to the rim
+    result = changed(result, "contact", np.s_[1, 2, 2], 1.0)  # the others are worn to the rim
     assert [report["edge_loaded"] for report in bands(result).summary()["bands"]] == [0.0, 0.25]
 
 
 def test_validity_and_utilisation_are_those_since_the_first_cycle():
     result = cohort(4)
-    result.contact[:, :, 0] = [[0.1, 0.2, 0.3], [0.9, 0.2, 0.3], [0.1, 0.5, 0.3], [0.1, 0.2, 0.3]]
-    result.contact[:, :, 1] = [[1, 1, 1], [0, 1, 1], [1, 1, 0], [1, 1, 1]]
+    result = changed(
+        result, "contact", np.s_[:, :, 0], [[0.1, 0.2, 0.3], [0.9, 0.2, 0.3], [0.1, 0.5, 0.3], [0.1, 0.2, 0.3]]
+    )
+    result = changed(result, "contact", np.s_[:, :, 1], [[1, 1, 1], [0, 1, 1], [1, 1, 0], [1, 1, 1]])
     np.testing.assert_array_equal(result.peak_utilisation, [[0.2, 0.3], [0.9, 0.9], [0.5, 0.5], [0.2, 0.3]])
     np.testing.assert_array_equal(result.valid, [[1, 1], [0, 0], [1, 0], [1, 1]])
     some = bands(result)
@@ -253,15 +262,15 @@ def test_validity_and_utilisation_are_those_since_the_first_cycle():
     assert [report["valid"] for report in some.summary()["bands"]] == [0.75, 0.5]
     assert some.valid is False
     assert some.summary()["bands"][0]["peak_utilisation"]["high"] == pytest.approx(0.84)
-    result.contact[3, 1, 0] = np.nan  # an unknown utilisation is left out
+    result = changed(result, "contact", np.s_[3, 1, 0], np.nan)  # an unknown utilisation is left out
     np.testing.assert_allclose(bands(result).utilisation_quantile(0.0), [0.2, 0.3])
-    result.contact[:, :, 0] = np.nan
+    result = changed(result, "contact", np.s_[:, :, 0], np.nan)
     assert np.isnan(bands(result).utilisation_quantile(0.5)).all()
 
 
 def test_notes_state_assumptions_and_limits_and_members_are_predictions_with_an_unknown_coefficient():
     result = cohort(3)
-    result.table[:, -1, COLUMNS.index("depth")] = [7.9, 8.0, 8.1]  # mm; the liner has 8
+    result = changed(result, "table", np.s_[:, -1, COLUMNS.index("depth")], [7.9, 8.0, 8.1])  # mm; the liner has 8
     notes = bands(result, distributions={"clearance": TIGHT, "body_weight": WEIGHT}).notes
     assumed = "assumed: given and independent distributions of clearance, body_weight"
     assert notes == (assumed, "1 of 3 patients wear their liner through")

@@ -32,6 +32,22 @@ def full_repr(value: Any) -> str:
     return repr(value)
 
 
+_LARGEST_PLAIN = 1e9
+"""Value from which numbers have an exponent."""
+
+
+def plain_number(value: float, digits: int = 4) -> str:
+    """Format a number with at least these significant digits, below a billion without an exponent.
+
+    Examples
+    --------
+    >>> plain_number(4e6), plain_number(13442.0, 3), plain_number(0.01234567), plain_number(-0.0)
+    ('4000000', '13442', '0.01235', '0')
+    """
+    large = 10**digits <= abs(value) < _LARGEST_PLAIN
+    return f"{value:.0f}" if large else f"{value + 0.0:.{digits}g}"
+
+
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return an HTML table of texts, the first column on the left."""
     align = " style='text-align:left'"

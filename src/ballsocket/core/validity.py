@@ -243,8 +243,9 @@ def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
 
 
 NON_NEGATIVE_CLEARANCE = Range(
-    quantity="joint.clearance",
-    low=-5e-324,  # 0 is inside
+    quantity="joint.interference",
+    symbol="interference",
+    high=5e-324,  # 0 is inside
     why="a joint with interference is preloaded, which only the model sphere solves",
 )
 CLOSE_FIT = Range(

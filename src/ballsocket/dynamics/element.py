@@ -122,7 +122,7 @@ class ForceElement(OneLine):
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
         if is_plain_number(self.joint.clearance) and self.joint.clearance < 0:
-            raise ValueError(f"clearance = {self.joint.clearance:g}: a preloaded joint needs a PreloadedElement")
+            raise ValueError(f"interference = {self.joint.interference:g}: a preloaded joint needs a PreloadedElement")
         smoothing = check_number("smoothing", self.smoothing)
         potential = self._elastic_energy()
         clearance = float(self.joint.clearance)

@@ -16,6 +16,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import closest, nearest, needs, shown
+from ..core.display import plain_number
 from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
 from ..core.kinds import Kind
@@ -435,7 +436,7 @@ def _parse_block(
     used = [index for index in range(width) if index in filled or any(texts[index : index + 1])]
     below = [_unit(f"_{units[index]}") if index < len(units) else "" for index in used]
     heads = reader.choose([texts[index] if index < len(texts) else "" for index in used], below)
-    check_memory(f"{len(body):.3g} rows of {title}", _COPIES * 8 * len(body) * len(heads))
+    check_memory(f"{plain_number(len(body), 3)} rows of {title}", _COPIES * 8 * len(body) * len(heads))
     return _make_table(
         title,
         {head: used[index] for index, head in heads.items()},
@@ -535,7 +536,7 @@ def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:
             texts = file.schema_arrow.names
             heads = tuple(reader.choose(texts, [""] * len(texts)).values())
             n_rows = file.metadata.num_rows
-            check_memory(f"{n_rows:.3g} rows of {path.name}", _COPIES * 8 * n_rows * len(heads))
+            check_memory(f"{plain_number(n_rows, 3)} rows of {path.name}", _COPIES * 8 * n_rows * len(heads))
             table = file.read([head.text for head in heads])
     except (ArrowException, OSError) as error:  # pyarrow raises an OSError without a number for damaged content
         if isinstance(error, OSError) and error.errno is not None:

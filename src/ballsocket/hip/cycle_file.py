@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
 from ..core.deprecation import renamed_arguments, renamed_names
+from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..files.tables import read_table as read_schema
 from ..problem.cup import Side
@@ -183,7 +184,9 @@ def _check_force(title: str, values: Numbers) -> None:
     """Raise ValueError for forces (N) above those of any hip, which suggest a wrong unit."""
     largest = float(abs(values).max())
     if largest > _MAX_FORCE:
-        raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_MAX_FORCE:g} N")
+        raise ValueError(
+            f"{title} goes to {plain_number(largest)} N; allowed are forces up to {plain_number(_MAX_FORCE)} N"
+        )
 
 
 def _check_angle(title: str, values: Numbers) -> None:

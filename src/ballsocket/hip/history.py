@@ -16,7 +16,7 @@ from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
-from ..core.display import OneLine, html_table, load_plot
+from ..core.display import OneLine, html_table, load_plot, plain_number
 from ..core.records import Record
 from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
@@ -107,7 +107,7 @@ class Report(Record, OneLine):
 
     def __str__(self) -> str:
         numbers = f"{self.volume:.4g} mm³ worn, penetration {self.penetration:.4g} mm"
-        return f"after {self.cycles:g} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
+        return f"after {plain_number(self.cycles)} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
 
     def summary(self) -> dict[str, Any]:
         """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
@@ -267,7 +267,7 @@ class History(OneLine):
     @property
     def _contact_notes(self) -> tuple[str, ...]:
         """Sentences of the contact model, each kind only once."""
-        later = (_AFTER_CYCLES.format(report.cycles) for report in self.reports)
+        later = (_AFTER_CYCLES.format(plain_number(report.cycles)) for report in self.reports)
         return tuple(
             list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
         )
@@ -279,7 +279,7 @@ class History(OneLine):
         for limit, sentence in ((1.0, _WORN_THROUGH), (_THIN_LINER, _WORN_THIN)):
             first = next((report for report in self.reports if report.depth > limit * liner), None)
             if first is not None:
-                return (sentence.format(first.cycles, first.depth, liner),)
+                return (sentence.format(plain_number(first.cycles), first.depth, liner),)
         return ()
 
     @property
@@ -292,7 +292,8 @@ class History(OneLine):
         """Sentences on the first stages with edge loading, and with a bore that is worn to the rim."""
         frame = self.use.frame
         stages = [(_FIRST_CYCLE, self.worst)] + [
-            (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(frame)) for report in self.reports
+            (_AFTER_CYCLES.format(plain_number(report.cycles)), report.edge.closest_approach(frame))
+            for report in self.reports
         ]
         first: dict[str, tuple[str, ClosestApproach]] = {}
         for stage, worst in stages:
@@ -389,11 +390,11 @@ class History(OneLine):
 _THIN_LINER = 0.25
 """Worn depth above which a note appears, relative to the thickness of the liner."""
 
-_WORN_THROUGH = "worn through: after {:g} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
+_WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
 _WORN_THIN = (
-    "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
+    "after {} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
 )
-_FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {:g} cycles"
+_FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {} cycles"
 _EDGE_LOADING = (
     "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
     "the pressure in the outermost ring is at most {:.3g} MPa"

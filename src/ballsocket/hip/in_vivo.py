@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
 from ..core.deprecation import renamed_arguments
+from ..core.display import plain_number
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, PhaseFunction
 from .simulator_cycles import iso_14242_1
 
@@ -126,7 +127,7 @@ _ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
 
 def check_body_weight(body_weight: float) -> float:
     """Check a body weight in N and return it; ValueError if it is not between 0 and 10 kN."""
-    allowed = f"a body weight is above 0 and at most {_MAX_BODY_WEIGHT:g} N"
+    allowed = f"a body weight is above 0 and at most {plain_number(_MAX_BODY_WEIGHT)} N"
     require("body_weight", body_weight, 0 < body_weight <= _MAX_BODY_WEIGHT, allowed)
     return body_weight
 

@@ -15,6 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
+from ..core.display import plain_number
 from ..core.storage.atomic_files import make_folder, read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
 from ..lubrication import Lubricant
@@ -152,8 +153,9 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
     estimated_depth = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
     if not estimated_depth <= MAX_WORN_LINERS * thickness:
         raise ValueError(
-            f"{cycles:g} cycles at the rate of the first one would wear {estimated_depth:.3g} mm away, more than "
-            f"{MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: reduce the wear coefficient or the cycles"
+            f"{plain_number(cycles)} cycles at the rate of the first one would wear {estimated_depth:.3g} mm away, "
+            f"more than {MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: "
+            "reduce the wear coefficient or the cycles"
         )
 
 
@@ -173,8 +175,8 @@ def run_to_report_points(
             continue
         if report_count < integrator.cycles:
             raise ValueError(
-                f"the store has reached {integrator.cycles:g} cycles without a report at {report_count:g}; "
-                "give another folder"
+                f"the store has reached {plain_number(integrator.cycles)} cycles without a report at "
+                f"{plain_number(report_count)}; give another folder"
             )
 
         def store_block(cycles: float) -> None:
@@ -358,7 +360,12 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
     """
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
     for count in report_at:
-        require("report_at", count, 0 <= count <= cycles, f"it lies between 0 and the {cycles:g} cycles of the run")
+        require(
+            "report_at",
+            count,
+            0 <= count <= cycles,
+            f"it lies between 0 and the {plain_number(cycles)} cycles of the run",
+        )
     return sorted({float(count) for count in (*report_at, cycles)})
 
 

@@ -13,6 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, shown
+from ..core.display import plain_number
 from .history import History, NumericalError, Report
 from .law_fields import law_summary
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
@@ -155,7 +156,12 @@ class MeasuredWear:
         if rate == "mean" and self.begin:
             raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
         begin = self.begin or 0.0
-        require("to", self.end, 0 <= begin < self.end < inf, f"it is above the {begin:g} cycles of from, and finite")
+        require(
+            "to",
+            self.end,
+            0 <= begin < self.end < inf,
+            f"it is above the {plain_number(begin)} cycles of from, and finite",
+        )
 
     def __len__(self) -> int:
         return len(self.values)

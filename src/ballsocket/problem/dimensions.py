@@ -104,6 +104,12 @@ class Dimensions:
         return -self.clearance
 
     @property
+    def fit(self) -> tuple[str, Array]:
+        """Name and positive radial value in mm of the fit: "clearance", or "interference" of a preloaded joint."""
+        preloaded = is_plain_number(self.clearance) and self.clearance < 0
+        return ("interference", self.interference) if preloaded else ("clearance", self.clearance)
+
+    @property
     def outer_diameter(self) -> Array:
         """Outer diameter in mm, twice the outer radius."""
         return 2 * self.outer_radius

@@ -283,12 +283,12 @@ class Joint(OneLine, Dimensions):
     @property
     def dimensions(self) -> str:
         """Text of ball radius, clearance or interference, and liner thickness, with units."""
-        preloaded = is_plain_number(self.clearance) and self.clearance < 0
-        fit = f"interference {self.interference:g} mm" if preloaded else f"clearance {short_text(self.clearance)} mm"
-        return f"R1 {short_text(self.ball_radius)} mm, {fit}, {_thickness_text(self.liner_thickness)}"
+        name, fit = self.fit
+        lengths = f"R1 {short_text(self.ball_radius)} mm, {name} {short_text(fit)} mm"
+        return f"{lengths}, {_thickness_text(self.liner_thickness)}"
 
     def _repr_html_(self) -> str:
-        lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+        lengths = ("ball_radius", "socket_radius", self.fit[0], "liner_thickness")
         rows = [(JOINT[name].title, f"{short_text(getattr(self, name))} mm") for name in lengths]
         rows += [("liner", str(self.liner)), ("ball", "rigid" if self.ball is None else str(self.ball))]
         rows += [(f"layer {number} behind the liner", str(layer)) for number, layer in enumerate(self.backing, start=1)]

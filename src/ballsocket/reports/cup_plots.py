@@ -10,6 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
+from ..core.display import plain_number
 from ..core.quantities import FIELD
 from ..core.storage.atomic_files import write_atomically
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -68,7 +69,7 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
 def _title(contact: OffAxisContact) -> str:
     """Describe the joint, and the load with its angle to the cup's axis."""
     tilt = f"{degrees(contact.tilt):.3g}° from the cup's axis"
-    return f"{contact.joint.dimensions}; {contact.force:.4g} N at {tilt}"
+    return f"{contact.joint.dimensions}; {plain_number(contact.force)} N at {tilt}"
 
 
 _BALL, _SOLIDS = "0.9", ("#f3e6c4", "#cfd8de", "#e7d9cc", "#dcdcdc")

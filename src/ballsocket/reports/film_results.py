@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..core.arrays import Numbers
+from ..core.display import plain_number
 from ..hip.film import Film
 from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
@@ -68,7 +69,7 @@ def _title(film: FilmResult) -> str:
     """Describe the film in one line."""
     central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
     return (
-        f"{film.contact.model.name}, {film.contact.force:g} N, {numpy.linalg.norm(film.spin):g} rad/s, "
+        f"{film.contact.model.name}, {plain_number(film.contact.force)} N, {numpy.linalg.norm(film.spin):g} rad/s, "
         f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.0f} nm, minimum {least:.0f} nm"
     )
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..core.display import plain_number
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.history import History
@@ -183,7 +184,11 @@ def _measured_table(fit: WearFit) -> Any:
     rows = {int(row): station for station, indices in fit.specimens.items() for row in indices}
     stations = ([rows[row]] if several else [] for row in range(len(rows)))
     for measured, results in zip(fit.data, fit.results, strict=True):
-        cycles = [""] * len(measured) if measured.rate else [f" after {count:g} cycles" for count in measured.cycles]
+        cycles = (
+            [""] * len(measured)
+            if measured.rate
+            else [f" after {plain_number(count)} cycles" for count in measured.cycles]
+        )
         for value, result, count in zip(measured.values, results, cycles, strict=True):
             title = measured.description if measured.rate else f"{measured.quantity.replace('_', ' ')}{count}"
             table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit, *next(stations))

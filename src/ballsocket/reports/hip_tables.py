@@ -12,6 +12,7 @@ from rich.text import Text
 
 from ..contact.verdict import bar_text
 from ..core.arrays import Numbers
+from ..core.display import plain_number
 from ..hip.bands import Bands
 from ..hip.contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from ..hip.film import Film
@@ -64,7 +65,7 @@ def _utilisation_words(history: History) -> str:
     worst = (max(stage, key=lambda check: check.utilisation or 0.0) for stage in (checks, last))
     unworn, end = map(_utilisation_text, worst)
     verdict = worst_verdict((*checks, *last)).word
-    return f"yield {verdict}: utilisation σv/σy {unworn} unworn, {end} after {history.last.cycles:g} cycles"
+    return f"yield {verdict}: utilisation σv/σy {unworn} unworn, {end} after {plain_number(history.last.cycles)} cycles"
 
 
 def _utilisation_text(check: ContactCheck) -> str:
@@ -77,7 +78,8 @@ def contact_rows(history: History) -> Iterator[tuple[str, ...]]:
     """List the checked contacts, unworn and at each report: the cells below `CONTACT_HEADS`."""
     stages = [("unworn", history.use.unworn_checks)]
     stages += [
-        (f"{report.cycles:g}", checks) for report, checks in zip(history.reports, history.contact_checks, strict=True)
+        (plain_number(report.cycles), checks)
+        for report, checks in zip(history.reports, history.contact_checks, strict=True)
     ]
     for stage, checks in stages:
         for check in checks:
@@ -183,7 +185,8 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
     print_folded(
         terminal,
         f"{use.cycle.name}{remark}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
-        f"cross-shear {first.cross_shear:.3g}, up to {first.max_force:.4g} N and {first.max_pressure:.4g} MPa",
+        f"cross-shear {first.cross_shear:.3g}, up to {plain_number(first.max_force)} N and "
+        f"{first.max_pressure:.4g} MPa",
         "",
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")

@@ -12,6 +12,7 @@ from ..compare import force_curves, successful_contacts
 from ..contact import Contact
 from ..contact.describe import Column
 from ..core import arrays
+from ..core.display import plain_number
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, FIELD
 from ..dynamics.motion import Motion
@@ -116,13 +117,13 @@ def _title(contact: Contact, units: Units) -> str:
     """Describe the joint and its load in one line."""
     joint = contact.joint
     if units is Units.IMPERIAL:
-        lengths = {"head": joint.head_diameter, "clearance": joint.diametral_clearance}
+        lengths = {"head": joint.head_diameter, joint.fit[0]: 2 * joint.fit[1]}
         text = ", ".join(f"{name} ⌀ {units.length(float(length))}" for name, length in lengths.items())
         return f"{text}; ● at {units.text_of(CONTACT['force'], float(contact.force))}"
     ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
     return (
         f"{joint.dimensions} of {float(joint.liner.young) / 1e3:g} GPa, "
-        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {contact.force:.4g} N"
+        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {plain_number(contact.force)} N"
     )
 
 

@@ -31,6 +31,9 @@ from .section_plots import joint_section
 from .unit_systems import Units
 
 _TEMPLATE = "press.html"
+_ROUNDING = 1e-9
+"""Relative size of a component of a force that is the rounding error of zero."""
+
 _VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.EXCEEDED: "fails"}
 """Style of a verdict on the checks."""
 
@@ -247,10 +250,10 @@ def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
 
 def _inputs(file: JointFile, units: Units) -> Iterator[tuple[str, str, str]]:
     """Yield title, value and source of each input."""
-    joint = file.joint
+    joint, (fit, radial_fit) = file.joint, file.joint.fit
     yield "head diameter", units.length(2 * float(joint.ball_radius)), joint.source
     yield "bore diameter", units.length(2 * float(joint.socket_radius)), ""
-    yield "diametral clearance", units.length(2 * float(joint.clearance)), "twice the radial clearance"
+    yield f"diametral {fit}", units.length(2 * float(radial_fit)), f"twice the radial {fit}"
     yield "liner thickness", units.length(float(joint.liner_thickness)), ""
     yield "liner", _material(joint.liner, units), joint.liner.source
     yield "ball", "rigid" if joint.ball is None else _material(joint.ball, units), getattr(joint.ball, "source", "")
@@ -351,7 +354,9 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
     if isfinite(contact.max_pressure):
         angle = degrees(float(polar_angle(contact.max_pressure_at)))
         yield "largest pressure from the cup's axis", f"{angle:.3g}°", "angle at the centre of the bore"
-    force = (units.text_of(CONTACT["force"], float(part)) for part in contact.force_vector)
+    vector = contact.force_vector + 0.0
+    vector[abs(vector) < _ROUNDING * abs(vector).max()] = 0.0
+    force = (units.text_of(CONTACT["force"], float(part)) for part in vector)
     yield "force of the ball on the cup", ", ".join(force), "components towards the rim, across, towards the dome"
 
 
@@ -370,9 +375,9 @@ def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
 def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     """Yield name and value of the numbers that designs are compared by; the same names for every design."""
     file, contact = design.file, design.contact
-    joint = file.joint
+    joint, (fit, radial_fit) = file.joint, file.joint.fit
     yield "head diameter", units.length(2 * float(joint.ball_radius))
-    yield "diametral clearance", units.length(2 * float(joint.clearance))
+    yield "diametral fit", f"{fit} {units.length(2 * float(radial_fit))}"
     layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
     parts = (f"{units.length(float(thickness))} {material.name or 'liner'}" for thickness, material in layers)
     yield "liner and backing", " on ".join(parts)

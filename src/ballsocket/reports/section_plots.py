@@ -10,6 +10,7 @@ import numpy
 
 from ..catalogue import judge, reference
 from ..contact import Contact
+from ..core.display import plain_number
 from ..core.quantities import CONTACT, FIELD
 from ..elasticity.finite_elements.model import MeshedContact
 from ..problem import Joint
@@ -87,7 +88,8 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
     _label_layers(axes, joint, cup, radii, units)
     if contact is not None:
         _draw_load(axes, joint, contact, units)
-    text = f"diametral clearance {units.length(2 * joint.clearance)}, drawn {times:g} times as wide"
+    name, fit = joint.fit
+    text = f"diametral {name} {units.length(2 * fit)}, drawn {times:g} times as wide"
     axes.text(0.0, -1.1 * radii[-1], text, ha="center", va="top", fontsize=9)
     return figure
 
@@ -190,7 +192,7 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, section_axes, contact)
     _draw_pressure(pressure_axes, contact, exact)
-    title = f"{contact.joint.dimensions}; {contact.force:.4g} N, {contact.mesh.elements} elements"
+    title = f"{contact.joint.dimensions}; {plain_number(contact.force)} N, {contact.mesh.elements} elements"
     figure.suptitle(title, fontsize=10)
     return figure
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from enum import StrEnum
 from functools import reduce
-from math import inf, isinf, nan
+from math import isinf, nan
 from types import MappingProxyType
 from typing import Any
 
 from ..contact.describe import UTILISATION, Column
+from ..core.display import plain_number
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, Quantity
 from ..problem import Joint, elementwise_maximum
@@ -38,8 +39,8 @@ PRESSURE_RATIO = PressureRatioColumn(
 )
 """Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
 
-_LARGE = 1e4
-"""Value from which numbers are written without an exponent."""
+_KSI_FROM = 1e4
+"""Pressure in psi from which it is written in ksi."""
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND
@@ -133,8 +134,7 @@ class Units(StrEnum):
     def text_of(self, quantity: Quantity, number: float) -> str:
         """Write a number, stated in the internal unit, with the unit of this system."""
         unit = _legible(self.unit_of(quantity), number)
-        shown = number * unit.factor
-        text = f"{shown:.0f}" if _LARGE <= abs(shown) < inf else f"{shown:.4g}"
+        text = plain_number(number * unit.factor)
         return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
 
     def sentence(self, text: str) -> str:
@@ -184,7 +184,7 @@ class Units(StrEnum):
 def _legible(unit: Unit, number: float) -> Unit:
     """Return ksi in place of psi for large numbers, and millionths of an inch in place of mil for small ones."""
     size = abs(number) * unit.factor
-    if unit.text == "psi" and size >= _LARGE:
+    if unit.text == "psi" and size >= _KSI_FROM:
         return Unit("ksi", 1e-3 * unit.factor)
     return Unit("µin", 1e3 * unit.factor) if unit.text == "mil" and 0 < size < 0.1 else unit
 
@@ -198,6 +198,6 @@ def _imperial(match: re.Match[str]) -> str:
     def converted(number: re.Match[str]) -> str:
         """Write one number."""
         value = float(number[0]) * unit.factor
-        return f"{value:.0f}" if _LARGE <= abs(value) < 1e7 else f"{value:.4g}"
+        return plain_number(value)
 
     return f"{re.sub(_NUMBER, converted, numbers)} {unit.text}"

@@ -133,6 +133,7 @@ def test_axial_contact_is_uniform_around_the_pole():
     model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(40.0)), ring_width=radians(either(quick=1.0, long=0.5)))
     contact = model.press(lined(), indentation=0.006)
     assert np.ptp(contact.pressure_map[2][0]) < 1e-4 * contact.max_pressure
+    assert contact.max_pressure_angle == 0.0
 
 
 def test_contact_is_independent_of_the_meridians():

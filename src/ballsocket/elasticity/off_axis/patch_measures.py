@@ -25,6 +25,9 @@ _SECANTS = 5
 _FIT_RADIUS = 2.2
 """Radius of the quadratic fit around the largest pressure, in widths of a ring."""
 
+_FLAT = 2e-5
+"""Relative difference of two pressures of the fit that the points of the lattice do not resolve."""
+
 _FIT_RINGS = 8
 """Number of rings on each side of the largest pressure that the radius can reach: those at the rim are narrow."""
 
@@ -177,7 +180,7 @@ def largest_pressures(cells: CellArrays, pressure: Array, axis: Array) -> tuple[
     """Compute the largest pressures in MPa (contacts,) and the unit vectors to them (contacts, 3).
 
     A quadratic polynomial is fitted to the cells around the cell with the largest pressure, by least squares. Contacts
-    without pressure have 0, in the direction of their axes.
+    without pressure have 0. Where the fit has the same pressure at the axis of the load, that is the direction.
     """
     xp = arrays.namespace(pressure)
     count, rings, meridians = pressure.shape
@@ -204,7 +207,10 @@ def largest_pressures(cells: CellArrays, pressure: Array, axis: Array) -> tuple[
     at = xp.take_along_axis(candidates, best[..., None], axis=1)[:, 0]
     direction = xp.where((highest < 0)[:, None], middle, at)
     loaded = top > 0
-    return top + loaded * xp.maximum(highest, 0.0 * highest), xp.where(loaded[:, None], direction, axis)
+    at_axis = (_quadratic_terms(*_project(axis[:, None], first, second, radius)) @ fit)[:, 0, 0]
+    flat = (xp.sum(axis * middle, axis=1) > xp.cos(radius)) & (at_axis >= highest - _FLAT * top)
+    peak = top + loaded * xp.maximum(highest, 0.0 * highest)
+    return peak, xp.where((loaded & ~flat)[:, None], direction, axis)
 
 
 def _project(points: Array, first: Array, second: Array, radius: Array) -> tuple[Array, Array]:

@@ -104,10 +104,11 @@ def _bore_and_gap(file: JointFile, frame: DrawingFrame, format_length: Formatter
     yield _labelled_value(("bore", f"⌀ {format_length(2 * radius)}"), 490.0, bore[1] - 66, "start")
     gap = frame.at(radius, min(rim, radians(72.0)))
     yield _leader(*gap, 492.0, gap[1] + 12)
-    drawn = f"⌀ {format_length(2 * float(file.joint.clearance))}"
+    name, fit = file.joint.fit
+    drawn = f"⌀ {format_length(2 * float(fit))}"
     if times > 1:
         yield svg.text(496.0, gap[1] + 42, f"drawn × {times}", "quiet", "start")
-    yield _labelled_value(("clearance", drawn), 496.0, gap[1] + 8, "start")
+    yield _labelled_value((name, drawn), 496.0, gap[1] + 8, "start")
 
 
 def _liner(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
