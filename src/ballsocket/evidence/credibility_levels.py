@@ -161,6 +161,8 @@ def form_level(record: Record) -> ReachedLevel:
         missing.append("strength not checked: no yield stress, or no result")
     elif max(utilisations, default=0.0) > 1:
         missing.append("von Mises stress exceeds the yield stress: the material is not elastic there")
+    elif not all(high is not None and high <= 1 for _, high in (row["bars"]["utilisation"] for row in rows)):
+        missing.append("the error bar of the von Mises stress contains the yield stress")
     level = "a" if len(bodies) < 2 else "b" if missing else "c"
     if len(bodies) < 2:
         missing.insert(0, "a second body or method at the worst cases")
