@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import nan, radians
+from math import radians
 from typing import Any
 
 from ....contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
@@ -156,6 +156,8 @@ _KEY = (
 def _drawn(screen: Screen) -> dict[str, str]:
     """Press the load, and return the HTML of its numbers and pictures by their element."""
     contact, reading = pressed_in_cup(screen.file), screen.reading
+    if not float(contact.half_angle) > 0:
+        return {"numbers": _verdict(contact, reading), "map": "", "viewer": ""}
     return {
         "numbers": _numbers(contact, screen),
         "map": pressed_bore(contact, reading),
@@ -193,9 +195,9 @@ _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     angle = reading.unit(CUP["inclination"])
-    loaded, margin = float(contact.half_angle) > 0, f"{_edge_margin_text(contact, reading)} of arc"
+    margin = f"{_edge_margin_text(contact, reading)} of arc"
     cells = [
-        _cell(DERIVED[EDGE_DISTANCE], contact.edge_distance if loaded else nan, reading, margin if loaded else ""),
+        _cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, margin),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
         number_cell("tilt of the load", float(contact.tilt) * angle.factor, angle.text),
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
