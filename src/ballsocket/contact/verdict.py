@@ -152,13 +152,16 @@ def rim_verdict(contact: Contact) -> Verdict:
 
 
 def relative_error(contact: Contact, name: str) -> Array:
-    """Return the relative error of a quantity: of its solver, else the promise of the model, else 0."""
+    """Return the relative error of a quantity: the promise of the model, else that of its solver, else 0.
+
+    The promise also holds for the bar of an invalid result, which can exceed a limit but not keep it.
+    """
     if name == "area":
         return _AREA_ERRORS * relative_error(contact, "half_angle")
-    errors, promise = getattr(contact, "error", None) or {}, contact.model.promise
-    if name in errors:
-        return errors[name]
-    return promise.within if promise is not None and name in promise.quantities else 0.0
+    promise = contact.model.promise
+    if promise is not None and name in promise.quantities:
+        return promise.within
+    return contact.error.get(name, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
