@@ -114,7 +114,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
     if name == "utilisation":
         return _stress_bar(contact, value, contact.utilisation_bounds)
     if name == EDGE_DISTANCE:
-        error = contact.error["edge_margin"] * contact.joint.socket_radius  # type: ignore[attr-defined]
+        error = contact.error["edge_margin"] * contact.joint.socket_radius
     else:
         error = relative_error(contact, name) * abs(value)
     return Bounded(value, *(where(isfinite(value), value + sign * error, value) for sign in (-1, 1)))
