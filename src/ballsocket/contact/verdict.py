@@ -126,7 +126,7 @@ def von_mises_bar(contact: Contact, solved: Array | None = None) -> Bounded:
     Without a `solved` value no stresses are solved for where they have bounds: the value is the mean of the bounds.
     """
     low, high = bounds = contact.von_mises_bounds
-    if solved is None and not all_true(isfinite(high)):
+    if solved is None and (contact.stress_error is None or not all_true(isfinite(high))):
         solved = contact.von_mises
     if solved is not None:
         return _stress_bar(contact, solved, bounds)
