@@ -123,7 +123,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
 def von_mises_bar(contact: Contact, solved: Array | None = None) -> Bounded:
     """Return the largest von Mises stress in the liner in MPa with its error bar.
 
-    Without a `solved` value no stresses are solved for where they have bounds: the value is the mean of the bounds.
+    Without a `solved` value a model that solves for the stresses has the mean of the bounds, without a solution.
     """
     low, high = bounds = contact.von_mises_bounds
     if solved is None and (contact.stress_error is None or not all_true(isfinite(high))):
