@@ -101,7 +101,13 @@ def _hip(file):
 def _study(file):
     design, engine = file.design, file.engine
     return [
-        *(file.model.name, _joint(file.joint), list(design.names), design.size, list(file.quantities)),
+        *(
+            file.model.name,
+            _joint(file.joint),
+            list(design.names),
+            design.size,
+            list(file.quantities) if "quantities" in text else [],
+        ),
         *(numbers(file.store), type(engine).__name__, numbers(getattr(engine, "workers", None))),
     ]
 

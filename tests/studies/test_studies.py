@@ -241,7 +241,9 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
     monkeypatch.setattr("ballsocket.core.executors.processes.available_memory", lambda: 10**6)
-    with pytest.raises(ValueError, match=r"1e\+06 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"):
+    with pytest.raises(
+        ValueError, match=r"1000000 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"
+    ):
         table(tmp_path / "rows.parquet")
     with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):
         table(tmp_path / "rows.csv")

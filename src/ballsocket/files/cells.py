@@ -50,6 +50,26 @@ NumberedRow = tuple[int, Sequence[Cell]]
 """Number of a line, and its cells."""
 
 
+OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"
+"""First bytes of Excel files: .xls, which is not read, and .xlsx."""
+
+
+def possible_rows(raw: bytes) -> Iterator[tuple[str, list[NumberedRow]]]:
+    """Yield each possible separator of the content of a text or Excel file, and the cells of all lines.
+
+    Raises
+    ------
+    ValueError
+        Content that is neither a table in text nor in .xlsx.
+    """
+    if raw.startswith(OLD_EXCEL):
+        raise ValueError("an old Excel file (.xls) is not read: save it as .xlsx or CSV")
+    if raw.startswith(EXCEL):
+        yield "", read_excel(raw)
+    else:
+        yield from split_text(decode_text(raw))
+
+
 def decode_text(raw: bytes) -> str:
     """Decode text in UTF-8 or UTF-16, with or without a byte order mark, or in cp1252, the code page of Windows.
 

@@ -21,6 +21,8 @@ from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
 from ..core.kinds import Kind
 from .cells import (
+    EXCEL,
+    OLD_EXCEL,
     Cell,
     NumberedRow,
     cell_number,
@@ -28,8 +30,7 @@ from .cells import (
     decimal_mark,
     decode_text,
     is_data,
-    read_excel,
-    split_text,
+    possible_rows,
 )
 from .head_names import UNCERTAINTY, known_head, plain_name
 from .schema import HeadMap, Table, Texts, meaning
@@ -269,14 +270,12 @@ def _parse_table(path: Path, raw: bytes, reader: _HeadReader) -> NumberTable:
         return _read_parquet(path, reader)
     if len(raw) > _MAX_BYTES:
         raise ValueError(f"a table has at most {_MAX_BYTES // 1_000_000} MB: cut it, or save it as Parquet")
-    if raw.startswith(b"\xd0\xcf\x11\xe0"):
-        raise ValueError("an old Excel file (.xls) is not read: save it as .xlsx or CSV")
-    if raw.startswith(b"PK"):
-        return _parse_rows(path.name, [("", read_excel(raw))], reader)
-    text = decode_text(raw)
-    lines = text.split("\n")
-    ends = [index for index, line in enumerate(lines) if line.strip().lower() == _HEADER_END]
-    return _parse_opensim(path.name, lines, ends[0]) if ends else _parse_rows(path.name, split_text(text), reader)
+    if not raw.startswith((OLD_EXCEL, EXCEL)):
+        lines = decode_text(raw).split("\n")
+        ends = [index for index, line in enumerate(lines) if line.strip().lower() == _HEADER_END]
+        if ends:
+            return _parse_opensim(path.name, lines, ends[0])
+    return _parse_rows(path.name, possible_rows(raw), reader)
 
 
 class _HeadReader:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Sequence
+import re
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 from ..core.checks import check_text, shown
 from ..core.input_files import open_input
-from ..files.columns import split_head
+from ..files.cells import Cell, cell_number, decimal_mark, possible_rows
+from ..files.columns import Head, split_head
 
 _MAX_BYTES = 10_000_000
 _STATION = "station"
+_SIGNS = re.compile(r"[\[(]")
 _CYCLES = {"cycles": 1.0, "million cycles": 1e6, "mc": 1e6}
 """Numbers of cycles by the head of their column."""
 
@@ -62,52 +64,52 @@ def read_stations(path: Path, quantity: str, unit: str | None = None) -> Station
     """
     try:
         return _parse_readings(_read_cells(path), quantity, unit)
-    except (ValueError, csv.Error) as error:
+    except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
 
 
-def _read_cells(path: Path) -> list[list[str]]:
-    """Read the cells of a table, heads first, with points as decimal marks."""
+def _read_cells(path: Path) -> tuple[list[str], list[list[Cell]], str]:
+    """Read the heads and the cells of a table in text or Excel, and its decimal mark."""
     with open_input(path) as stream:
         raw = stream.read(_MAX_BYTES + 1)
     if len(raw) > _MAX_BYTES:
         raise ValueError(f"the table is larger than {_MAX_BYTES} bytes")
-    lines = [line for line in raw.decode("utf-8-sig").splitlines() if line.strip() and not line.startswith("#")]
-    if len(lines) < 2:
-        raise ValueError("the table needs a line of heads and at least one line of readings")
-    separator = max(",;\t", key=lines[0].count)
-    heads, *rows = csv.reader(lines, delimiter=separator, strict=True)
-    mark = "." if separator == "," else ","
-    return [[head.strip() for head in heads], *([cell.strip().replace(mark, ".") for cell in row] for row in rows)]
+    for separator, rows in possible_rows(raw):
+        (_, heads), *numbered = [row for row in rows if any(str(cell) for cell in row[1])] or [(0, [])]
+        if len(heads) > 1 and numbered:
+            mark = decimal_mark(((line, cell) for line, cells in numbered for cell in cells), separator)
+            return [str(head) for head in heads], [list(cells) for _, cells in numbered], mark
+    raise ValueError("the table needs a line of heads and at least one line of readings")
 
 
-def _parse_readings(cells: Sequence[Sequence[str]], quantity: str, unit: str | None) -> StationReadings:
+def _parse_readings(table: tuple[list[str], list[list[Cell]], str], quantity: str, unit: str | None) -> StationReadings:
     """Find the columns of a table, and collect its readings."""
-    heads = [split_head(head) for head in cells[0]]
-    names = [name.lower() for name, _ in heads]
+    texts, body, mark = table
+    heads = [split_head(text, (_STATION, *_CYCLES, quantity)) for text in texts]
+    names = [head.name for head in heads]
     cycle_column = next((column for column, name in enumerate(names) if name in _CYCLES), None)
     is_long = _STATION in names
     if is_long and quantity not in names:
-        raise ValueError(f"the column {quantity} is missing; the columns are {', '.join(cells[0])}")
+        raise ValueError(f"the column {quantity} is missing; the columns are {', '.join(texts)}")
     columns = [names.index(quantity)] if is_long else [c for c in range(len(names)) if c != cycle_column]
     rows = [
-        (number, row, column, row[names.index(_STATION)] if is_long else heads[column][0])
+        (number, row, column, str(row[names.index(_STATION)]) if is_long else _SIGNS.split(texts[column])[0].strip())
         for column in columns
-        for number, row in enumerate(cells[1:], start=1)
-        if column < len(row) and row[column]
+        for number, row in enumerate(body, start=1)
+        if column < len(row) and row[column] != ""
     ]
     if not rows:
         raise ValueError("the table has no readings")
     return StationReadings(
         stations=tuple(_check_station(number, station) for number, _, _, station in rows),
         values=tuple(
-            f"{_check_number(number, row[column], cells[0][column])!r} {_check_unit(cells[0][column], unit)}"
+            f"{_check_number(number, row[column], texts[column], mark)!r} {_check_unit(heads[column], unit)}"
             for number, row, column, _ in rows
         ),
         cycles=()
         if cycle_column is None
         else tuple(
-            _cycle_factor(cells[0][cycle_column]) * _check_number(number, row[cycle_column], cells[0][cycle_column])
+            _cycle_factor(heads[cycle_column]) * _check_number(number, row[cycle_column], texts[cycle_column], mark)
             for number, row, _, _ in rows
         ),
     )
@@ -120,25 +122,26 @@ def _check_station(number: int, station: str) -> str:
     return str(check_text("station", station))
 
 
-def _check_number(number: int, cell: str, head: str) -> float:
+def _check_number(number: int, cell: Cell, head: str, mark: str) -> float:
     """Convert the cell of a numbered row to a number."""
-    try:
-        return float(cell)
-    except ValueError as error:
-        raise ValueError(f"row {number} has {shown(cell)} under {shown(head)}, which is not a number") from error
+    value = cell_number(cell, mark)
+    if not isfinite(value):
+        raise ValueError(f"row {number} has {shown(cell)} under {shown(head)}, which is not a number")
+    return value
 
 
-def _check_unit(head: str, unit: str | None) -> str:
+def _check_unit(head: Head, unit: str | None) -> str:
     """Return the unit in a head, or else the stated one."""
-    text = split_head(head)[1] or unit
+    text = head.unit or unit
     if not text:
-        raise ValueError(f"the column {shown(head)} has no unit: write '{head} [mg]' as its head, or unit = 'mg'")
+        raise ValueError(
+            f"the column {shown(head.text)} has no unit: write '{head.text} [mg]' as its head, or unit = 'mg'"
+        )
     return text
 
 
-def _cycle_factor(head: str) -> float:
+def _cycle_factor(head: Head) -> float:
     """Return the number of cycles for which 1 stands in the column of cycles."""
-    name, unit = split_head(head)
-    if unit.lower() not in _CYCLE_UNITS:
-        raise ValueError(f"the unit of {shown(head)} is not known; allowed are cycles and Mc (million cycles)")
-    return _CYCLES[name.lower()] * _CYCLE_UNITS[unit.lower()]
+    if head.unit.lower() not in _CYCLE_UNITS:
+        raise ValueError(f"the unit of {shown(head.text)} is not known; allowed are cycles and Mc (million cycles)")
+    return _CYCLES[head.name] * _CYCLE_UNITS[head.unit.lower()]

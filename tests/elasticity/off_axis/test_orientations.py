@@ -79,8 +79,9 @@ def test_figure_of_one_changing_angle_is_a_curve_with_its_limits(oriented):
     assert x == pytest.approx([20, 45, 85])
     assert y[:2] == pytest.approx(row.edge_distance[:2, 0])
     assert np.isnan(y[2])  # the ball is not held
-    assert distance.lines[1].get_ydata() == pytest.approx([1.0, 1.0])
-    assert pressure.lines[1].get_ydata() == pytest.approx([1000.0, 1000.0])
+    for axes, bound in ((distance, 1.0), (pressure, 1000.0)):
+        dashed = [line for line in axes.lines if line.get_linestyle() == "--"]
+        assert [list(line.get_ydata()) for line in dashed] == [pytest.approx([bound, bound])]
     for drawn in (figure, orientation_figure(oriented, limits=limits)):
         assert "edge_distance >= 1 mm" in legend(drawn)
 
