@@ -154,13 +154,13 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
     Raises
     ------
     ValueError
-        No point is allowed.
+        Every point exceeds a limit or has no result.
     """
-    good = allowed(study, limits)
-    if not bool(good.any()):
+    good, counts = allowed(study, limits), count_verdicts(study, limits)
+    if not counts[Verdict.KEPT.word] + counts[Verdict.UNDECIDED.word]:
         raise ValueError(refusal_reason(study, limits, "no point of the map is allowed", "at any point of the map"))
     quantities = {}
-    for name in result_names(study):
+    for name in result_names(study) if counts[Verdict.KEPT.word] else ():
         values = study[name].where(good).transpose(*dimension_names(study)).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
@@ -168,7 +168,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         "model": study.attrs["model"],
         "held": held_in(study),
         "limits": [str(limit) for limit in limits],
-        "verdicts": count_verdicts(study, limits),
+        "verdicts": counts,
         "valid": bool(study.valid.where(good, True).all()),
         "quantities": quantities,
     }

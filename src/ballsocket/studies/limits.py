@@ -229,7 +229,8 @@ def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str,
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):
         near = count_verdicts(study, limits := tuple(limits))[Verdict.UNDECIDED.word]
-        words = f"; {near} are undecided: the error bar contains a limit, so use a more accurate model" if near else ""
+        count = f"{near} of {study.status.size}, whose error bar contains a limit: use a more accurate model"
+        words = f"; undecided: {count}" if near else ""
         return f"{refused} by {' and '.join(map(str, limits))}, according to {model}{words}"
     numbers, counts = numpy.unique(study.status.values, return_counts=True)
     return f"{model} has no answer {place}: {Status(int(numbers[counts.argmax()])).sentence}"
