@@ -144,6 +144,25 @@ def scattered(triangles, deviation, seed=1):
     return moved[index.ravel()].reshape(-1, 3, 3)
 
 
+def worn_bore(count=4000, head=15.9, shift=0.4, tilt=20.0, cover=90.0, noise=0.0, seed=1, radius=16.0):
+    """Return points (n, 3) of a bore up to a polar angle, worn by a head that is shifted at a tilt from the pole."""
+    generator = np.random.default_rng(seed)
+    height = np.cos(np.radians(cover)) + (1 - np.cos(np.radians(cover))) * (np.arange(count) + 0.5) / count
+    azimuth = np.pi * (3 - np.sqrt(5)) * np.arange(count)
+    ring = np.sqrt(1 - height**2)
+    rays = np.column_stack([ring * np.cos(azimuth), ring * np.sin(azimuth), -height])
+    along = shift * (rays @ [np.sin(np.radians(tilt)), 0.0, -np.cos(np.radians(tilt))])
+    worn = along + np.sqrt(head**2 - shift**2 + along**2)
+    return rays * np.maximum(radius, worn)[:, None] + generator.normal(0.0, noise, (count, 3)) + [7.0, -3.0, 40.0]
+
+
+def removed_volume(head=15.9, shift=0.4, radius=16.0):
+    """Volume in mm³ of a ball outside a sphere: the ball without the lens of both (closed form)."""
+    lens = np.pi * (radius + head - shift) ** 2 / (12 * shift)
+    lens *= shift**2 + 2 * shift * (radius + head) - 3 * (radius - head) ** 2
+    return 4 / 3 * np.pi * head**3 - lens
+
+
 def binary(triangles, header=b"made by a test"):
     records = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     records["v"] = triangles

@@ -63,7 +63,7 @@ def test_json_has_all_results_and_an_stl_file_in_the_scan_orients_the_cup(folder
 
 
 def test_no_clearance_is_derived_from_two_files(folder):
-    sentence = "no clearance is derived from two STL files, because their radii are nominal: public sets give -0.098"
+    sentence = "no clearance is derived from two files, because their radii are nominal: public sets give -0.098"
     done = run("planning", *LINER, *HEAD, "--out", "other.toml", folder=folder)
     assert (done.returncode, done.stdout, sentence in done.stderr) == (2, "", True)
     assert not (folder / "other.toml").exists()
@@ -74,7 +74,7 @@ def test_no_clearance_is_derived_from_two_files(folder):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ((), "planning data are needed: --landmarks, --liner or --head"),
+        ((), "planning data are needed: --landmarks, --liner, --head or --worn"),
         ((*LINER, "--out", "a.toml"), "out needs a clearance: state it with --clearance"),
         ((*LINER, "--clearance", "0.1 mm", "--out", "a.stl"), "is not a name for a joint file: it ends with .toml"),
         ((*HEAD, "--clearance", "0.1 mm", "--out", "a.toml"), "state --liner-thickness"),

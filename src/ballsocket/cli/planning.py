@@ -1,4 +1,4 @@
-"""Command `planning`: landmarks and STL files of a hip as a joint."""
+"""Command `planning`: landmarks, meshes and worn bores of a hip."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..files.joint_toml import toml_of
 from ..files.units import parse
+from ..planning.clouds import read_points
 from ..planning.implants import ImplantFit, fit_head, fit_liner
 from ..planning.landmarks import Landmarks, read_landmarks
 from ..planning.meshes import Mesh, read_mesh
 from ..planning.pelvis import PelvicFrame, pelvic_frame
 from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
+from ..planning.worn_bores import WornBore, measure_wear
 from ..reports.planning_results import print_plan
 from .elasticity_options import orientation_remark, orientation_summary
 from .json_answers import echo_json
@@ -74,6 +76,10 @@ class ImplantOptions:
 
     liner: Annotated[Path | None, typer.Option(help="Mesh of the liner: STL, OBJ or PLY. Default: none.")] = None
     head: Annotated[Path | None, typer.Option(help="Mesh of the head: STL, OBJ or PLY. Default: none.")] = None
+    worn: Annotated[
+        Path | None,
+        typer.Option(help="Points of a worn bore: .xyz, .csv, .txt, .asc, .pts, or a mesh of the bore. Default: none."),
+    ] = None
     stl_units: Annotated[str, typer.Option(help="Unit of the meshes and points: mm, cm, m, um or in.")] = "mm"
     placed: Annotated[
         str | None,
@@ -90,6 +96,10 @@ class ImplantOptions:
         head = None if self.head is None else fit_head(self._mesh(self.head))
         fit = None if liner is None else fit_liner(liner)
         return fit, head, self.placed or (None if liner is None else liner.space)
+
+    def read_wear(self) -> WornBore | None:
+        """Measure the wear of the points, if there are any."""
+        return None if self.worn is None else measure_wear(read_points(self.worn, units=self.stl_units))
 
     def _mesh(self, path: Path) -> Mesh:
         """Read a mesh."""
@@ -152,19 +162,28 @@ def planning(
     joint_options: PlannedJointOptions,
     as_json: AsJson = False,
 ) -> None:
-    """Read landmarks and STL files of a hip as a joint.
+    """Read landmarks, liner and head of a hip as a joint, and the wear of a measured bore.
 
-    Landmarks give the pelvic frame, the side, and the radiographic angles of the cup from points on its rim. STL files
-    give radius, arc of cover and wall thickness. A clearance is never derived from two files.
+    Landmarks give the pelvic frame, the side, and the radiographic angles of the cup from points on its rim. Meshes
+    of liner and head give radius, arc of cover and wall thickness. A clearance is never derived from two files.
+    Points of a worn bore give the worn volume and the deepest wear with their errors.
 
     Exit status: 0 success, 2 wrong input.
     """
-    if not (landmark_options.landmarks or implant_options.liner or implant_options.head):
-        raise ValueError("planning data are needed: --landmarks, --liner or --head")
+    if not (landmark_options.landmarks or implant_options.liner or implant_options.head or implant_options.worn):
+        raise ValueError("planning data are needed: --landmarks, --liner, --head or --worn")
     joint_options.check(implant_options.head is not None, implant_options.liner is not None)
     landmarks, frame = landmark_options.read()
     liner, head, space = implant_options.read()
-    plan = make_plan(frame=frame, landmarks=landmarks, liner=liner, head=head, side=landmark_options.side, space=space)
+    plan = make_plan(
+        frame=frame,
+        landmarks=landmarks,
+        liner=liner,
+        head=head,
+        side=landmark_options.side,
+        space=space,
+        worn=implant_options.read_wear(),
+    )
     joint_options.write(plan)
     if as_json:
         orientation = {} if plan.orientation is None else orientation_summary(plan.cup)

@@ -1,4 +1,4 @@
-"""Planning data of a hip: landmarks of the pelvis, orientation of the cup, and meshes of liner and head.
+"""Planning data of a hip: landmarks, orientation of the cup, meshes of liner and head, points of worn bores.
 
     from ballsocket.planning import fit_liner, read_mesh
     liner = fit_liner(read_mesh("liner.stl"))
@@ -7,11 +7,13 @@
 Lengths are in mm, angles in rad.
 """
 
+from .clouds import PointCloud, read_points
 from .implants import ImplantFit, RimPlane, fit_head, fit_liner
 from .landmarks import Landmarks, read_landmarks
 from .meshes import Mesh, read_mesh
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis, pelvic_frame
 from .plan import HipPlan, make_plan
+from .worn_bores import WornBore, measure_wear
 
 __all__ = [
     "CupOrientation",
@@ -20,13 +22,17 @@ __all__ = [
     "Landmarks",
     "Mesh",
     "PelvicFrame",
+    "PointCloud",
     "RimPlane",
+    "WornBore",
     "cup_orientation",
     "fit_head",
     "fit_liner",
     "make_plan",
+    "measure_wear",
     "orientation_of_axis",
     "pelvic_frame",
     "read_landmarks",
     "read_mesh",
+    "read_points",
 ]

@@ -12,7 +12,7 @@ from ..core.arrays import Numbers
 from .geometry import Plane, angle_between, fit_plane_robustly, fit_sphere, robust_scale
 from .meshes import Mesh
 
-_RADII = (7.0, 40.0)
+RADII = (7.0, 40.0)
 """Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""
 
 _MAX_OUTER_RADIUS = 60.0  # mm
@@ -222,11 +222,11 @@ def fit_liner(mesh: Mesh) -> ImplantFit:
     ValueError
         A mesh without a bore, or with one that no hip has.
     """
-    bore = _find_sphere(mesh, -1.0, _RADII)
+    bore = _find_sphere(mesh, -1.0, RADII)
     if bore is None:
-        solid = _find_sphere(mesh, 1.0, _RADII)
+        solid = _find_sphere(mesh, 1.0, RADII)
         seen = f"; its sphere of radius {solid.radius:.4g} mm is convex, as of a head" if solid is not None else ""
-        raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_range_text(_RADII)}{seen}")
+        raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_range_text(RADII)}{seen}")
     fit, bore = _describe(mesh, bore)
     if fit.axis is None:
         raise ValueError(f"{mesh.name}: the bore of radius {bore.radius:.4g} mm has no opening")
@@ -241,9 +241,9 @@ def fit_head(mesh: Mesh) -> ImplantFit:
     ValueError
         A mesh without a ball, or with one that no hip has.
     """
-    ball = _find_sphere(mesh, 1.0, _RADII)
+    ball = _find_sphere(mesh, 1.0, RADII)
     if ball is None:
-        raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_range_text(_RADII)}")
+        raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_range_text(RADII)}")
     return _describe(mesh, ball)[0]
 
 
@@ -517,7 +517,7 @@ def _outer_surface(mesh: Mesh, centre: Numbers, radius: float) -> Mesh:
 
 def _smooth_normals(mesh: Mesh) -> Numbers:
     """Return the normals (n, 3) of a mesh, on a convex sphere those of the sphere."""
-    sphere, normals = _find_sphere(mesh, 1.0, (_RADII[0], _MAX_OUTER_RADIUS)), mesh.normals
+    sphere, normals = _find_sphere(mesh, 1.0, (RADII[0], _MAX_OUTER_RADIUS)), mesh.normals
     if sphere is not None:
         radial = mesh.triangles.mean(axis=1) - sphere.centre
         radial /= numpy.maximum(numpy.linalg.norm(radial, axis=1), 1e-12)[:, None]

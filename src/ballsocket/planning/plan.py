@@ -15,9 +15,10 @@ from ..problem.cup import Cup, Side
 from .implants import ImplantFit
 from .landmarks import Landmarks, read_side
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis
+from .worn_bores import WornBore
 
 CLEARANCE_REFUSAL = (
-    "no clearance is derived from two STL files, because their radii are nominal: public sets give -0.098 and "
+    "no clearance is derived from two files, because their radii are nominal: public sets give -0.098 and "
     "+0.002 mm; state it with --clearance"
 )
 """Sentence on the difference of the radii of two files."""
@@ -44,6 +45,7 @@ class HipPlan:
     frame : PelvicFrame or None
     orientation : CupOrientation or None
     liner, head : ImplantFit or None
+    worn : WornBore or None
 
     Raises
     ------
@@ -55,6 +57,7 @@ class HipPlan:
     orientation: CupOrientation | None = None
     liner: ImplantFit | None = None
     head: ImplantFit | None = None
+    worn: WornBore | None = None
 
     def __post_init__(self) -> None:
         if self.orientation is not None:
@@ -80,6 +83,8 @@ class HipPlan:
         if self.liner is not None and self.liner.wall_thickness is None:
             notes.append(f"{self.liner.name}: the outer surface is no sphere around the bore: no wall thickness")
         notes += [*self._orientation_notes()]
+        if self.worn is not None:
+            notes += self.worn.notes
         if self.liner is not None and self.head is not None:
             notes.append(CLEARANCE_REFUSAL)
         return tuple(notes)
@@ -179,6 +184,7 @@ class HipPlan:
             "cup": None if self.orientation is None else _cup_summary(self.orientation),
             "liner": None if self.liner is None else _fit_summary(self.liner),
             "head": None if self.head is None else _fit_summary(self.head),
+            "worn": None if self.worn is None else _worn_summary(self.worn),
             "notes": list(self.notes),
         }
 
@@ -191,6 +197,7 @@ def make_plan(
     head: ImplantFit | None = None,
     side: Side | str | None = None,
     space: str | None = None,
+    worn: WornBore | None = None,
 ) -> HipPlan:
     """Combine landmarks and implants to a plan.
 
@@ -207,6 +214,8 @@ def make_plan(
         "right" or "left", if the landmarks do not determine it.
     space : str, optional
         "RAS" or "LPS": the liner's file has these coordinates of the scan.
+    worn : WornBore, optional
+        Wear of a measured bore.
 
     Raises
     ------
@@ -221,7 +230,7 @@ def make_plan(
             to_ras: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
             axis, centre = frame.axes @ to_ras @ liner.axis, frame.convert(to_ras @ liner.centre)
             orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
-    return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head)
+    return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head, worn=worn)
 
 
 def _rounded(cup: Cup) -> Cup:
@@ -278,6 +287,29 @@ def _fit_summary(fit: ImplantFit) -> dict[str, Any]:
         "wall_thickness": fit.wall_thickness,
         "wall_range": None if fit.wall_range is None else list(fit.wall_range),
         "wall_residual": fit.wall_residual,
+    }
+
+
+def _worn_summary(worn: WornBore) -> dict[str, Any]:
+    """Return the wear of a bore for JSON."""
+    return {
+        "file": worn.name,
+        "points": worn.points,
+        "volume": worn.volume,
+        "volume_error": worn.volume_error,
+        "depth": worn.depth,
+        "depth_error": worn.depth_error,
+        "deepest": worn.deepest.tolist(),
+        "radius": worn.radius,
+        "radius_error": worn.radius_error,
+        "centre": worn.centre.tolist(),
+        "pole": worn.pole.tolist(),
+        "noise": worn.noise,
+        "form": worn.form,
+        "unworn": worn.unworn,
+        "reach_deg": degrees(worn.reach),
+        "cover": worn.cover,
+        "ambiguous": worn.ambiguous,
     }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from math import degrees
+from math import acos, degrees, floor, log10
 
 from rich.table import Table
 
@@ -11,9 +11,13 @@ from ..planning.geometry import angle_between
 from ..planning.implants import ImplantFit
 from ..planning.pelvis import CupOrientation, PelvicFrame
 from ..planning.plan import HipPlan
+from ..planning.worn_bores import WornBore
 from .terminal import console, print_columns, print_folded
 
 _Row = tuple[str, str, str]
+
+_MESH_ERROR = 0.005
+"""Smallest error of a radius in mm from a mesh."""
 
 
 def print_plan(plan: HipPlan, remarks: Iterable[str]) -> None:
@@ -26,11 +30,18 @@ def print_plan(plan: HipPlan, remarks: Iterable[str]) -> None:
         *_cup_rows(plan.orientation),
         *_fit_rows("bore", plan.liner),
         *_fit_rows("head", plan.head),
+        *_wear_rows(plan.worn),
     ):
         table.add_row(*row)
     print_columns(terminal, table)
     for remark in remarks:
         print_folded(terminal, remark, "dim")
+
+
+def _rounded(value: float, error: float) -> str:
+    """Return a number with the digits that its error leaves."""
+    decimals = floor(0.5 - log10(error)) if error > 0 else 3
+    return f"{round(value, decimals) + 0.0:.{max(decimals, 0)}f}"
 
 
 def _pelvis_rows(frame: PelvicFrame | None) -> Iterator[_Row]:
@@ -66,7 +77,7 @@ def _fit_rows(part: str, fit: ImplantFit | None) -> Iterator[_Row]:
     """Yield the rows of a liner or head."""
     if fit is None:
         return
-    yield f"{part} radius", f"{fit.radius:.3f} mm", f"{fit.residual:.3f} mm rms"
+    yield f"{part} radius", f"{_rounded(fit.radius, max(fit.residual, _MESH_ERROR))} mm", f"{fit.residual:.3f} mm rms"
     rim = f"rim within {degrees(fit.rim_deviation):.1f}° of a plane" if fit.axis is not None else "complete"
     yield f"{part} arc of cover", f"{degrees(fit.arc_of_cover):.1f}°", rim
     if fit.axis is not None and fit.lip_angle is not None:
@@ -81,3 +92,19 @@ def _fit_rows(part: str, fit: ImplantFit | None) -> Iterator[_Row]:
             f"{fit.wall_thickness:.2f} mm",
             f"{low:.2f} to {high:.2f} mm, {fit.wall_residual:.3f} mm rms",
         )
+
+
+def _wear_rows(worn: WornBore | None) -> Iterator[_Row]:
+    """Yield the rows of a worn bore; errors are two standard errors."""
+    if worn is None:
+        return
+    error = worn.volume_error
+    yield "worn volume", f"{_rounded(worn.volume, error)} mm³", f"±{error:.2g} mm³ (95 %), {worn.points} points"
+    polar = degrees(acos(min(max(float(worn.deepest @ worn.pole), -1.0), 1.0)))
+    error = 1000.0 * worn.depth_error
+    place = f"±{error:.2g} µm (95 %), {polar:.0f}° from the middle of the points"
+    yield "deepest wear", f"{_rounded(1000.0 * worn.depth, error)} µm", place
+    radius = f"±{worn.radius_error:.2g} mm (95 %), noise {1000.0 * worn.noise:.2g} µm"
+    yield "unworn radius", f"{_rounded(worn.radius, worn.radius_error)} mm", radius
+    share = f"{100.0 * worn.cover:.0f} % within {degrees(worn.reach):.0f}° of their middle"
+    yield "unworn part", f"{100.0 * worn.unworn:.0f} %", f"of the covered surface; points cover {share}"

@@ -1,0 +1,528 @@
+"""Worn volume and deepest wear of a bore from measured points, with their errors.
+
+The original bore is the sphere through the part of the points that is not worn. A robust fit finds it: the sphere
+with the smallest residuals of two fifths of the points (least trimmed squares, Rousseeuw and Van Driessen 2006,
+doi:10.1007/s10618-005-0024-4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, degrees, hypot, pi, radians
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import require
+from .clouds import PointCloud
+from .geometry import fit_sphere, robust_scale
+from .implants import RADII
+
+_SEED = 20260103
+_MIN_POINTS = 200
+_THINNING = radians(3.0)
+"""Distance of the points from which the first sphere is found: dense parts count as much as sparse ones."""
+
+_STARTS, _FINALISTS, _STEPS, _LAST_STEPS = 300, 8, 2, 20
+"""Spheres through four points, best of them, and steps of the trimmed fit for all and for the best."""
+
+_TRIMMED = 0.4
+"""Share of the points whose residuals the trimmed fit minimises."""
+
+_TRIMMED_SIGMA = 0.524
+"""Largest residual in the trimmed share over the standard deviation, if no point is worn."""
+
+_NEIGHBOURS = 12
+_SMOOTHING = radians(5.0)
+"""Radius of the neighbourhood in which deviations are smoothed, and margin around worn points."""
+
+_MAX_NEIGHBOURS = 60
+_WORN_SIGMAS = 3.0
+_RESOLUTION = 2e-4
+"""Smallest deviation in mm that is seen as wear."""
+
+_PASSES = 12
+_PATCH = radians(10.0)
+"""Size of the patches in which errors of form may be the same, and radius of the patch of the deepest wear."""
+
+_MAX_GAP = radians(15.0)
+"""Longest distance of neighbouring points; a wider gap is not covered."""
+
+_SMOOTHED_AWAY = 1e-3
+"""Largest relative error of the paraboloid at the deepest wear of a head."""
+
+_MIN_REACH = radians(25.0)
+_MIN_UNWORN = 0.1
+"""Least share of the covered surface that is not worn."""
+
+_MAX_FORM = 0.005
+"""Largest scatter of the unworn part over its radius."""
+
+_MAX_INSIDE = 0.02
+"""Largest share of points clearly inside the sphere of the unworn part."""
+
+_MAX_DEPTH = 0.3
+"""Largest depth of wear over the radius."""
+
+_SPHERICAL_WEAR = 0.04
+"""Share of worn points from which they may be a sphere that was taken for worn by mistake."""
+
+_MIN_SPHERE_POINTS = 30
+_ROUGHER = 3.0
+"""Scatter of the worn part over that of the unworn one, up to which it is as good a sphere."""
+
+_FORM_FACTOR = 3.0
+"""Largest error of a radius or depth over the error of form, where wear below the noise is taken for unworn."""
+
+_SIGMAS = 2.0
+"""Standard errors in a printed error: 95 %."""
+
+_GOOD_COVER = 0.9
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WornBore:
+    """Wear of a bore from measured points. Errors are two standard errors (95 %).
+
+    Attributes
+    ----------
+    volume, volume_error : float
+        Worn volume in mm³ of the covered surface.
+    depth, depth_error : float
+        Deepest wear in mm, radially, averaged over 10°.
+    radius, radius_error : float
+        Radius in mm of the unworn sphere.
+    centre : array (3,)
+        Centre of the unworn sphere in mm, in the coordinates of the file.
+    pole : array (3,)
+        Unit vector from the centre to the middle of the points.
+    deepest : array (3,)
+        Unit vector from the centre to the deepest wear.
+    noise : float
+        Standard deviation in mm of single points.
+    form : float
+        Standard deviation in mm of the unworn surface from its sphere, over patches of 10°.
+    unworn : float
+        Share of the points' surface that is not worn.
+    reach : float
+        Polar angle in rad from the pole up to which there are points.
+    cover : float
+        Share of the surface within that angle that the points cover.
+    points : int
+        Number of points.
+    ambiguous : bool
+        True if the worn part is as good a sphere as the unworn one, with the same radius.
+    name : str
+        Name of the file.
+    """
+
+    volume: float
+    volume_error: float
+    depth: float
+    depth_error: float
+    radius: float
+    radius_error: float
+    centre: Numbers
+    pole: Numbers
+    deepest: Numbers
+    noise: float
+    form: float
+    unworn: float
+    reach: float
+    cover: float
+    points: int
+    ambiguous: bool
+    name: str
+    reading_notes: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on what limits the numbers."""
+        notes = [
+            *self.reading_notes,
+            f"{self.name}: the original bore is the sphere through the unworn {100 * self.unworn:.0f} % of the points' "
+            "surface; creep and wear are not told apart, and the wear is that of the covered surface",
+        ]
+        if self.volume < self.volume_error and self.depth < self.depth_error:
+            notes.append(f"{self.name}: no wear is found above the error")
+        if self.cover < _GOOD_COVER:
+            notes.append(
+                f"{self.name}: {100 * (1 - self.cover):.0f} % of the surface within {degrees(self.reach):.0f}° of the "
+                f"pole have no points within {degrees(_MAX_GAP):.0f}°: their wear is not in the volume"
+            )
+        if self.ambiguous:
+            notes.append(
+                f"{self.name}: the worn part is a sphere too, of the same radius within its error: the errors contain "
+                "the wear if it is the unworn part; look at the bore"
+            )
+        return tuple(notes)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Unworn:
+    """Sphere of the unworn points (mask), and limit of their smoothed deviations."""
+
+    centre: Numbers
+    radius: float
+    mask: Numbers
+    limit: float
+
+
+def measure_wear(cloud: PointCloud) -> WornBore:
+    """Measure the wear of a bore.
+
+    The volume is the integral of the depth over triangles between the points. Its error follows from the scatter of
+    single points and of patches of the unworn part, through the fit of the sphere, from the volumes of two halves of
+    the points, and from wear that the form of the unworn part may hide.
+
+    Parameters
+    ----------
+    cloud : PointCloud
+        Points of the bore alone: with some unworn surface, and without rim and outer surface.
+
+    Raises
+    ------
+    ValueError
+        Points that are no bore: fewer than 200, off a sphere, inside the sphere of the others, or within 25° of their
+        middle.
+    """
+    points, name = cloud.points, cloud.name
+    require(f"points of {name}", len(points), len(points) >= _MIN_POINTS, f"a bore has at least {_MIN_POINTS} points")
+    radius = fit_sphere(points, numpy.ones(len(points)))[1]
+    if not RADII[0] / 2.0 < radius < 2.0 * RADII[1]:
+        raise ValueError(
+            f"{name} is not a bore: its best sphere has a radius of {radius:.3g} mm; a bore has {RADII[0]:g} to "
+            f"{RADII[1]:g} mm"
+        )
+    local = _Neighbourhoods.of(points)
+    bores = [_integrate(cloud, local, sphere) for sphere in _find_unworn(points, local, name)]
+    if len(bores) == 1:
+        return bores[0]
+    volume_error, depth_error = (
+        max(
+            abs(getattr(bores[0], field) - getattr(bores[1], field)) + getattr(bores[1], f"{field}_error"),
+            getattr(bores[0], f"{field}_error"),
+        )
+        for field in ("volume", "depth")
+    )
+    return replace(bores[0], volume_error=volume_error, depth_error=depth_error, ambiguous=True)
+
+
+def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
+    """Measure the wear from a sphere of the unworn part."""
+    points, name = cloud.points, cloud.name
+    radial, distance = _polar(points, sphere.centre)
+    depth = distance - sphere.radius
+    pole = _unit(_thinned_mean(radial))
+    reach = float(numpy.arccos(numpy.clip(radial @ pole, -1.0, 1.0)).max())
+    allowed = "a bore has points up to 25° (0.436 rad) from its middle"
+    require(f"reach of {name} in rad", reach, reach >= _MIN_REACH, allowed)
+    areas = _vertex_areas(radial, pole)
+    covered = float(areas.sum())
+    noise = local.noise(depth, sphere.mask)
+    errors = _Errors.of(radial, depth, sphere.mask, noise)
+    form = errors.form + _RESOLUTION
+    integrand = (distance**3 - sphere.radius**3) / 3.0
+    volume = float(areas @ integrand)
+    half = numpy.random.default_rng(_SEED).permutation(len(points)) < len(points) // 2
+    halves = [float(_vertex_areas(radial[part], pole) @ integrand[part]) for part in (half, ~half)]
+    hidden = _SIGMAS * form * covered * sphere.radius**2
+    deepest, deepest_depth, weights = _deepest(radial, depth, local.smooth(depth))
+    return WornBore(
+        volume=volume,
+        volume_error=_SIGMAS * errors.of_sum(areas * distance**2) + abs(sum(halves) / 2.0 - volume) + hidden,
+        depth=deepest_depth,
+        depth_error=_SIGMAS * errors.of_sum(weights) + _FORM_FACTOR * form + _SMOOTHED_AWAY * abs(deepest_depth),
+        radius=sphere.radius,
+        radius_error=_SIGMAS * errors.of_radius() + _FORM_FACTOR * form,
+        centre=sphere.centre,
+        pole=pole,
+        deepest=deepest,
+        noise=noise,
+        form=errors.form,
+        unworn=float(areas[sphere.mask].sum()) / covered,
+        reach=reach,
+        cover=covered / (2.0 * pi * (1.0 - cos(reach))),
+        points=len(points),
+        ambiguous=False,
+        name=name,
+        reading_notes=cloud.notes,
+    )
+
+
+def _polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the unit vectors (n, 3) and the distances (n,) of points from a centre."""
+    offset = points - centre
+    distance = numpy.linalg.norm(offset, axis=1)
+    return offset / numpy.maximum(distance, 1e-9)[:, None], distance
+
+
+def _unit(vector: Numbers) -> Numbers:
+    """Return a unit vector (3,)."""
+    return vector / max(float(numpy.linalg.norm(vector)), 1e-12)
+
+
+def _boxes(radial: Numbers, size: float) -> Numbers:
+    """Return the number of the box of this size in which each unit vector (n, 3) lies."""
+    index = numpy.unique(numpy.floor(radial / size).astype(int), axis=0, return_inverse=True)[1]
+    return numpy.asarray(index).ravel()
+
+
+def _thin(radial: Numbers) -> Numbers:
+    """Return the indices of points with about the same distance."""
+    return numpy.unique(_boxes(radial, _THINNING), return_index=True)[1]
+
+
+def _thinned_mean(radial: Numbers) -> Numbers:
+    """Return the mean of the unit vectors (n, 3), where dense parts count as much as sparse ones."""
+    mean: Numbers = radial[_thin(radial)].mean(axis=0)
+    return mean
+
+
+@dataclass(frozen=True, eq=False)
+class _Neighbourhoods:
+    """Nearest points of each point, and the weights of a plane fitted to them.
+
+    Attributes
+    ----------
+    index : array (n, k)
+        Neighbours with the point itself.
+    weights : array (n, k)
+        Weights of the neighbours in the smoothed value at the point.
+    """
+
+    index: Numbers
+    weights: Numbers
+
+    @classmethod
+    def of(cls, points: Numbers) -> _Neighbourhoods:
+        """Find the neighbours within a few degrees."""
+        from scipy.spatial import cKDTree  # slow to import
+
+        centre, radius = fit_sphere(points, numpy.ones(len(points)))
+        tree = cKDTree(points)
+        sample = points[numpy.random.default_rng(_SEED).permutation(len(points))[:200]]
+        near = tree.query_ball_point(sample, radius * _SMOOTHING, return_length=True)
+        count = int(numpy.clip(numpy.median(near), _NEIGHBOURS, _MAX_NEIGHBOURS))
+        distance, index = tree.query(points, k=count)
+        normal = (points - centre) / numpy.linalg.norm(points - centre, axis=1)[:, None]
+        first = numpy.cross(normal, numpy.eye(3)[abs(normal).argmin(axis=1)])
+        first /= numpy.linalg.norm(first, axis=1)[:, None]
+        second = numpy.cross(normal, first)
+        offset = (points[index] - points[:, None]) / numpy.maximum(distance[:, -1:, None], 1e-12)
+        terms = numpy.stack(
+            [numpy.ones(index.shape), (offset * first[:, None]).sum(axis=2), (offset * second[:, None]).sum(axis=2)],
+            axis=2,
+        )
+        normal_matrix = terms.swapaxes(1, 2) @ terms + 1e-9 * numpy.eye(3)
+        weights = (numpy.linalg.inv(normal_matrix)[:, :1] @ terms.swapaxes(1, 2))[:, 0]
+        return cls(index, weights)
+
+    def smooth(self, values: Numbers) -> Numbers:
+        """Return the values (n,) of planes through the neighbours."""
+        smoothed: Numbers = numpy.einsum("nk,nk->n", self.weights, values[self.index])
+        return smoothed
+
+    def noise(self, values: Numbers, mask: Numbers) -> float:
+        """Estimate the standard deviation of single values (n,), of a mask, from their distances from the planes."""
+        residual = values - self.smooth(values)
+        own = self.weights[:, 0]  # a point is its own nearest neighbour
+        return robust_scale((residual / numpy.sqrt(numpy.maximum(1.0 - own, 0.1)))[mask])
+
+
+def _find_unworn(points: Numbers, local: _Neighbourhoods, name: str) -> list[_Unworn]:
+    """Find the sphere of the unworn part; return two, the likelier first, if the worn part may be the unworn one.
+
+    A worn part with the shape of a head is a sphere too. The unworn one has the larger radius: the head had clearance.
+    """
+    sphere = _refine(points, local, _trimmed_sphere(points))
+    _check_bore(points, local, sphere, name)
+    worn = ~_grown(points, sphere, local.smooth(_polar(points, sphere.centre)[1] - sphere.radius), 0.0)
+    if worn.sum() < max(_SPHERICAL_WEAR * len(points), _MIN_SPHERE_POINTS):
+        return [sphere]
+    other = _refine(points, local, _trimmed_sphere(points[worn]))
+    same = numpy.linalg.norm(other.centre - sphere.centre) < 0.5 * (sphere.limit + other.limit)
+    rough = other.limit > _ROUGHER * sphere.limit + _RESOLUTION
+    if same or rough or other.mask.sum() < _MIN_SPHERE_POINTS / 2:
+        return [sphere]
+    scatter = [
+        _SIGMAS * errors.of_radius() + _FORM_FACTOR * errors.form
+        for part in (sphere, other)
+        for radial, distance in (_polar(points, part.centre),)
+        for errors in (_Errors.of(radial, distance - part.radius, part.mask, local.noise(distance, part.mask)),)
+    ]
+    larger, smaller = sorted((sphere, other), key=lambda part: -part.radius)
+    return [larger] if larger.radius - smaller.radius > hypot(*scatter) else [larger, smaller]
+
+
+def _trimmed_sphere(points: Numbers) -> tuple[Numbers, float, float]:
+    """Return centre, radius and scatter of the sphere with the smallest residuals of two fifths of the points."""
+    centre, _ = fit_sphere(points, numpy.ones(len(points)))
+    chosen = points[_thin(_polar(points, centre)[0])]
+    size = max(int(_TRIMMED * len(chosen)), 8)
+    generator = numpy.random.default_rng(_SEED)
+    terms = numpy.column_stack([2.0 * (chosen - centre), numpy.ones(len(chosen))])
+    squares = numpy.sum((chosen - centre) ** 2, axis=1)
+    subsets = generator.integers(len(chosen), size=(_STARTS, 4))
+    for steps in (_STEPS, _LAST_STEPS):
+        for _ in range(steps):
+            matrix, right = terms[subsets], squares[subsets]
+            normal = matrix.swapaxes(1, 2) @ matrix + 1e-9 * numpy.eye(4)
+            solution = numpy.linalg.solve(normal, (matrix.swapaxes(1, 2) @ right[..., None]))[..., 0]
+            radii = numpy.sqrt(numpy.maximum(solution[:, 3] + numpy.sum(solution[:, :3] ** 2, axis=1), 0.0))
+            offset = (chosen - centre) - solution[:, None, :3]
+            residuals = abs(numpy.linalg.norm(offset, axis=2) - radii[:, None])
+            subsets = numpy.argpartition(residuals, size, axis=1)[:, :size]
+        sums = numpy.take_along_axis(residuals, subsets, axis=1)
+        order = numpy.sum(sums**2, axis=1).argsort(kind="stable")[:_FINALISTS]
+        subsets = subsets[order]
+    best = order[0]
+    scatter = float(numpy.partition(residuals[best], size)[size]) / _TRIMMED_SIGMA
+    return centre + solution[best, :3], float(radii[best]), scatter
+
+
+def _refine(points: Numbers, local: _Neighbourhoods, start: tuple[Numbers, float, float]) -> _Unworn:
+    """Fit the sphere to all points that are not worn, without a margin around the worn ones."""
+    centre, radius, scatter = start
+    limit, before = _WORN_SIGMAS * max(scatter, _RESOLUTION), numpy.zeros(len(points), dtype=bool)
+    for _ in range(_PASSES):
+        smoothed = local.smooth(_polar(points, centre)[1] - radius)
+        mask = abs(smoothed) < limit
+        if mask.sum() < 8:
+            break
+        sphere = _Unworn(centre=centre, radius=radius, mask=mask, limit=limit)
+        inner = _grown(points, sphere, smoothed, _SMOOTHING)
+        mask = inner if inner.sum() > 0.5 * mask.sum() else mask
+        if (mask == before).all():
+            break
+        before = mask
+        centre, radius = fit_sphere(points[mask], mask[mask].astype(float))
+        smoothed = local.smooth(_polar(points, centre)[1] - radius)
+        limit = _WORN_SIGMAS * max(robust_scale(smoothed[mask]), _RESOLUTION)
+    return _Unworn(centre=centre, radius=radius, mask=mask, limit=limit)
+
+
+def _grown(points: Numbers, sphere: _Unworn, smoothed: Numbers, margin: float) -> Numbers:
+    """Return the mask of the points that are farther than a margin in rad from worn ones; single ones do not count."""
+    from scipy.spatial import cKDTree  # slow to import
+
+    off = abs(smoothed) >= sphere.limit
+    if not off.any() or off.all():
+        return ~off
+    radial, _ = _polar(points, sphere.centre)
+    neighbours = cKDTree(radial).query(radial[off], k=min(_NEIGHBOURS, len(points)))[1]
+    worn = radial[off][off[neighbours].mean(axis=1) > 0.5]
+    if not len(worn):
+        return numpy.ones(len(points), dtype=bool)
+    distance, _ = cKDTree(worn).query(radial)
+    mask: Numbers = distance > margin
+    return mask
+
+
+def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: str) -> None:
+    """Raise ValueError for points that are no bore."""
+    low, high = RADII
+    depth = _polar(points, sphere.centre)[1] - sphere.radius
+    smoothed = local.smooth(depth)
+    scatter = sphere.limit / _WORN_SIGMAS
+    if not low <= sphere.radius <= high or scatter > _MAX_FORM * sphere.radius:
+        raise ValueError(
+            f"{name} is not a bore: its points lie {scatter:.2g} mm (standard deviation) off the best sphere, of "
+            f"radius {sphere.radius:.4g} mm; a bore has a radius of {low:g} to {high:g} mm"
+        )
+    unworn = float(numpy.mean(sphere.mask))
+    if unworn < _MIN_UNWORN:
+        raise ValueError(
+            f"{name}: only {100 * unworn:.0f} % of the points lie on a common sphere: without an unworn part the "
+            "original bore is not known"
+        )
+    inside = smoothed < -2.0 * sphere.limit
+    if inside.mean() > _MAX_INSIDE:
+        raise ValueError(
+            f"{name} is not a worn bore: {100 * float(inside.mean()):.0f} % of its points lie inside the sphere of "
+            f"radius {sphere.radius:.2f} mm of the others, by up to {-smoothed.min():.2g} mm; wear makes a bore "
+            "larger: leave out everything but the bore"
+        )
+    if numpy.quantile(depth, 0.99) > _MAX_DEPTH * sphere.radius:
+        raise ValueError(
+            f"{name} has points {depth.max():.3g} mm outside the sphere of radius {sphere.radius:.2f} mm of its bore: "
+            "leave out everything but the bore"
+        )
+
+
+def _vertex_areas(radial: Numbers, pole: Numbers) -> Numbers:
+    """Return the solid angle in sr of each of the unit vectors (n, 3), from triangles between them.
+
+    The triangulation is Delaunay's in the stereographic plane. Triangles across wide gaps are left out. Solid angles
+    follow Van Oosterom and Strackee (1983, doi:10.1109/TBME.1983.325207).
+    """
+    from scipy.spatial import Delaunay  # slow to import
+
+    first = _unit(numpy.cross(pole, numpy.eye(3)[abs(pole).argmin()]))
+    second = numpy.cross(pole, first)
+    stretch = numpy.maximum(1.0 + radial @ pole, 1e-3)
+    corners = Delaunay(numpy.column_stack([radial @ first, radial @ second]) / stretch[:, None]).simplices
+    a, b, c = radial[corners].transpose(1, 0, 2)
+    sides = numpy.stack(
+        [numpy.linalg.norm(a - b, axis=1), numpy.linalg.norm(b - c, axis=1), numpy.linalg.norm(c - a, axis=1)]
+    )
+    volume = abs(numpy.sum(a * numpy.cross(b, c), axis=1))
+    solid = 2.0 * numpy.arctan2(volume, 1.0 + numpy.sum(a * b + b * c + c * a, axis=1))
+    solid[sides.max(axis=0) > _MAX_GAP] = 0.0
+    return numpy.bincount(corners.ravel(), numpy.repeat(solid / 3.0, 3), minlength=len(radial))
+
+
+def _deepest(radial: Numbers, depth: Numbers, smoothed: Numbers) -> tuple[Numbers, float, Numbers]:
+    """Return direction and depth of the deepest wear, and the weights (n,) of the points in this depth.
+
+    A paraboloid through the points within 10° of the deepest smoothed point is largest there.
+    """
+    top = radial[smoothed.argmax()]
+    first = _unit(numpy.cross(top, numpy.eye(3)[abs(top).argmin()]))
+    x, y = radial @ first, radial @ numpy.cross(top, first)
+    near = numpy.flatnonzero(radial @ top > min(cos(_PATCH), float(numpy.sort(radial @ top)[-30])) - 1e-12)
+    terms = numpy.column_stack([numpy.ones(len(near)), x[near], y[near], x[near] ** 2, x[near] * y[near], y[near] ** 2])
+    inverse = numpy.linalg.pinv(terms)
+    hat = terms @ inverse
+    place = int((hat @ depth[near]).argmax())
+    weights = numpy.zeros(len(radial))
+    weights[near] = hat[place]
+    return radial[near[place]], float(weights @ depth), weights
+
+
+@dataclass(frozen=True, eq=False)
+class _Errors:
+    """Propagation of the scatter of points, and of patches of the unworn part, to sums over the depths."""
+
+    jacobian: Numbers
+    inverse: Numbers
+    mask: Numbers
+    boxes: Numbers
+    noise: float
+    form: float
+
+    @classmethod
+    def of(cls, radial: Numbers, depth: Numbers, mask: Numbers, noise: float) -> _Errors:
+        """Estimate the errors of form from the mean depths of patches of the unworn part."""
+        jacobian = numpy.column_stack([radial, numpy.ones(len(radial))])
+        boxes = _boxes(radial, _PATCH)
+        counts = numpy.bincount(boxes, mask)
+        patches = counts >= 3
+        means = numpy.bincount(boxes, mask * depth)[patches] / counts[patches]
+        freedom = max(len(means) - 4, 1)
+        excess = float(numpy.sum(means**2)) / freedom - float(numpy.mean(noise**2 / counts[patches]))
+        inverse = numpy.linalg.pinv(jacobian[mask].T @ jacobian[mask])
+        return cls(jacobian, inverse, mask, boxes, noise, float(numpy.sqrt(max(excess, 0.0))))
+
+    def of_sum(self, weights: Numbers) -> float:
+        """Return the standard error of a sum of depths with weights (n,)."""
+        return self._scatter(weights - self.mask * (self.jacobian @ (self.inverse @ (weights @ self.jacobian))))
+
+    def of_radius(self) -> float:
+        """Return the standard error of the radius in mm."""
+        return self._scatter(self.mask * (self.jacobian @ self.inverse[:, 3]))
+
+    def _scatter(self, factors: Numbers) -> float:
+        """Return the standard deviation of a sum of errors with factors (n,): of points, and the same in a patch."""
+        patches = numpy.bincount(self.boxes, factors)
+        return float(numpy.sqrt(self.noise**2 * (factors @ factors) + self.form**2 * (patches @ patches)))
