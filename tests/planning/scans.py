@@ -185,3 +185,8 @@ if __name__ == "__main__":
     (folder / "liner.stl").write_bytes(binary(bore, b"synthetic liner of the planning page"))
     ball = head(radius=15.95, steps=10, segments=24)
     (folder / "head.stl").write_bytes(binary(ball, b"synthetic head of the planning page"))
+    points = worn_bore(head=15.85, shift=0.35, count=1500, noise=0.004)
+    rows = "\n".join(" ".join(f"{number:.3f}" for number in point) for point in points)
+    (folder / "worn.xyz").write_text(
+        f"# synthetic worn bore of the planning page, x y z in mm\n{rows}\n", encoding="utf-8"
+    )

@@ -33,7 +33,7 @@ def test_the_errors_contain_the_removed_volume_and_the_penetration(name, noise, 
     assert abs(wear.depth - (shape["shift"] + shape["head"] - 16.0)) < 2.0 * wear.depth_error
     assert abs(wear.radius - 16.0) < 2.0 * wear.radius_error
     if noise <= 0.005 and name in ("small part worn", "most of the bore worn"):
-        assert wear.volume_error < 0.15 * volume + 1.0
+        assert wear.volume_error < 0.15 * volume + 5.0
 
 
 def test_an_unworn_bore_has_no_wear_above_its_error():

@@ -13,7 +13,7 @@ add_commands(  # in the order in which `ballsocket --help` lists them
         "sensitivity": CommandEntry("ballsocket.cli.design", "Compute which parameter's scatter matters most."),
         "study": CommandEntry("ballsocket.cli.study", "Press a joint at every point of a study file."),
         "hip": CommandEntry("ballsocket.cli.hip", "Simulate wear of a hip over millions of gait cycles."),
-        "planning": CommandEntry("ballsocket.cli.planning", "Read landmarks and STL files of a hip as a joint."),
+        "planning": CommandEntry("ballsocket.cli.planning", "Read landmarks, liner, head and worn bore of a hip."),
         "models": CommandEntry("ballsocket.cli.lists", "List contact models with their ranges and sources."),
         "presets": CommandEntry("ballsocket.cli.lists", "List materials and joints by name, with their sources."),
         "cite": CommandEntry("ballsocket.cli.lists", "Print the BibTeX references of models, materials and joints."),

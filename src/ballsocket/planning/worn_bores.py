@@ -61,6 +61,9 @@ _MAX_FORM = 0.005
 _MAX_INSIDE = 0.02
 """Largest share of points clearly inside the sphere of the unworn part."""
 
+_SMOOTHED_EDGE = 0.03
+"""Largest error in mm of smoothed depths at the edge of deep wear between sparse points."""
+
 _MAX_DEPTH = 0.3
 """Largest depth of wear over the radius."""
 
@@ -68,14 +71,15 @@ _SPHERICAL_WEAR = 0.04
 """Share of worn points from which they may be a sphere that was taken for worn by mistake."""
 
 _MIN_SPHERE_POINTS = 30
-_ROUGHER = 3.0
-"""Scatter of the worn part over that of the unworn one, up to which it is as good a sphere."""
 
 _FORM_FACTOR = 3.0
 """Largest error of a radius or depth over the error of form, where wear below the noise is taken for unworn."""
 
 _SIGMAS = 2.0
 """Standard errors in a printed error: 95 %."""
+
+_OUT_OF_ROUND = 2e-3
+"""Error of the volume over the covered area, in mm, of an original bore that is out of round by 1 µm."""
 
 _GOOD_COVER = 0.9
 
@@ -136,12 +140,18 @@ class WornBore:
     reading_notes: tuple[str, ...] = ()
 
     @property
+    def area(self) -> float:
+        """Covered surface in mm²."""
+        return 2.0 * pi * self.radius**2 * (1.0 - cos(self.reach)) * self.cover
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on what limits the numbers."""
         notes = [
             *self.reading_notes,
             f"{self.name}: the original bore is the sphere through the unworn {100 * self.unworn:.0f} % of the points' "
-            "surface; creep and wear are not told apart, and the wear is that of the covered surface",
+            "surface; creep counts as wear, and each µm that this bore was out of round adds about "
+            f"{_OUT_OF_ROUND * self.area:.1g} mm³ to the error",
         ]
         if self.volume < self.volume_error and self.depth < self.depth_error:
             notes.append(f"{self.name}: no wear is found above the error")
@@ -333,17 +343,19 @@ class _Neighbourhoods:
 def _find_unworn(points: Numbers, local: _Neighbourhoods, name: str) -> list[_Unworn]:
     """Find the sphere of the unworn part; return two, the likelier first, if the worn part may be the unworn one.
 
-    A worn part with the shape of a head is a sphere too. The unworn one has the larger radius: the head had clearance.
+    A worn part with the shape of a head is a sphere too. No points lie inside the unworn one, and it has the larger
+    radius: the head had clearance.
     """
     sphere = _refine(points, local, _trimmed_sphere(points))
     _check_bore(points, local, sphere, name)
-    worn = ~_grown(points, sphere, local.smooth(_polar(points, sphere.centre)[1] - sphere.radius), 0.0)
+    worn = ~_grown(points, sphere, _smoothed_depth(points, local, sphere), 0.0)
     if worn.sum() < max(_SPHERICAL_WEAR * len(points), _MIN_SPHERE_POINTS):
         return [sphere]
     other = _refine(points, local, _trimmed_sphere(points[worn]))
     same = numpy.linalg.norm(other.centre - sphere.centre) < 0.5 * (sphere.limit + other.limit)
-    rough = other.limit > _ROUGHER * sphere.limit + _RESOLUTION
-    if same or rough or other.mask.sum() < _MIN_SPHERE_POINTS / 2:
+    rough = other.limit > _WORN_SIGMAS * _MAX_FORM * other.radius
+    inside = _smoothed_depth(points, local, other) < -max(2.0 * other.limit, _SMOOTHED_EDGE)
+    if same or rough or inside.mean() > _MAX_INSIDE or other.mask.sum() < _MIN_SPHERE_POINTS / 2:
         return [sphere]
     scatter = [
         _SIGMAS * errors.of_radius() + _FORM_FACTOR * errors.form
@@ -353,6 +365,11 @@ def _find_unworn(points: Numbers, local: _Neighbourhoods, name: str) -> list[_Un
     ]
     larger, smaller = sorted((sphere, other), key=lambda part: -part.radius)
     return [larger] if larger.radius - smaller.radius > hypot(*scatter) else [larger, smaller]
+
+
+def _smoothed_depth(points: Numbers, local: _Neighbourhoods, sphere: _Unworn) -> Numbers:
+    """Return the smoothed depths (n,) of points below a sphere."""
+    return local.smooth(_polar(points, sphere.centre)[1] - sphere.radius)
 
 
 def _trimmed_sphere(points: Numbers) -> tuple[Numbers, float, float]:
