@@ -93,6 +93,7 @@ def test_the_commands_export_an_interference_but_not_as_a_table(tmp_path):
     finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
     assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
     assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
-    refused = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "rod", folder=tmp_path)
+    refused = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "adams", folder=tmp_path)
+    assert not (tmp_path / "adams").exists()
     assert refused.returncode == 2
     assert re.fullmatch("ballsocket: .*export c, drake, modelica or mujoco.*\n", refused.stderr)

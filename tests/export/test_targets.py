@@ -552,3 +552,12 @@ def test_two_joints_on_one_plant_of_drake_act_independently(tools, tmp_path):
     alone = [final_positions([start])[0] for start in starts]
     assert_allclose(final_positions(starts), alone, atol=1e-9)
     assert np.linalg.norm(alone - np.array(starts), axis=1).min() > 1e-5
+
+
+def test_a_path_with_the_ending_of_a_file_is_that_file_in_ascii(tmp_path):
+    assert run("export", "c", str(EXAMPLES / "hip.toml"), "--out", "x.c", folder=tmp_path).returncode == 0
+    assert run("deck", "hip-28", "--force", "500", "--out", "y.inp", folder=tmp_path).returncode == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"x.c", "x.h", "y.inp", "y_expected.json"}
+    assert "Joint(" not in (tmp_path / "x.h").read_text("ascii")
+    refused = run("export", "opensim", "hip-28", "--out", "x.c", folder=tmp_path)
+    assert "opensim writes x.osim; give one of them, or a folder" in refused.stderr

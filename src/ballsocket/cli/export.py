@@ -148,6 +148,10 @@ def _viscosity(text: str) -> float:
         raise ValueError(f"viscosity must be a number of Pa s, or such as '2.5 mPa s', got {shown(text)}") from error
 
 
+_FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}
+"""Endings of files: a path with one of them is a file, and any other a folder."""
+
+
 @app.command()
 @expand_groups
 def export(
@@ -156,20 +160,29 @@ def export(
     joint: JointName = None,
     joint_options: JointOptions,
     element_options: ForceElementOptions,
-    out: Annotated[Path, typer.Option(help="Output folder, also the name of the files; created if it does not exist.")],
+    out: Annotated[
+        Path,
+        typer.Option(
+            help="Output folder, also the name of the files, or one of the files, such as joint.c; created if missing."
+        ),
+    ],
 ) -> None:
     """Write a joint as a force element for another program."""
     from ..export.law_fit import fit_depth
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
-    existing = next(path for path in (out, *out.parents, Path()) if path.exists())
+    folder = out.parent if out.suffix.lower() in _FILE_ENDINGS else out
+    existing = next(path for path in (folder, *folder.parents, Path()) if path.exists())
     if not existing.is_dir():
         raise ValueError(f"{str(existing)!r} is a file; a folder is needed")
     file = joint_options.read(joint)
+    chosen.check(file.joint)
     element = element_options.element(file)
     job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
-    paths, missing = chosen.write(job, out)
-    echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
+    if folder != out and out.name not in (names := tuple(chosen.texts(job))):
+        raise ValueError(f"out {str(out)!r}: {target} writes {', '.join(names)}; give one of them, or a folder")
+    paths, missing = chosen.write(job, folder)
+    echo_path(folder, f": {', '.join(path.relative_to(folder).as_posix() for path in paths)}")
     if missing:
         print_message(missing)
 
@@ -245,7 +258,7 @@ def deck(
     *,
     joint: JointName = None,
     joint_options: JointOptions,
-    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")],
+    out: Annotated[Path, typer.Option(help="Output folder, or the deck itself (.inp); created if it does not exist.")],
     load_options: LoadOptions,
     steps: Annotated[
         int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
@@ -271,6 +284,8 @@ def deck(
 
     The folder also gets the results to expect.
     """
+    if out.suffix.lower() in _FILE_ENDINGS:
+        checked_path(out, ".inp")
     file = joint_options.read(joint)
     load = load_options.read(file)
     if tilt is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
@@ -30,6 +31,24 @@ def full_repr(value: Any) -> str:
     if type(value) is dict:
         return f"{{{', '.join(f'{full_repr(key)}: {full_repr(entry)}' for key, entry in value.items())}}}"
     return repr(value)
+
+
+_LATIN = {"ß": "ss", "ä": "ae", "ö": "oe", "ü": "ue", "Ö": "Oe", "Ü": "Ue", "Ä": "Ae", "ø": "o", "ł": "l", "æ": "ae"}
+_LATIN |= {"ν": "nu", "°": " deg", "±": "+-", "–": "-", "—": "-", "−": "-", "×": "x", "·": ".", "’": "'", "≤": "<="}
+"""Letters and signs that have no decomposition into ASCII, and German umlauts, in ASCII."""
+
+
+def ascii_text(text: str) -> str:
+    """Transliterate a text to printable ASCII, for programs that read nothing else.
+
+    Examples
+    --------
+    >>> ascii_text("Heß & Bergström, ν 0.4, 30°, 日")
+    'Hess & Bergstroem, nu 0.4, 30 deg, ?'
+    """
+    written = "".join(_LATIN.get(letter, letter) for letter in unicodedata.normalize("NFC", text))
+    plain = (letter for letter in unicodedata.normalize("NFKD", written) if not unicodedata.combining(letter))
+    return "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
 
 
 _LARGEST_PLAIN = 1e9

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
-from ..core.display import full_repr
+from ..core.display import ascii_text
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
 from ..dynamics.ball_centre import BallCentre, Constants, Vector
@@ -296,8 +296,10 @@ class CElement:
     @property
     def about(self) -> dict[str, str]:
         """Version, model and joint as texts for the comments in generated files."""
-        joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", full_repr(self.element.joint.with_floats()))
-        return {"version": __version__, "model": self.element.model.name, "joint": joint}
+        joint = self.element.joint
+        description = f"{joint}; {joint.source}" if joint.source else str(joint)
+        comment = re.sub(r"\*/|/\*|--|\\", "?", ascii_text(description))
+        return {"version": __version__, "model": self.element.model.name, "joint": comment}
 
 
 def first_load_distance(constants: Constants) -> float:

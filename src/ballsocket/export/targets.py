@@ -14,11 +14,17 @@ from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
+from ..problem import Joint
 from ..version import __version__
 from .c_element import CElement, fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .law_fit import ExpressionFit, PowerFit, expression_fit, power_fit
 from .tunable import TUNABLES
+
+_NOT_CENTRAL = (
+    "the force of a preloaded joint depends on the direction, which this target cannot represent: "
+    "export c, drake, modelica or mujoco, or use `ballsocket fmu`"
+)
 
 Texts = Mapping[str, str]
 """Contents of files by their names."""
@@ -57,10 +63,7 @@ class ExportJob:
             A preloaded joint.
         """
         if isinstance(self.element, PreloadedElement):
-            raise ValueError(
-                "the force of a preloaded joint depends on the direction, which this target cannot represent: "
-                "export c, drake, modelica or mujoco, or use `ballsocket fmu`"
-            )
+            raise ValueError(_NOT_CENTRAL)
         return self.element
 
     @property
@@ -100,6 +103,8 @@ class Target:
         Note on the accuracy of a job's files; empty without one.
     without : tuple of str
         Features that the program cannot represent, by the names of `FEATURES`.
+    central : bool
+        True if the program has a force that depends on the distance of the centres alone.
     """
 
     name: str
@@ -108,6 +113,12 @@ class Target:
     compiled: Callable[[ExportJob, Path], str] = lambda job, folder: ""
     note: Callable[[ExportJob], str] = lambda job: ""
     without: tuple[str, ...] = ()
+    central: bool = False
+
+    def check(self, joint: Joint) -> None:
+        """Raise ValueError for a preloaded joint whose force the program cannot represent, before it is solved."""
+        if self.central and joint.clearance < 0:
+            raise ValueError(_NOT_CENTRAL)
 
     def write(self, job: ExportJob, folder: Path) -> tuple[list[Path], str]:
         """Write the files of an export job into a folder; return their paths, and notes on omitted features.
@@ -117,9 +128,10 @@ class Target:
         OSError
             A folder that cannot be made, or written to.
         """
+        texts = self.texts(job)
         make_folder(folder)
         paths = []
-        for name, text in self.texts(job).items():
+        for name, text in texts.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             paths.append(write_text(folder / name, text))
         return paths, "; ".join(filter(None, (self.compiled(job, folder), self._omitted_features(job), self.note(job))))
@@ -292,11 +304,16 @@ TARGETS: Mapping[str, Target] = {
             texts=_opensim_texts,
             note=lambda job: job.fitted_expression.range_note,
             without=_LINE_OF_CENTRES,
+            central=True,
         ),
         Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco_texts, compiled=_compile_plugin),
         Target(name="drake", title="a LeafSystem", texts=_drake_texts, compiled=_compile_library),
         Target(
-            name="exudyn", title="a user function and its hollow sphere", texts=_exudyn_texts, compiled=_compile_library
+            name="exudyn",
+            title="a user function and its hollow sphere",
+            texts=_exudyn_texts,
+            compiled=_compile_library,
+            central=True,
         ),
         Target(name="modelica", title="a package around the law in C", texts=_modelica_texts),
         Target(
@@ -304,6 +321,7 @@ TARGETS: Mapping[str, Target] = {
             title="a table, and k and n for Adams, MotionSolve and Simpack",
             texts=_table_texts,
             without=tuple(FEATURES),
+            central=True,
         ),
     )
 }

@@ -14,7 +14,7 @@ from typing import Any
 import numpy
 
 from ...core.arrays import Numbers
-from .deck import EXPECTED, NAME
+from .deck import deck_paths
 from .deck_bodies import TYPES
 
 SECTORS = 180
@@ -44,14 +44,14 @@ class CcxAnswer:
     half_angle: Numbers
 
 
-def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
-    """Run CalculiX on the deck in a folder (see `Deck.write`), and read the results.
+def run(out: Path, *, threads: int = 1) -> CcxAnswer:
+    """Run CalculiX on a deck, or the deck in a folder (see `deck_paths`), and read the results.
 
     CalculiX's files stay in the folder.
 
     Parameters
     ----------
-    folder : Path
+    out : Path
     threads : int
         Number of threads of CalculiX.
 
@@ -63,16 +63,15 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
         CalculiX failed before the end of the first step; the message has its last output. After a later failure the
         missing steps are NaN.
     """
-    folder = Path(folder)
-    process = run_calculix(folder, threads)
-    answer = read_results(folder)
+    process = run_calculix(out, threads)
+    answer = read_results(out)
     if numpy.isnan(answer.force).all():
         raise RuntimeError(f"ccx ended with {process.returncode} before the first step did: {last_output(process)}")
     return answer
 
 
-def run_calculix(folder: Path, threads: int) -> subprocess.CompletedProcess[str]:
-    """Run CalculiX on the deck in a folder until it ends; the results of an earlier run are deleted.
+def run_calculix(out: Path, threads: int) -> subprocess.CompletedProcess[str]:
+    """Run CalculiX on a deck, or the deck in a folder, until it ends; the results of an earlier run are deleted.
 
     Raises
     ------
@@ -82,13 +81,14 @@ def run_calculix(folder: Path, threads: int) -> subprocess.CompletedProcess[str]
     command = shutil.which("ccx")
     if command is None:
         raise FileNotFoundError("CalculiX is not installed: there is no command 'ccx'")
-    if not (folder / f"{NAME}.inp").is_file():
-        raise FileNotFoundError(f"there is no {NAME}.inp in {str(folder)!r}")
-    for suffix in ("dat", "frd"):
-        (folder / f"{NAME}.{suffix}").unlink(missing_ok=True)  # a failed run must not return earlier results
+    deck, _ = deck_paths(out)
+    if not deck.is_file():
+        raise FileNotFoundError(f"there is no {deck.name} in {str(deck.parent)!r}")
+    for suffix in (".dat", ".frd"):
+        deck.with_suffix(suffix).unlink(missing_ok=True)  # a failed run must not return earlier results
     return subprocess.run(
-        [command, "-i", NAME],
-        cwd=folder,
+        [command, "-i", deck.stem],
+        cwd=deck.parent,
         env={**os.environ, "OMP_NUM_THREADS": str(threads)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
@@ -103,12 +103,13 @@ def last_output(process: subprocess.CompletedProcess[str]) -> str:
     return "; ".join([line.strip() for line in process.stdout.splitlines() if line.strip()][-_OUTPUT_LINES:])
 
 
-def read_results(folder: Path) -> CcxAnswer:
-    """Read the results of CalculiX's last run in a folder."""
-    deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
-    dat = folder / f"{NAME}.dat"
+def read_results(out: Path) -> CcxAnswer:
+    """Read the results of CalculiX's last run of a deck."""
+    path, expected = deck_paths(out)
+    deck = json.loads(expected.read_text(encoding="ascii"))
+    dat = path.with_suffix(".dat")
     forces, bore, ball = read_printed(dat, "PUSHED"), read_printed(dat, "BORE"), read_printed(dat, "ROUND")
-    pressures = read_contact_pressures(folder / f"{NAME}.frd")
+    pressures = read_contact_pressures(path.with_suffix(".frd"))
     answer = CcxAnswer(**{field.name: numpy.full(len(deck["steps"]), numpy.nan) for field in fields(CcxAnswer)})
     for step in forces.keys() & bore.keys() & ball.keys() & pressures.keys():
         surfaces = _Surfaces(deck=deck, bore=bore[step], ball=ball[step], pressures=pressures[step])

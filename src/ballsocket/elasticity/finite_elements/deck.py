@@ -30,13 +30,14 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
+from ...core.display import ascii_text
 from ...core.storage.atomic_files import make_folder, write_text
 from ...problem.gaps import LinearGap
 from ...version import __version__
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
 from .model import MeshedContact
 
-NAME, EXPECTED = "ballsocket", "expected.json"
+_NAME, _EXPECTED = "ballsocket", "expected.json"
 """Names of the deck for CalculiX, and of the file with the expected results."""
 
 MAX_STEPS = 1000
@@ -45,6 +46,20 @@ MAX_STEPS = 1000
 _PENALTY_FACTOR = 2000.0
 _MAX_FACETING_GAP = 2e-3  # over the indentation
 _LINE_WIDTH = 100
+
+
+def deck_paths(out: Path) -> tuple[Path, Path]:
+    """Return the paths of the deck and of its expected results, from a folder or from a file that ends in `.inp`.
+
+    Examples
+    --------
+    >>> [path.as_posix() for path in (*deck_paths(Path("a")), *deck_paths(Path("a/hip.inp")))]
+    ['a/ballsocket.inp', 'a/expected.json', 'a/hip.inp', 'a/hip_expected.json']
+    """
+    out = Path(out)
+    if out.suffix.lower() == ".inp":
+        return out, out.with_name(f"{out.stem}_{_EXPECTED}")
+    return out / f"{_NAME}.inp", out / _EXPECTED
 
 
 def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> Deck:
@@ -111,8 +126,10 @@ class Deck:
             lines += step_lines(-self.scale * depth)
         return "\n".join(lines) + "\n"
 
-    def write(self, folder: Path) -> Path:
+    def write(self, out: Path) -> Path:
         """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the former.
+
+        A path that ends in `.inp` is the deck itself, with the results beside it: see `deck_paths`.
 
         `expected.json` has the joint, the scale, the element type and the expected results of the real joint under
         "steps": `indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null
@@ -124,10 +141,10 @@ class Deck:
         OSError
             The folder cannot be written to.
         """
-        folder = Path(folder)
-        make_folder(folder)
-        write_text(folder / EXPECTED, json.dumps(self._expected_record(), indent=1) + "\n", encoding="ascii")
-        return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
+        deck, expected = deck_paths(out)
+        make_folder(deck.parent)
+        write_text(expected, json.dumps(self._expected_record(), indent=1) + "\n", encoding="ascii")
+        return write_text(deck, self.text(), encoding="ascii")
 
     @cached_property
     def _bodies(self) -> DeckBodies:
@@ -194,8 +211,7 @@ class Deck:
     def _description_sentences(self) -> Iterator[str]:
         """Yield sentences that describe the deck."""
         cup = self.contact.model.cup
-        joint = str(self._bodies.joint).encode("ascii", "replace").decode()
-        yield f"ballsocket {__version__}: {joint}"
+        yield f"ballsocket {__version__}: {ascii_text(str(self._bodies.joint))}"
         yield f"Liner {cup.interface.value}, rim at {degrees(cup.rim):g} degrees, chamfer {cup.chamfer:g} mm."
         yield "Units N, mm, MPa. x is the distance from the load axis, y points up."
         yield (

@@ -20,11 +20,12 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
+from ...core.display import ascii_text
 from ...core.storage.atomic_files import make_folder, write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.calculix import last_output, read_printed, run_calculix
-from ..finite_elements.deck import EXPECTED, NAME
+from ..finite_elements.deck import deck_paths
 from ..finite_elements.mesh import SocketShape, add_midpoints, graded_points, join_points, socket_shape
 from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
@@ -231,13 +232,13 @@ class TiltedDeck:
         ]
         return "\n".join(lines) + "\n"
 
-    def write(self, folder: Path) -> Path:
-        """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the deck."""
-        folder = Path(folder)
-        make_folder(folder)
+    def write(self, out: Path) -> Path:
+        """Write the deck and its expected results to `deck_paths`; return the path of the deck."""
+        deck, expected = deck_paths(out)
+        make_folder(deck.parent)
         record = {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
-        write_text(folder / EXPECTED, json.dumps(record) + "\n", encoding="ascii")
-        return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
+        write_text(expected, json.dumps(record) + "\n", encoding="ascii")
+        return write_text(deck, self.text(), encoding="ascii")
 
     @cached_property
     def expected(self) -> dict[str, Any]:
@@ -251,8 +252,7 @@ class TiltedDeck:
 
     def _title_lines(self) -> Iterator[str]:
         """Yield the comment lines at the top of the deck."""
-        joint = str(self.joint).encode("ascii", "replace").decode()
-        yield f"** {joint}"[:200]
+        yield f"** {ascii_text(str(self.joint))}"[:200]
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
         yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
@@ -327,8 +327,8 @@ def _node_set_lines(name: str, nodes: Numbers) -> Iterator[str]:
         yield ", ".join(map(str, numbers[start : start + _NODES_PER_LINE]))
 
 
-def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
-    """Run CalculiX on the tilted deck in a folder, and return its result for the real joint.
+def run(out: Path, *, threads: int = 1) -> Mapping[str, Any]:
+    """Run CalculiX on a tilted deck, or that in a folder, and return its result for the real joint.
 
     Returns
     -------
@@ -342,11 +342,11 @@ def run(folder: Path, *, threads: int = 1) -> Mapping[str, Any]:
     RuntimeError
         CalculiX failed; the message ends with its output.
     """
-    folder = Path(folder)
-    process = run_calculix(folder, threads)
-    forces = read_printed(folder / f"{NAME}.dat", "PUSHED")
+    path, expected = deck_paths(out)
+    process = run_calculix(out, threads)
+    forces = read_printed(path.with_suffix(".dat"), "PUSHED")
     if 0 not in forces:
         raise RuntimeError(f"ccx ended with {process.returncode}: {last_output(process)}")
-    deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
+    deck = json.loads(expected.read_text(encoding="ascii"))
     x, _, z = 2 * forces[0][0] / deck["scale"]
     return {"force_vector": [float(x), 0.0, float(z)]}
