@@ -22,6 +22,15 @@ class DataFrame:
 
     shape = (2, 1)
 
+    def to_numpy(self):
+        return numpy.ones(self.shape)
+
+
+class Series(DataFrame):
+    """Stand-in for a pandas Series or a DataArray of xarray."""
+
+    dtype = numpy.dtype(float)
+
 
 def matrix(*values):
     with warnings.catch_warnings(action="ignore", category=PendingDeprecationWarning):
@@ -30,7 +39,11 @@ def matrix(*values):
 
 @pytest.mark.parametrize(
     ("value", "hint"),
-    [(DataFrame(), "a DataFrame: take one of its columns"), (matrix(-1.0), "a numpy.matrix: use numpy.a")],
+    [
+        (DataFrame(), r"a DataFrame: use .to_numpy\(\) of one of its columns"),
+        (Series(), r"a Series: use .to_numpy\(\)"),
+        (matrix(-1.0), "a numpy.matrix: use numpy.a"),
+    ],
 )
 def test_data_frames_and_matrices_are_refused(value, hint):
     with pytest.raises(TypeError, match=f"force must be a number or an array .* got {hint}"):

@@ -52,9 +52,10 @@ class ForceElementOptions:
         typer.Option(help="Coefficient of restitution, 0 to 1, with --impact-speed. Not with --hysteresis."),
     ] = None
     impact_speed: Annotated[
-        float | None,
+        str | None,
         typer.Option(
-            help="Impact speed in mm/s at which the restitution was measured. Default: none, with --hysteresis."
+            help="Impact speed in mm/s, or such as '0.1 m/s', at which the restitution was measured. "
+            "Default: none, with --hysteresis."
         ),
     ] = None
     friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
@@ -121,7 +122,7 @@ class ForceElementOptions:
             if self.roughness is not None:
                 raise ValueError("--roughness is that of a film: add --viscosity")
             return None
-        viscosity = _viscosity(self.viscosity)
+        viscosity = _number_in("Pa s", "viscosity", self.viscosity, "2.5 mPa s")
         if self.roughness is None:
             return Lubricant(viscosity=viscosity)
         roughness = parse("roughness", self.roughness, Kind.LENGTH)
@@ -129,23 +130,23 @@ class ForceElementOptions:
 
     def _damping(self) -> Damping | None:
         """Return the damping of the options; None without damping."""
-        impact = (self.restitution, self.impact_speed)
-        if impact == (None, None):
+        if self.restitution is None and self.impact_speed is None:
             return None if self.hysteresis is None else Damping(hysteresis=self.hysteresis)
         if self.hysteresis is not None:
             raise ValueError("a hysteresis and a restitution are given; one is needed")
-        if None in impact:
+        if self.restitution is None or self.impact_speed is None:
             raise ValueError("a restitution and the speed of its impact belong together: --restitution --impact-speed")
-        return Restitution(restitution=self.restitution, impact_speed=self.impact_speed)
+        speed = _number_in("mm/s", "impact_speed", self.impact_speed, "0.1 m/s")
+        return Restitution(restitution=self.restitution, impact_speed=speed)
 
 
-def _viscosity(text: str) -> float:
-    """Convert the text of a viscosity to Pa s."""
+def _number_in(target: str, name: str, text: str, example: str) -> float:
+    """Convert the text of a number, with or without a unit, to a target unit."""
     try:
         number, unit = split_quantity(text)
-        return convert(number, parse_units(unit or "Pa s"), parse_units("Pa s"))
+        return convert(number, parse_units(unit or target), parse_units(target))
     except ValueError as error:
-        raise ValueError(f"viscosity must be a number of Pa s, or such as '2.5 mPa s', got {shown(text)}") from error
+        raise ValueError(f"{name} must be a number of {target}, or such as {example!r}, got {shown(text)}") from error
 
 
 _FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}

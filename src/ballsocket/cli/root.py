@@ -19,6 +19,7 @@ from typing import Annotated, Any, ClassVar, TextIO
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from ..core.checks import shown
 from ..version import __version__
 
 UsageError: Any = typer.BadParameter.__base__  # typer contains a copy of click and does not export this class
@@ -251,10 +252,25 @@ def _run() -> int:
 
 def _usage_message(error: Any) -> str:
     """Return the message of a wrong command line; for an unknown option with no similar one, add where to look."""
-    message: str = error.format_message().replace(": Value error, ", ": ", 1)  # of typer's check of a type
+    checks: list[Any] = getattr(error.__cause__ or error.__context__, "errors", list)()  # of typer's check of a type
+    if checks:
+        return f"{error.param.opts[0]} must be {_allowed_text(checks[0])}, got {shown(checks[0]['input'])}"
+    message: str = error.format_message()
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"
+
+
+def _allowed_text(check: Mapping[str, Any]) -> str:
+    """Describe the values that a failed check of typer allows."""
+    kind, limits = check["type"], check.get("ctx", {})
+    bounds = {"ge": "at least", "gt": "above", "le": "at most", "lt": "below"}
+    for name, text in bounds.items():
+        if name in limits:
+            return f"{text} {limits[name]}"
+    kinds = {"int": "a whole number", "float": "a number", "bool": "true or false"}
+    own_text: str = check["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    return kinds.get(kind.partition("_")[0], own_text)
 
 
 def print_message(message: str) -> None:

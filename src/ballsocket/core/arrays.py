@@ -53,7 +53,8 @@ def namespace(*values: Array) -> Any:
         return array_api_compat.array_namespace(*arrays)
     except TypeError as error:
         kinds = sorted({f"{type(value).__module__.split('.')[0]}.{type(value).__name__}" for value in arrays})
-        raise TypeError(f"all arrays must be of one library, got {', '.join(kinds)}") from error
+        hint = ": use .to_numpy()" if any(hasattr(value, "to_numpy") for value in arrays) else ""
+        raise TypeError(f"all arrays must be of one library, got {', '.join(kinds)}{hint}") from error
 
 
 def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> Callable[[Array], Array]:

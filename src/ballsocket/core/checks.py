@@ -104,6 +104,7 @@ def check_numeric(name: str, value: Any) -> Array:
     if (
         not hasattr(value, "dtype")
         or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
+        or hasattr(value, "to_numpy")
         or not _has_real_numbers(value)
     ):
         raise TypeError(_format_type_error(name, value))
@@ -184,8 +185,10 @@ def _format_type_error(name: str, value: Any) -> str:
     for kind, title in _REJECTED_ARRAYS.items():
         if isinstance(value, kind):
             text = title
-    if type(value).__name__ == "DataFrame":
-        text = "a DataFrame: take one of its columns"
+    if hasattr(value, "to_numpy"):  # of pandas, xarray or polars
+        name_of_type = type(value).__name__
+        column = "of one of its columns" if name_of_type in ("DataFrame", "Dataset") else "of it"
+        text = f"a {name_of_type}: use .to_numpy() {column}"
     hint = "; text with units belongs in a joint file or on the command line" if isinstance(value, str) else ""
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {text}{hint}"
 

@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from io import BufferedReader, FileIO
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from .checks import shown
 
@@ -89,11 +90,34 @@ def open_input(path: Path) -> BinaryIO:
     resolved = resolve_input(path)
     if is_restricted() and resolved.exists() and not resolved.is_file():
         raise ValueError(f"{shown(str(path))} is not a regular file")
-    stream = resolved.open("rb")
+    stream = BufferedReader(_NamedFile(resolved))
     opened = _opened.get()
     if opened is not None and path not in opened:
         opened.append(path)
     return stream
+
+
+class _NamedFile(FileIO):
+    """Raw input file whose errors name it: those of a read have no path."""
+
+    def readinto(self, buffer: Any) -> int | None:
+        """Read bytes into a buffer."""
+        with self._named_errors():
+            return super().readinto(buffer)
+
+    def readall(self) -> bytes:
+        """Read the rest of the file."""
+        with self._named_errors():
+            return super().readall()
+
+    @contextmanager
+    def _named_errors(self) -> Iterator[None]:
+        """Add the path to an OSError in the block."""
+        try:
+            yield
+        except OSError as error:
+            error.filename = error.filename or str(self.name)
+            raise
 
 
 @contextmanager

@@ -282,8 +282,29 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
+_STANDARD_GRAVITY = 9.80665  # m/s²
+_TYPICAL_MASS = 75.0  # kg, of a patient
+_BODY_WEIGHT = re.compile(r"(%?)\s*(?:BW|body\s*weights?)", re.IGNORECASE)
+
+
 def _refusal(name: str, value: Any, kind: str) -> str:
-    return f"{name} = {shown(value)} is not {Kind(kind).example}"
+    hint = _weight_hint(str(value)) if kind == Kind.FORCE else ""
+    return f"{name} = {shown(value)} is not {Kind(kind).example}{hint}"
+
+
+def _weight_hint(text: str) -> str:
+    """Return the conversion of a mass or a multiple of the body weight to a force; empty for another text."""
+    try:
+        number, unit = split_quantity(text)
+        relative = _BODY_WEIGHT.fullmatch(unit)
+        if relative:
+            multiple = number / 100 if relative[1] else number
+            force = multiple * _TYPICAL_MASS * _STANDARD_GRAVITY
+            return f"; {multiple:g} times the weight of {_TYPICAL_MASS:g} kg is {force:.4g} N"
+        mass = convert(number, parse_units(unit), {"kilogram": 1})
+    except ValueError:
+        return ""
+    return f"; a mass of {number:g} {unit} weighs {mass * _STANDARD_GRAVITY:.4g} N"
 
 
 def _too_large(name: str, value: Any) -> str:

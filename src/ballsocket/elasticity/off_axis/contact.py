@@ -216,7 +216,8 @@ class OffAxisContact(SolvedContact):
         """Note on a dislocated ball: the tilt of a load that points beyond the bore, else the displacement."""
         tilt, reach = (degrees(float(angle)) for angle in (self.tilt, self.model.reach_of(self.joint)))
         if tilt > reach:
-            return f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"
+            outside = f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"
+            return f"{outside}{_REVERSED_NOTE if 180.0 - tilt < reach else ''}"
         (_, contacts), *_ = self.laws.pieces
         centre = contacts.state.displacement[:, 0]
         distance, polar = float(numpy.linalg.norm(centre)), degrees(float(polar_angle(centre)))
@@ -267,6 +268,7 @@ class OffAxisContact(SolvedContact):
 _CUT_ERROR = 2.0
 """Factor of the error of the margin of contacts that the rim cuts off, measured against rings of 0.75°."""
 
+_REVERSED_NOTE = "; if it is the force on the ball, such as a measured joint reaction, give the opposite direction"
 _RIM_NOTE = "edge loading: the contact reaches the rim"
 _PRELOADED_RIM_NOTE = "the contact reaches the rim, as is normal in a preloaded joint"
 _SHARP_RIM_NOTE = (
