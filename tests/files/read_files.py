@@ -100,14 +100,10 @@ def _hip(file):
 
 def _study(file):
     design, engine = file.design, file.engine
+    everything = set(import_module("ballsocket.studies.task").QUANTITIES)
+    stated = [] if everything <= {*file.quantities} else list(file.quantities)
     return [
-        *(
-            file.model.name,
-            _joint(file.joint),
-            list(design.names),
-            design.size,
-            list(file.quantities) if "quantities" in text else [],
-        ),
+        *(file.model.name, _joint(file.joint), list(design.names), design.size, stated),
         *(numbers(file.store), type(engine).__name__, numbers(getattr(engine, "workers", None))),
     ]
 
