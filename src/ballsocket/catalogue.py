@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from .contact import Model
+from .contact.model import RimLimited
 from .contact.outcome import ModelInfo
 from .core.checks import NamedItems, known_name
 from .core.deprecation import renamed_names
@@ -19,6 +21,7 @@ from .models.half_space import Hertz, LiuReconstruction, Steuermann
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
+from .problem.gaps import GAP_KINDS
 
 reference: Model = Exact()
 """Exact elastic solution, the reference of every accuracy."""
@@ -65,6 +68,25 @@ def named_model(name: Any) -> Model:
         A name that is not known; the message suggests the nearest one.
     """
     return named_models[known_name("model", name, named_models)]
+
+
+def with_gap(model: Model, name: str | None) -> Model:
+    """Return a model with the gap of a name, "linear" or "circular"; None leaves the model as it is.
+
+    Raises
+    ------
+    ValueError
+        An unknown name, or a model that has one gap only.
+    """
+    if name is None:
+        return model
+    kind = GAP_KINDS[known_name("gap", name, GAP_KINDS)]
+    if isinstance(model, RimLimited):
+        return replace(model, model=with_gap(model.model, name))
+    if not hasattr(model, "gap"):
+        choices = [known for known, other in named_models.items() if hasattr(other, "gap")]
+        raise ValueError(f"{model.name} has no choice of the gap; models with one: {', '.join(choices)}")
+    return replace(model, gap=kind)  # type: ignore[type-var]
 
 
 __getattr__ = renamed_names(__name__, {"theories": "listed_models"})

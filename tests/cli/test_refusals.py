@@ -69,6 +69,9 @@ schema hipp => kind of file 'hipp' is not known; did you mean 'hip'?
 cite herz => model, material or joint 'herz' is not known; did you mean 'hertz'?
 cite titanium => no known publication is named in the source of titanium
 
+press {hip} --model exact --gap round => gap 'round' is not known; known: linear, circular
+curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models with one: exact, fem, sphere
+
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
 press {hip} --model fem --element triangle => element 'triangle' is not known

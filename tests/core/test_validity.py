@@ -80,7 +80,6 @@ def test_preloaded_joints_are_outside_the_default_fit():
     ("limit", "name", "inside", "outside"),
     [
         (validity.SMALL_STRAIN, "depth_ratio", 0.1, 0.11),
-        (validity.CLOSE_FIT, "clearance_ratio", 0.019, 0.0201),
         (validity.RIGID_BALL, "modulus_ratio", 0.02, 0.021),
         (validity.RIGID_BACKING, "backing_ratio", 0.009, 0.011),
     ],

@@ -367,7 +367,7 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "2")
     found = run("map", "backed.toml", *ranges, "--json", folder=tmp_path)
     assert json.loads(found.stdout)["model"] == "exact"
-    assert "model exact is used, since none of these joints is in the tables of tabulated" in found.stderr
+    assert "model exact is used, since tabulated is valid for none of these joints" in found.stderr
     limited = run("map", "backed.toml", *ranges, "--limit", "max_pressure<=1", folder=tmp_path)
     assert "no point of the map is allowed by max_pressure ≤ 1, according to exact" in limited.stderr
     named = run("map", "backed.toml", *ranges, "--model", "tabulated", folder=tmp_path)
@@ -382,6 +382,7 @@ def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
     found = bs.study(bs.Tabulated(), backed, clearance=[0.1, 0.2], force=3000.0)
     with pytest.raises(ValueError, match="tabulated has no answer at any point: the model has no formula"):
         pareto(found, ("area", "max_pressure"), [Limit(name="max_pressure", high=15.0)])
+    assert default_model(backed.replace(clearance=0.3), {"force": [1.0, 9000.0]}) == bs.Exact()
     assert default_model(backed, {"force": [1.0, 9000.0]}) == bs.ExactCurve()
     assert default_model(backed, {"force": [1.0, 9000.0], "clearance": [0.1, 0.2]}) == bs.Exact()
     assert default_model(HIP, {"force": [1.0, 9000.0]}) == bs.Tabulated()

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import reference
+from ..catalogue import reference, with_gap
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
@@ -30,6 +30,7 @@ from ..studies.task import DEFAULT_QUANTITIES
 from ..version import __version__
 from .model_file import requested_model
 from .options import (
+    GapName,
     JointName,
     JointOptions,
     ModelName,
@@ -54,6 +55,7 @@ class PressOptions:
     """Options of the model and the load of a design study."""
 
     model: ModelName = None
+    gap: GapName = None
     force: Annotated[
         str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
     ] = None
@@ -73,13 +75,13 @@ class PressOptions:
             The requested model has no result for any of these joints.
         """
         if self.model is None:
-            model = default_model(file.joint, ends)
-            if model.name == reference.name:
-                print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
+            model = default_model(file.joint, ends) if self.gap is None else reference
+            if self.gap is None and model.name == reference.name:
+                print_message(f"model {model.name} is used, since tabulated is valid for none of these joints")
         else:
             model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
-        return model.in_cup(file.cup)
+        return with_gap(model, self.gap).in_cup(file.cup)
 
     def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
         """Return the load in N or mm; empty if the load is one of the varied parameters."""

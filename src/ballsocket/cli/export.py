@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import off_axis
+from ..catalogue import off_axis, reference, with_gap
 from ..core.checks import known_name, shown
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder
@@ -28,7 +28,7 @@ from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .model_file import requested_model
-from .options import JointName, JointOptions, LoadOptions, ModelName, expand_groups
+from .options import GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)
@@ -43,6 +43,7 @@ class ForceElementOptions:
     """Options of a force element, in addition to its joint."""
 
     model: ModelName = None
+    gap: GapName = None
     hysteresis: Annotated[
         float | None,
         typer.Option(help="Damping factor in s/mm: damping force / (contact force * speed). Default: no damping."),
@@ -88,7 +89,8 @@ class ForceElementOptions:
             stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
         if file.joint.clearance < 0:
             return self._preloaded_element(file.joint, stated_cup, friction)
-        model = default_model(file.joint, {}) if self.model is None else requested_model(self.model)
+        default = default_model(file.joint, {}) if self.gap is None else reference
+        model = with_gap(default if self.model is None else requested_model(self.model), self.gap)
         lubricant = self._lubricant()
         cup = None if stated_cup == Cup() and lubricant is None else stated_cup
         damping = self._damping()

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import off_axis
+from ..catalogue import off_axis, with_gap
 from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
@@ -27,6 +27,7 @@ from ..version import __version__
 from .elasticity_options import CupOptions, DirectionOptions, sphere_in_cup, tilted_cup
 from .model_file import requested_model
 from .options import (
+    GapName,
     JointName,
     JointOptions,
     LoadOptions,
@@ -51,6 +52,7 @@ class FilmOptions:
             autocompletion=complete_model,
         ),
     ] = None
+    gap: GapName = None
     spin: Annotated[str, typer.Option(help="Rotation rate of the ball in rad/s, or with a unit: '90 deg/s'.")] = (
         "1.5 rad/s"
     )
@@ -178,6 +180,7 @@ def _contacts(
         model = requested_model(name)
         if model.name == off_axis.name:
             model = sphere_in_cup(direction_options.model(), cup, direction)
+        model = with_gap(model, options.gap)
         contact = model.press(file.joint, **load)
         if contact.status.failed:
             print_message(f"no answer from {model.name}: {contact.status.sentence}")

@@ -74,6 +74,13 @@ ModelName = Annotated[
         autocompletion=complete_model,
     ),
 ]
+GapName = Annotated[
+    str | None,
+    typer.Option(
+        help="Gap of exact, fem and sphere: 'linear', Eq. (6), or 'circular', Eq. (5). "
+        "Default: linear up to a clearance of 0.01 R2, else circular."
+    ),
+]
 
 
 @dataclass(frozen=True, kw_only=True)

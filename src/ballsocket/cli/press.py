@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, off_axis, reference
+from ..catalogue import catalogue, judge, off_axis, reference, with_gap
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
 from ..contact.verdict import assess_strength, error_bar
@@ -46,6 +46,7 @@ from .json_answers import echo_json, several_joints
 from .model_file import is_model_file, requested_model
 from .options import (
     AsJson,
+    GapName,
     JointName,
     JointNames,
     JointOptions,
@@ -76,6 +77,7 @@ class ModelOptions:
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
+    gap: GapName = None
 
     @property
     def names(self) -> list[str]:
@@ -87,6 +89,11 @@ class ModelOptions:
     def has_finite_elements(self) -> bool:
         """True if the finite elements are requested."""
         return judge.name in self.names
+
+    def choose_gaps(self, models: Mapping[str, Model]) -> dict[str, Model]:
+        """Return the models and the exact one, with the requested gap where they have a choice."""
+        chosen = {**models, reference.name: models.get(reference.name, reference)}
+        return {name: with_gap(model, self.gap if hasattr(model, "gap") else None) for name, model in chosen.items()}
 
     def models(self, default: str) -> dict[str, Model]:
         """Return the requested models by name, or the default one."""
@@ -289,12 +296,13 @@ def press(
             direction_options.refuse()
         if off_axis.name in models:
             timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
+            timed.model = with_gap(timed.model, model_options.gap)
             models[off_axis.name] = timed
         if model_options.has_finite_elements:
-            fem = mesh.model(cup, meshes or 2)
+            fem: Any = with_gap(mesh.model(cup, meshes or 2), model_options.gap)
             models[judge.name] = fem
             remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
-        comparison = _compare(replace(file, cup=cup), load, models)
+        comparison = _compare(replace(file, cup=cup), load, models, model_options.choose_gaps(models))
         if off_axis.name in comparison:
             remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
         if friction_options.friction is not None:
@@ -355,17 +363,19 @@ def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
     return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
 
 
-def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:
-    """Press a joint by the models and the exact one.
+def _compare(
+    file: JointFile, load: Mapping[str, float], names: Container[str], models: Mapping[str, Model]
+) -> Comparison:
+    """Press a joint by models, of which those with some names are requested.
 
     Raises
     ------
     ValueError
         None of the models has a result for such a joint.
     """
-    comparison = compare(file.joint, models={**models, reference.name: reference}, cup=file.cup, **load)
-    if not set(comparison) & set(models):
-        raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in models))
+    comparison = compare(file.joint, models=models, cup=file.cup, **load)
+    if not any(name in names for name in comparison):
+        raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in names))
     return comparison
 
 
@@ -397,6 +407,7 @@ def curve(
     joint_options: JointOptions,
     load_options: LoadOptions,
     model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
+    gap: GapName = None,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -409,7 +420,7 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), requested_model(model)
+    file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)

@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from ..catalogue import with_gap
 from ..core.executors.processes import count_text
 from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
@@ -27,7 +28,7 @@ from ..studies.run import study as run_study
 from ..studies.store import check_store
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
+from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor
 from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def study(
             "also in a cloud store: 's3://bucket/hips.parquet'."
         ),
     ] = None,
+    gap: GapName = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
     figure: Annotated[
@@ -73,7 +75,7 @@ def study(
     folder = store or study_file.store
     with _progress_bar(folder) as progress:
         result = run_study(
-            study_file.model,
+            with_gap(study_file.model, gap),
             study_file.joint,
             study_file.design,
             quantities=study_file.quantities,

@@ -15,7 +15,7 @@ from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
 from ..core.records import cached_array
 from ..core.sources import Source
-from ..core.validity import UNIT_REMARKS, Promise, Range, Remark, Status, is_missing
+from ..core.validity import UNIT_REMARKS, Promise, Range, Status, is_missing
 from ..problem import Joint
 
 
@@ -32,7 +32,7 @@ class ModelInfo(ABC):
         Closed ranges in which a result is valid.
     promise : Promise or None
         Measured largest difference from the elastic solution inside the validity; None if it was not measured.
-    remarks : tuple of Remark
+    remarks : tuple of Range
         Ranges outside of which a valid result gets a note.
     reach : str
         Description of the loads that have a result, printed with results that have none; may be empty.
@@ -69,7 +69,7 @@ class ModelInfo(ABC):
         return None
 
     @property
-    def remarks(self) -> tuple[Remark, ...]:
+    def remarks(self) -> tuple[Range, ...]:
         """Ranges of contact quantities outside of which a valid result gets a note."""
         return ()
 
@@ -145,7 +145,9 @@ class Outcome(ABC):
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
             notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
         for limit in (*self.model.validity, *self.model.remarks, *UNIT_REMARKS):
-            notes += self._note_on_invalid_points(limit.holds(self) | self._failed, limit.sentence)
+            acceptable = limit.holds(self) | self._failed
+            if arrays.all_true(acceptable) is False:
+                notes += self._note_on_invalid_points(acceptable, limit.note(self))
         return tuple(notes)
 
     def _note_on_invalid_points(self, valid: Array, sentence: str) -> list[str]:

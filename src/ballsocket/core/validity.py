@@ -141,6 +141,10 @@ class Range:
         """Note for a contact outside the range."""
         return f"outside {self}: {self.why}"
 
+    def note(self, contact: Any) -> str:
+        """Note for a contact outside the range; ranges with an amount of the contact in their note override it."""
+        return self.sentence
+
     def value_text(self, joint: Any) -> str:
         """Format symbol and value of the quantity of a joint, such as "R2/L = 3"."""
         value = to_numpy(self.quantity_of(_UnloadedContact(joint))).ravel()
@@ -247,11 +251,6 @@ NON_NEGATIVE_CLEARANCE = Range(
     symbol="interference",
     high=5e-324,  # 0 is inside
     why="a joint with interference is preloaded, which only the model sphere solves",
-)
-CLOSE_FIT = Range(
-    quantity="joint.clearance_ratio",
-    high=0.02,
-    why="Eq. (6) neglects sin²φ, 1 % of p0 here: use gap=CircularGap",
 )
 SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"

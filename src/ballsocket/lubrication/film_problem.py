@@ -13,6 +13,7 @@ from ..contact import Contact
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
+from ..problem.gaps import select_gap
 from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about
 from .inlet import SpringEdge
 from .mesh import FilmMesh, graded_rings, polar_mesh
@@ -298,7 +299,7 @@ def _gap(contact: Contact, mesh: FilmMesh) -> Numbers:
     displacement = numpy.asarray(contact.displacement)
     length = float(numpy.linalg.norm(displacement))
     reach = mesh.direction @ displacement
-    shape = contact.model.gap(clearance=clearance, socket_radius=radius)
+    shape = select_gap(contact.model.gap, contact.joint)(clearance=clearance, socket_radius=radius)
     angle = numpy.arccos(numpy.clip(reach / length, -1.0, 1.0))
     gap: Numbers = reach - shape.displacement(angle, length - clearance) + depth
     return gap

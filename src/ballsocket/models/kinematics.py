@@ -19,6 +19,7 @@ from math import inf, nan, pi
 from ..core.arrays import Array, asin, clip, integral, safe_divisor, sin, sqrt, where
 from ..core.sources import Source
 from ..core.validity import Range
+from ..problem.gaps import LinearGapRange
 
 
 def versine_of(angle: Array) -> Array:
@@ -236,6 +237,7 @@ linear_kinematics = Kinematics(
     versine=linear_versine,
     indentation_of_versine=linear_indentation_of_versine,
     displacement=linear_displacement,
+    validity=(LinearGapRange(high=0.05, why="use the same springs with exact kinematics"),),
 )
 """u = d cos φ - c (1 - cos φ), Eq. (6) of the paper: sin² φ neglected under the root of Eq. (5)."""
 

@@ -14,8 +14,9 @@ from ..core import arrays
 from ..core.arrays import Array, broadcast, clip, integral, safe_divisor, sin, where
 from ..core.lazy import cached_property
 from ..core.sources import Source
-from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
+from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint
+from ..problem.gaps import LINEAR_GAP, LINEAR_GAP_REMARK
 from .liner_compliance import Liner, liner_coefficients
 from .refined_inverse import MAX_HALF_ANGLE, flatten_like, solve_contact
 from .refined_state import ScaledContact, peak_position, pressure_ratio, scaled_contact, shape_coefficient
@@ -76,9 +77,10 @@ class Refined(Model):
             why="the ball is assumed rigid, and softer balls exceed the model's error",
         ),
         RIGID_BACKING,
+        LINEAR_GAP,
         SMALL_STRAIN,
     )
-    remarks: ClassVar[tuple[Remark, ...]] = (HEMISPHERE_NOTE,)
+    remarks: ClassVar[tuple[Range, ...]] = (LINEAR_GAP_REMARK, HEMISPHERE_NOTE)
 
     promise: ClassVar[Promise] = Promise(within=0.02)
 

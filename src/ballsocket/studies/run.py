@@ -14,6 +14,7 @@ import numpy
 from ..catalogue import catalogue, reference
 from ..contact import Model
 from ..contact.assembly import check_joint
+from ..core import arrays
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
 from ..core.executors.processes import Engine, Serial, available_memory, count_text, size_text
@@ -23,6 +24,7 @@ from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
+from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
@@ -303,7 +305,7 @@ def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
     """Choose the model for a joint with varied parameters.
 
     It is `tabulated` unless none of the joints is in its domain. Otherwise it is `exact`, or `exact-curve` for a
-    single joint.
+    single joint. Joints of a clearance for which the circular gap is the default are solved by `exact`.
 
     Parameters
     ----------
@@ -312,6 +314,8 @@ def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
     ranges : mapping of str to sequence
         Ends of the range or all values of each varied parameter; materials by `liner` or `ball`.
     """
+    if arrays.all_true(joint_of_arrays(joint, ranges).clearance_ratio > MAX_LINEAR_CLEARANCE_RATIO):
+        return reference
     try:
         check_model_domain(_TABULATED, joint, ranges)
     except OutsideDomainError:

@@ -54,9 +54,11 @@ def test_a_full_shell_has_the_exact_solution(poisson, thickness, force):
     np.testing.assert_allclose(ours.pressure(angle), exact.pressure(angle), atol=2e-3 * exact.max_pressure)
 
 
-@pytest.mark.parametrize("clearance", some([0.02, 1.0, 0.1], 1))
+@pytest.mark.parametrize("clearance", some([1.0, 0.02, 0.1], 1))
 def test_a_full_shell_with_a_circular_gap_has_the_exact_solution(clearance):
-    models = replace(WHOLE, gap=bs.CircularGap), bs.Exact(gap=bs.CircularGap)
+    """From c/R2 0.01 on the circular gap is the default."""
+    gap = None if clearance > 0.5 else bs.CircularGap
+    models = replace(WHOLE, gap=gap), bs.Exact(gap=bs.CircularGap)
     loads = np.array([200.0, 2000.0])
     assert_close(*(model.press(replace(RIGID, clearance=clearance), force=loads) for model in models), 1e-3)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -12,7 +12,7 @@ from ...contact.per_joint import solve_per_joint
 from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
-from ...problem.gaps import LinearGap
+from ...problem.gaps import CircularGap, LinearGap
 from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import CurveContact
 from .load_curve import LoadCurve
@@ -31,7 +31,7 @@ class ExactCurve(ModelWrapper):
     Parameters
     ----------
     model : Exact
-        A model with the linear gap.
+        A model whose gap is not circular; it becomes linear for every clearance.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class ExactCurve(ModelWrapper):
     array([ 8.728, 16.905])
     """
 
-    model: Exact = field(default_factory=Exact)
+    model: Exact = Exact()  # noqa: RUF009 (frozen)
 
     seconds_a_press: ClassVar[float] = 2e-6
     contact_type: ClassVar[type[Contact]] = CurveContact
@@ -58,8 +58,9 @@ class ExactCurve(ModelWrapper):
     def __post_init__(self) -> None:
         if not isinstance(self.model, Exact):
             raise TypeError(f"model must be an Exact, got {shown(self.model)}")
-        if self.model.gap is not LinearGap:
+        if self.model.gap is CircularGap:
             raise ValueError("ExactCurve needs gap=LinearGap, got a circular gap: use Exact")
+        object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         """Solve the contacts of all joints and loads on the Chebyshev curve of each joint."""

@@ -14,9 +14,9 @@ from ...core import arrays
 from ...core.arrays import Array
 from ...core.checks import check_numeric, require, shown
 from ...core.sources import Source
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
+from ...core.validity import SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
-from ...problem.gaps import CircularGap, LinearGap, check_gap
+from ...problem.gaps import CircularGap, GapKind, check_gap, gap_remarks, gap_validity, select_gap
 from .contact import ElasticContact, NearHemisphere
 from .kernel import Kernel
 from .load_curve import LoadCurve
@@ -44,8 +44,9 @@ class Exact(Model):
     tolerance : float
         Relative tolerance, 1e-10 to 1e-2. `contact.error` estimates the error; where it exceeds the tolerance, the
         status is NOT_CONVERGED.
-    gap : type
-        `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
+    gap : type, optional
+        `LinearGap` (Eq. 6 of Heß & Forsbach 2021) or `CircularGap` (Eq. 5). By default it is linear up to c/R2 0.01,
+        and circular beyond.
 
     Raises
     ------
@@ -67,7 +68,7 @@ class Exact(Model):
     """
 
     tolerance: float = 1e-6
-    gap: type[LinearGap] | type[CircularGap] = LinearGap
+    gap: GapKind | None = None
 
     def __post_init__(self) -> None:
         tolerance = check_numeric("tolerance", self.tolerance)
@@ -86,7 +87,7 @@ class Exact(Model):
     @property
     def title(self) -> str:
         """Description of the model in one line."""
-        shape = "" if self.gap is LinearGap else ", circular gap"
+        shape = ", circular gap" if self.gap is CircularGap else ""
         return f"elastic ball and layered shell, integral equation{shape}"
 
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
@@ -110,9 +111,12 @@ class Exact(Model):
     @property
     def validity(self) -> tuple[Range, ...]:
         """Validity ranges; a circular gap needs no close fit."""
-        return (
-            (CLOSE_FIT, SMALL_STRAIN, _NEAR_HEMISPHERE) if self.gap is LinearGap else (SMALL_STRAIN, _NEAR_HEMISPHERE)
-        )
+        return (*gap_validity(self.gap), SMALL_STRAIN, _NEAR_HEMISPHERE)
+
+    @property
+    def remarks(self) -> tuple[Range, ...]:
+        """Remarks on the gap."""
+        return gap_remarks(self.gap)
 
     reach: ClassVar[str] = "half angles up to 85°, or less if the ball fills its socket first"
 
@@ -141,5 +145,6 @@ def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array
 def curve_of(model: Exact, joint: Joint) -> LoadCurve:
     """Return the load curve of a joint of plain numbers, cached for further loads."""
     kernel = Kernel(socket=socket_of(joint), ball=ball_of(joint), tolerance=max(1e-3 * model.tolerance, 1e-14))
-    gap = model.gap(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
+    kind = select_gap(model.gap, joint)
+    gap = kind(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
     return LoadCurve(kernel=kernel, gap=gap, tolerance=model.tolerance)

@@ -32,7 +32,7 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text
 from ...core.storage.atomic_files import make_folder, write_text
-from ...problem.gaps import LinearGap
+from ...problem.gaps import LinearGap, select_gap
 from ...version import __version__
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
 from .model import MeshedContact
@@ -90,7 +90,7 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
     is_allowed = isinstance(steps, int) and 1 <= steps <= MAX_STEPS
     require("steps", steps, is_allowed, f"steps must be an integer from 1 to {MAX_STEPS}")
     require("scale", scale, 0 < scale <= 1, "a scale must be above 0 and at most 1")
-    if contact.model.gap is not LinearGap:
+    if select_gap(contact.model.gap, contact.joint) is not LinearGap:
         raise ValueError("a deck needs the linear gap: press with gap=LinearGap")
     gap = faceting_gap(contact._solved.pair) / (scale * contact._solved.indentation)
     if gap > _MAX_FACETING_GAP:

@@ -18,10 +18,10 @@ from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
 from ...core.sources import Source
 from ...core.stress import Peak
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status, body_remarks
+from ...core.validity import SMALL_STRAIN, Range, Status, body_remarks
 from ...problem import Joint
 from ...problem.cup import Cup
-from ...problem.gaps import CircularGap, LinearGap, check_gap
+from ...problem.gaps import GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
 if TYPE_CHECKING:
@@ -123,6 +123,9 @@ def largest_poisson(contact: Any) -> Array:
     return largest
 
 
+_BODY_REMARKS = body_remarks("cut off at the plane of the socket's rim", "half a one on its equator")
+
+
 @dataclass(frozen=True, kw_only=True)
 class FiniteElement(Model):
     """Contact by axisymmetric finite elements, with a rim, a sliding liner or a compliant shell.
@@ -143,8 +146,9 @@ class FiniteElement(Model):
         BIQUADRATIC (default) or BILINEAR.
     meshes : int
         2 (default) solves on a coarser mesh too and gives `contact.error`; 1 gives an error of NaN.
-    gap : type
-        `LinearGap` (Eq. 6 of Heß & Forsbach 2021, default) or `CircularGap` (Eq. 5).
+    gap : type, optional
+        `LinearGap` (Eq. 6 of Heß & Forsbach 2021) or `CircularGap` (Eq. 5). By default it is linear up to c/R2 0.01,
+        and circular beyond.
 
     Raises
     ------
@@ -165,7 +169,7 @@ class FiniteElement(Model):
     ball_spacing: Spacing | None = None
     element: Element = Element.BIQUADRATIC
     meshes: int = 2
-    gap: type[LinearGap] | type[CircularGap] = LinearGap
+    gap: GapKind | None = None
 
     def __post_init__(self) -> None:
         kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
@@ -204,9 +208,6 @@ class FiniteElement(Model):
         ),
         Range(quantity="joint.thickness_ratio", high=200.0, why="the liner is too thin to be meshed"),
     )
-    remarks: ClassVar[tuple[Remark, ...]] = body_remarks(
-        "cut off at the plane of the socket's rim", "half a one on its equator"
-    )
     reach: ClassVar[str] = (
         "half angles up to half the arc of cover, at most 88°, or less if the ball fills its socket first or "
         "leaves the pole; the contact must be wider than a few elements"
@@ -215,7 +216,12 @@ class FiniteElement(Model):
     @property
     def validity(self) -> tuple[Range, ...]:
         """Validity ranges; a circular gap needs no close fit."""
-        return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
+        return (*gap_validity(self.gap), SMALL_STRAIN)
+
+    @property
+    def remarks(self) -> tuple[Range, ...]:
+        """Remarks on the gap, on the shape of an infinite layer, and on a soft ball."""
+        return (*gap_remarks(self.gap), *_BODY_REMARKS)
 
     def _law(self, joint: Joint) -> ForceLaw:
         """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
@@ -236,11 +242,15 @@ class FiniteElement(Model):
             ball_spacing=self.ball_spacing or self.spacing,
             order=self.element.value,
             meshes=self.meshes,
-            gap=self.gap,
+            gap=LinearGap,
         )
-        solution = solve_per_joint(
-            self, joint, load, lambda plain_joint, loads: load_curve_of(settings, plain_joint).press(kind, loads)
-        )
+
+        def solve(plain_joint: Joint, loads: Numbers) -> JointContacts:
+            """Solve the contacts of one joint with the gap that suits it."""
+            curve = load_curve_of(replace(settings, gap=select_gap(self.gap, plain_joint)), plain_joint)
+            return curve.press(kind, loads)
+
+        solution = solve_per_joint(self, joint, load, solve)
         return SolverResult(
             laws=solution,
             force=solution.force,

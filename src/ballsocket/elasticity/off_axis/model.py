@@ -26,10 +26,10 @@ from ...core.checks import (
 )
 from ...core.deprecation import RenamedAttribute
 from ...core.sources import Source
-from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Remark, Status
+from ...core.validity import SMALL_STRAIN, Range, Remark, Status
 from ...problem import Joint
 from ...problem.cup import UP, Cup
-from ...problem.gaps import CircularGap, LinearGap, check_gap
+from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
 from ..finite_elements.model import largest_poisson
 from .bore_shapes import BoreShape
 from .contact import OffAxisContact
@@ -62,8 +62,8 @@ class Sphere(Model):
     ring_width : float
         Width of the rings in rad, 0.5° to 6°; 2° by default. The error of forces is about 0.1 % at 2° and 0.03 % at 1°,
         for contacts that span at least ten rings; `contact.error` estimates it for each contact.
-    gap : type
-        `LinearGap` (default) or `CircularGap`.
+    gap : type, optional
+        `LinearGap` or `CircularGap`. By default it is linear up to c/R2 0.01, and circular beyond.
     worn : object with a method `depth`, optional
         Depth in mm of the bore below its sphere, by direction: see `BoreDeviation`.
     direction : array (..., 3), optional
@@ -94,7 +94,7 @@ class Sphere(Model):
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Surface = RealCup()  # noqa: RUF009 (frozen)
     ring_width: float = radians(2.0)
-    gap: type[LinearGap] | type[CircularGap] = LinearGap
+    gap: GapKind | None = None
     worn: BoreShape | None = None
     direction: Any = UP
     keep: str = "fields"
@@ -156,11 +156,11 @@ class Sphere(Model):
             low=1.0 + 1e-9,
             why="a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg",
         )
-        return (SMALL_STRAIN, narrow, held, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
+        return (*gap_validity(self.gap), SMALL_STRAIN, narrow, held)
 
     @property
-    def remarks(self) -> tuple[Remark, ...]:
-        """Note on an inclination that looks like radians: no cup is tilted by less than 1.6° but not at all."""
+    def remarks(self) -> tuple[Range, ...]:
+        """Remarks on the gap, and on an inclination that looks like radians, below 1.6° but not 0."""
         small_inclination = Remark(
             quantity=lambda _: abs(self.cup.inclination) or inf,
             symbol="inclination",
@@ -168,7 +168,7 @@ class Sphere(Model):
             why=f"the cup's inclination is {degrees(self.cup.inclination):.3g}°, as if radians were given as degrees: "
             f"{degrees(self.cup.inclination):.3g} rad are {degrees(degrees(self.cup.inclination)):.3g}°",
         )
-        return (small_inclination,)
+        return (*gap_remarks(self.gap), small_inclination)
 
     @property
     def parameters(self) -> tuple[Array, ...]:
@@ -359,7 +359,7 @@ class Sphere(Model):
             clearance=float(joint.clearance),
             socket_radius=float(joint.socket_radius),
             depth=self.worn_depth(compliance.grid.centroids, float(joint.socket_radius)),
-            kind=self.gap,
+            kind=select_gap(self.gap, joint),
         )
         return BoreContact(compliance=compliance, gap=gap)
 

@@ -19,8 +19,9 @@ from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor
 from ....core.chebyshev import chebyshev_polynomials, convert_like, sum_series
 from ....core.lazy import cached_property
 from ....core.sources import Source
-from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
+from ....core.validity import SMALL_STRAIN, Promise, Range, Status
 from ....problem import Joint
+from ....problem.gaps import LINEAR_GAP, LINEAR_GAP_REMARK
 from .chebyshev import (
     LIMIT,
     POISSON,
@@ -353,10 +354,11 @@ class Tabulated(Model):
             high=0.4,
             why="the tables hold balls of ν 0.15, 0.27 and 0.38 and keep 2e-4 between them",
         ),
+        LINEAR_GAP,
         SMALL_STRAIN,
         LIKE_HEMISPHERE,
     )
-    remarks: ClassVar[tuple[Remark, ...]] = (HEMISPHERE_NOTE,)
+    remarks: ClassVar[tuple[Range, ...]] = (LINEAR_GAP_REMARK, HEMISPHERE_NOTE)
 
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
