@@ -162,7 +162,7 @@ def planning(
     joint_options: PlannedJointOptions,
     as_json: AsJson = False,
 ) -> None:
-    """Read landmarks, liner and head of a hip as a joint, and the wear of a measured bore.
+    """Read landmarks, liner, head and worn bore of a hip.
 
     Landmarks give the pelvic frame, the side, and the radiographic angles of the cup from points on its rim. Meshes
     of liner and head give radius, arc of cover and wall thickness. A clearance is never derived from two files.
