@@ -8,11 +8,12 @@ Lengths are in mm, angles in rad.
 """
 
 from .clouds import PointCloud, read_points
-from .implants import ImplantFit, RimPlane, fit_head, fit_liner
+from .implants import ImplantFit, fit_head, fit_liner
 from .landmarks import Landmarks, read_landmarks
 from .meshes import Mesh, read_mesh
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis, pelvic_frame
 from .plan import HipPlan, make_plan
+from .rims import RimPlane
 from .worn_bores import WornBore, measure_wear
 
 __all__ = [

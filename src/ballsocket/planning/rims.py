@@ -1,0 +1,211 @@
+"""Rims of spherical surfaces: the plane in which a surface ends, and the two planes of a liner with a lip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import acos, cos, pi, radians, sin
+
+import numpy
+
+from ..core.arrays import Numbers
+from .geometry import Plane, angle_between, fit_plane_robustly
+from .meshes import Mesh
+
+_RIM_SECTORS = 120
+
+RIM_TOLERANCE = radians(1.0)
+"""Distance of points from the plane of a rim over the radius, up to which they belong to it."""
+
+_MIN_SECTORS = 0.5
+"""Least share of the sectors around the axis in which a rim must have points."""
+
+_SECTOR_OFFSET = 0.37
+"""Start of the sectors over their width, so that the corners of a regular mesh do not lie between two sectors."""
+
+_MIN_LIP = 0.1
+"""Least share of the rim that a lip has."""
+
+_MAX_TILT = radians(35.0)
+"""Largest angle between the axis of a liner and the planes of its rim."""
+
+DISTINCT_AXES = radians(1.0)
+"""Angle from which two planes of a rim give different axes."""
+
+_MIN_EVIDENCE = 0.1
+"""Relative difference of the moments of the outer surface about two axes, from which one of them is the right one."""
+
+_SPHERE_MOMENTS = 0.02
+"""Moments of the normals of a faceted sphere, over its area and radius."""
+
+_PLANE_PASSES = 4
+"""Number of times that the ends of a bore are divided between the two planes of its rim."""
+
+_SAME_AXIS = radians(3.0)
+"""Angle from the axis of the outer surface up to which the main plane of the rim determines the axis more exactly."""
+
+_MIN_END = 0.75
+"""Least share of the end of an outer surface that lies in a plane, if the plane gives the axis."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RimPlane:
+    """Plane in which a part of the rim lies.
+
+    Attributes
+    ----------
+    normal : array (3,)
+        Unit normal out of the opening, in the coordinates of the file.
+    height : float
+        Distance in mm from the centre of the bore, positive out of the opening.
+    share : float
+        Share of the circumference whose rim lies in the plane.
+    """
+
+    normal: Numbers
+    height: float
+    share: float
+
+
+def fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float, float]:
+    """Fit a plane to the end of a spherical surface, given by its facets (n, 3, 3) and its approximate pole.
+
+    The facets are relative to the centre, in radii. Points on the edges count: the edges of a rim lie in its plane.
+
+    Returns
+    -------
+    axis : array (3,)
+        Unit vector out of the opening.
+    angle : float
+        Polar angle in rad of the rim from the pole.
+    deviation : float
+        Largest angle in rad of the rim from the plane.
+    """
+    points, dome = edge_points(corners), pole / numpy.linalg.norm(pole)
+    for _ in range(8):
+        ends = farthest_points(points, dome)
+        if len(ends) < _MIN_SECTORS * _RIM_SECTORS:
+            raise ValueError(f"{name}: the spherical surface has no rim around its axis")
+        plane = fit_plane_robustly(ends, RIM_TOLERANCE)
+        normal = plane.normal if plane.normal @ dome > 0 else -plane.normal
+        change, dome = float(normal @ dome), normal
+        if change > 1 - 1e-12:
+            break
+    angle = acos(float(numpy.clip(plane.centre @ dome, -1.0, 1.0)))
+    return -dome, angle, rim_deviation(ends, dome, angle)
+
+
+def rim_deviation(ends: Numbers, dome: Numbers, angle: float) -> float:
+    """Return the angle in rad by which most ends of a surface deviate from a plane rim at a polar angle."""
+    return float(numpy.quantile(abs(ends @ dome - cos(angle)) / max(sin(angle), 0.1), 0.95))
+
+
+def rim_planes(ends: Numbers, axis: Numbers, radius: float) -> tuple[RimPlane, ...]:
+    """Find up to two planes in the ends of a bore (n, 3), relative to its centre in radii; the larger one first."""
+    planes: list[Plane] = []
+    remaining = ends
+    while len(planes) < 2 and len(remaining) >= max(_MIN_LIP * len(ends), 3):
+        plane = fit_plane_robustly(remaining, RIM_TOLERANCE)
+        remaining = remaining[abs((remaining - plane.centre) @ plane.normal) > RIM_TOLERANCE]
+        planes.append(plane)
+    for _ in range(_PLANE_PASSES):
+        distances = numpy.array([abs((ends - plane.centre) @ plane.normal) for plane in planes])
+        parts = [ends[distances.argmin(axis=0) == index] for index in range(len(planes))]
+        planes = [fit_plane_robustly(part, RIM_TOLERANCE) for part in parts if len(part) >= _MIN_LIP * len(ends)]
+    found = [
+        RimPlane(
+            normal=plane.normal * sign,
+            height=radius * sign * float(plane.centre @ plane.normal),
+            share=float((abs(plane.distances) < RIM_TOLERANCE).sum()) / len(ends),
+        )
+        for plane in planes
+        for sign in (1.0 if plane.normal @ axis > 0 else -1.0,)
+    ]
+    fitting = [plane for plane in found if plane.share >= _MIN_LIP and plane.normal @ axis > cos(_MAX_TILT)]
+    return tuple(sorted(fitting, key=lambda plane: -plane.share))
+
+
+def main_plane_first(
+    planes: tuple[RimPlane, ...], outer: Mesh, moments: Numbers, centre: Numbers
+) -> tuple[tuple[RimPlane, ...], Numbers, bool]:
+    """Put the main one of two planes first, by the moments (n, 3) of the outer surface; return them, axis, and doubt.
+
+    Two planes of a rim are equally good rims. The outer surface is turned around the axis of the liner: its normals
+    meet it, so that the sum of the moments of the normals about it is smallest. A spherical outer surface has no such
+    moments, but may end in one plane.
+    """
+    sums = [float(abs(moments @ plane.normal).sum()) for plane in planes]
+    arms = numpy.linalg.norm(outer.triangles.mean(axis=1) - centre, axis=1)
+    scale = max(numpy.linalg.norm(moments, axis=1).sum(), _SPHERE_MOMENTS * float(outer.areas @ arms))
+    if abs(sums[0] - sums[1]) > _MIN_EVIDENCE * scale * sin(angle_between(planes[0].normal, planes[1].normal)):
+        main, lip = planes if sums[0] < sums[1] else planes[::-1]
+        axis = _turned_axis(moments, main.normal)
+        return (main, lip), main.normal if angle_between(axis, main.normal) < _SAME_AXIS else axis, False
+    normal = _outer_end(outer.triangles - centre, -planes[0].normal)
+    for main, lip in (planes, planes[::-1]):
+        if normal is not None and angle_between(normal, main.normal) < DISTINCT_AXES:
+            return (main, lip), main.normal, False
+    return planes, planes[0].normal, True
+
+
+def _outer_end(corners: Numbers, dome: Numbers) -> Numbers | None:
+    """Return the normal of the plane in which the outer surface, facets (n, 3, 3), ends; None without such a plane."""
+    if not len(corners):
+        return None
+    points = edge_points(corners / numpy.linalg.norm(corners, axis=2).mean())
+    ends = farthest_points(points, dome)
+    plane = fit_plane_robustly(ends, RIM_TOLERANCE)
+    if numpy.mean(abs(plane.distances) < RIM_TOLERANCE) < _MIN_END:
+        return None
+    return plane.normal if plane.normal @ dome < 0 else -plane.normal
+
+
+def _turned_axis(moments: Numbers, start: Numbers) -> Numbers:
+    """Find the axis with the smallest sum of the absolute moments (n, 3) about it, by reweighted least squares."""
+    axis, floor = start, 1e-9 * float(numpy.linalg.norm(moments, axis=1).max())
+    sizes = numpy.linalg.norm(moments, axis=1)
+    for _ in range(60):
+        weights = 1.0 / numpy.maximum(abs(moments @ axis), floor + 1e-6 * sizes)
+        vector = numpy.linalg.eigh((weights[:, None] * moments).T @ moments)[1][:, 0]
+        vector = vector if vector @ axis > 0 else -vector
+        change, axis = float(numpy.linalg.norm(vector - axis)), vector
+        if change < 1e-12:
+            break
+    return axis
+
+
+def edge_points(corners: Numbers) -> Numbers:
+    """Return points (n, 3) on the edges of facets (n, 3, 3), as near as the sectors of a rim."""
+    steps = min(int(numpy.ceil(_largest_edge(corners) / (pi / _RIM_SECTORS))), 20) or 1
+    return corners.reshape(-1, 3) if steps == 1 else numpy.concatenate(list(_along_edges(corners, steps)))
+
+
+def _largest_edge(corners: Numbers) -> float:
+    """Return the length of the longest edge of facets (n, 3, 3)."""
+    return float(numpy.linalg.norm(corners - numpy.roll(corners, -1, axis=1), axis=2).max())
+
+
+def _along_edges(corners: Numbers, steps: int) -> Iterable[Numbers]:
+    """Yield points (3 n, 3) along the edges of facets, one set for each step."""
+    following = numpy.roll(corners, -1, axis=1)
+    for step in range(steps):
+        share = step / steps
+        yield ((1 - share) * corners + share * following).reshape(-1, 3)
+
+
+def farthest_points(points: Numbers, dome: Numbers) -> Numbers:
+    """Return the point of the largest polar angle from the dome in each sector around it.
+
+    The sectors begin at the first point far from the dome: they turn and move with the file.
+    """
+    height = points @ dome / numpy.linalg.norm(points, axis=1)
+    reference = points[(abs(height) < 0.9).argmax()]
+    first = reference - (reference @ dome) * dome
+    first /= numpy.linalg.norm(first)
+    azimuth = numpy.arctan2(points @ numpy.cross(dome, first), points @ first)
+    sector = ((azimuth + pi) * (_RIM_SECTORS / (2 * pi)) + _SECTOR_OFFSET).astype(int) % _RIM_SECTORS
+    order = numpy.argsort(-height, kind="stable")
+    farthest = numpy.full(_RIM_SECTORS, -1)
+    farthest[sector[order]] = order  # the last one stays
+    ends: Numbers = points[farthest[farthest >= 0]]
+    return ends
