@@ -38,6 +38,9 @@ _MIN_EVIDENCE = 0.1
 _SPHERE_MOMENTS = 0.02
 """Moments of the normals of a faceted sphere, over its area and radius."""
 
+_MIN_LOWER = 0.33
+"""Least share of the rim from which the lower one of two parallel planes is the main one."""
+
 _PLANE_PASSES = 4
 """Number of times that the ends of a bore are divided between the two planes of its rim."""
 
@@ -101,17 +104,14 @@ def rim_deviation(ends: Numbers, dome: Numbers, angle: float) -> float:
 
 
 def rim_planes(ends: Numbers, axis: Numbers, radius: float) -> tuple[RimPlane, ...]:
-    """Find up to two planes in the ends of a bore (n, 3), relative to its centre in radii; the larger one first."""
-    planes: list[Plane] = []
-    remaining = ends
-    while len(planes) < 2 and len(remaining) >= max(_MIN_LIP * len(ends), 3):
-        plane = fit_plane_robustly(remaining, RIM_TOLERANCE)
-        remaining = remaining[abs((remaining - plane.centre) @ plane.normal) > RIM_TOLERANCE]
-        planes.append(plane)
-    for _ in range(_PLANE_PASSES):
-        distances = numpy.array([abs((ends - plane.centre) @ plane.normal) for plane in planes])
-        parts = [ends[distances.argmin(axis=0) == index] for index in range(len(planes))]
-        planes = [fit_plane_robustly(part, RIM_TOLERANCE) for part in parts if len(part) >= _MIN_LIP * len(ends)]
+    """Find up to two planes in the ends of a bore (n, 3), relative to its centre in radii; the larger one first.
+
+    A plane between both is near many of their points: a narrow tolerance avoids it, a wide one is needed for scatter.
+    Of two parallel planes, the lower one is first if it has a third of the rim: a lip is raised.
+    """
+    tolerances = (RIM_TOLERANCE, RIM_TOLERANCE / 3.0)
+    pairs = [_plane_pair(ends, tolerance) for tolerance in tolerances]
+    planes = max(pairs, key=lambda pair: sum(int((abs(plane.distances) < tolerances[1]).sum()) for plane in pair))
     found = [
         RimPlane(
             normal=plane.normal * sign,
@@ -122,7 +122,25 @@ def rim_planes(ends: Numbers, axis: Numbers, radius: float) -> tuple[RimPlane, .
         for sign in (1.0 if plane.normal @ axis > 0 else -1.0,)
     ]
     fitting = [plane for plane in found if plane.share >= _MIN_LIP and plane.normal @ axis > cos(_MAX_TILT)]
+    if len(fitting) == 2 and angle_between(fitting[0].normal, fitting[1].normal) < DISTINCT_AXES:
+        lower, upper = sorted(fitting, key=lambda plane: plane.height)
+        return (lower, upper) if lower.share > _MIN_LOWER else (upper, lower)
     return tuple(sorted(fitting, key=lambda plane: -plane.share))
+
+
+def _plane_pair(ends: Numbers, tolerance: float) -> list[Plane]:
+    """Fit one or two planes to the ends of a bore (n, 3), each to the points that are nearer to it."""
+    planes: list[Plane] = []
+    remaining = ends
+    while len(planes) < 2 and len(remaining) >= max(_MIN_LIP * len(ends), 3):
+        plane = fit_plane_robustly(remaining, tolerance)
+        remaining = remaining[abs((remaining - plane.centre) @ plane.normal) > tolerance]
+        planes.append(plane)
+    for _ in range(_PLANE_PASSES):
+        distances = numpy.array([abs((ends - plane.centre) @ plane.normal) for plane in planes])
+        parts = [ends[distances.argmin(axis=0) == index] for index in range(len(planes))]
+        planes = [fit_plane_robustly(part, tolerance) for part in parts if len(part) >= _MIN_LIP * len(ends)]
+    return planes
 
 
 def main_plane_first(
