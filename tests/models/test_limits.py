@@ -185,3 +185,10 @@ def test_overflowing_numbers_become_infinite_or_nan_without_an_error(model):
     contact = model.press(hip(ball_radius=1e200, liner_thickness=1e200), force=1.0)
     repr(contact)
     contact.summary()
+
+
+@pytest.mark.parametrize(("clearance", "count"), [(1e-12, 1), (0.0, 0), (0.1, 0)])
+def test_a_half_angle_of_two_indentations_has_a_note(clearance, count):
+    joint = bs.Joint(ball_radius=70.0, clearance=clearance, liner_thickness=10.0, liner=bs.UHMWPE)
+    contact = bs.Bartel().press(joint, force=1000.0)
+    assert sum("two indentations" in note for note in contact.notes) == count

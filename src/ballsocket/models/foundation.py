@@ -9,7 +9,7 @@ from ..contact.law import ForceLaw, finite_or_nan
 from ..core.arrays import Array, cos, where
 from ..core.checks import shown
 from ..core.sources import Source
-from ..core.validity import SMALL_STRAIN, Promise, Range
+from ..core.validity import SMALL_STRAIN, Promise, Range, Remark
 from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
@@ -82,6 +82,10 @@ class RadialFoundation(ClosedForm):
     @property
     def validity(self) -> tuple[Range, ...]:
         return (*self.modulus.validity, *self.kinematics.validity, SMALL_STRAIN)
+
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        return self.kinematics.remarks
 
     @property
     def promise(self) -> Promise | None:

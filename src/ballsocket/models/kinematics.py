@@ -15,10 +15,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, nan, pi
+from typing import Any
 
 from ..core.arrays import Array, asin, clip, integral, safe_divisor, sin, sqrt, where
 from ..core.sources import Source
-from ..core.validity import Range
+from ..core.validity import Range, Remark
 from ..problem.gaps import LinearGapRange
 
 
@@ -198,6 +199,17 @@ def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
     return d
 
 
+def _other_depth_ratio(contact: Any) -> Array:
+    """Compute the other indentation with the same half angle over the smaller of liner and radius; infinite at c = 0.
+
+    The roots e of `circular_indentation_of_versine` have the product R2² - R1².
+    """
+    joint = contact.joint
+    R2, c, L = joint.socket_radius, joint.clearance, joint.liner_thickness
+    other = c * (2 * R2 - c) / safe_divisor(c + contact.indentation) - c
+    return where(c > 0, other / where(L < R2, L, R2), inf)
+
+
 Formula = Callable[..., Array]
 """Formula of R2, c, K and d, or as `Kinematics` states."""
 
@@ -221,6 +233,7 @@ class Kinematics:
     indentation_of_versine: Formula
     displacement: Formula
     validity: tuple[Range, ...] = ()
+    remarks: tuple[Remark, ...] = ()
 
     def __repr__(self) -> str:
         return f"{self.name}_kinematics"
@@ -267,5 +280,13 @@ exact_kinematics = Kinematics(
     versine=circular_versine,
     indentation_of_versine=circular_indentation_of_versine,
     displacement=circular_displacement,
+    remarks=(
+        Remark(
+            quantity=_other_depth_ratio,
+            symbol="other d/L",
+            low=0.1,
+            why="two indentations below a tenth of the liner have this half angle; half_angle= takes the smaller one",
+        ),
+    ),
 )
 """u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5) of the paper: the exact circular shape of the ball."""
