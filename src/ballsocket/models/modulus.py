@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from math import inf, radians
+from math import inf
 from typing import Any
 
 import numpy
 
-from ..core.arrays import Array, clip
+from ..core.arrays import Array, clip, sin
 from ..core.checks import check_numeric, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
@@ -179,6 +179,17 @@ def _thickness_ratio_range(low: float, high: float, why: str) -> Range:
     return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
 
 
+def _relative_contact_width(contact: Any) -> Array:
+    """Compute a (1/L + 1/R2), the contact radius over the smaller of liner thickness and radius, rounded off."""
+    return contact.width_ratio + sin(contact.half_angle)
+
+
+def _relative_width_range(low: float) -> Range:
+    """Make a validity range with a smallest contact radius, measured by liner thickness and socket radius."""
+    why = "a contact narrower than the liner is thick feels a half-space, not springs"
+    return Range(quantity=_relative_contact_width, symbol="a (1/L + 1/R2)", low=low, why=why)
+
+
 def _contact_width_range(low: float, why: str) -> Range:
     """Make a validity range with a smallest ratio of contact width to liner thickness."""
     return Range(quantity="width_ratio", low=low, why=why)
@@ -201,7 +212,7 @@ spherical_vessel = Modulus(
     domain=(_COMPRESSIBLE,),
     validity=(
         _poisson_range(0.0, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
-        _contact_width_range(0.9, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
+        _relative_width_range(1.0),
         RIGID_BALL,
         RIGID_BACKING,
     ),
@@ -331,21 +342,26 @@ def _volume_constraint(contact: Any) -> Array:
     return clip(excess, 0.0, inf) * contact.width_ratio
 
 
+def _thin_volume_constraint(contact: Any) -> Array:
+    """Compute (ν - 0.43) R2/L, a measure of the volume constraint in a narrow contact on a thin liner."""
+    return (contact.joint.liner.poisson - 0.43) * contact.joint.thickness_ratio
+
+
 hess_forsbach = Modulus(
     name="hess-forsbach",
     title="fitted to finite elements, Table 3",
     formula=table_formula,
     sources=(Source("hess2021", "(18), Table 3"),),
     validity=(
-        _poisson_range(0.30, 0.49, "Table 3 ends there; its last column is used beyond"),
-        _thickness_ratio_range(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
-        Range(quantity="joint.clearance_ratio", high=0.018, why="Table 1: clearance up to 0.2 mm"),
+        _poisson_range(0.15, 0.47, "Table 3 has ν 0.30 to 0.49; its first column is measured down to 0.15"),
+        _thickness_ratio_range(0.2, 7.7, "Table 1 ends at R2/L 7.7; thicker liners are measured down to 0.2"),
+        _relative_width_range(1.0),
         Range(
-            quantity="half_angle",
-            low=radians(20.0),
-            why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
+            quantity=_thin_volume_constraint,
+            symbol="(ν - 0.43) R2/L",
+            high=0.07,
+            why="a thin, nearly incompressible liner is stiffer than the springs of Table 3",
         ),
-        _contact_width_range(0.6, "a contact narrower than that feels a half-space, not springs"),
         Range(
             quantity=_volume_constraint,
             symbol="(ν - 0.43) a/L",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import inf, nan, pi, radians
+from math import inf, nan, pi
 from typing import ClassVar
 
 from ..contact import Model
@@ -14,14 +14,12 @@ from ..core import arrays
 from ..core.arrays import Array, broadcast, clip, integral, safe_divisor, sin, where
 from ..core.lazy import cached_property
 from ..core.sources import Source
-from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Status
+from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint
 from ..problem.gaps import LINEAR_GAP, LINEAR_GAP_REMARK
 from .liner_compliance import Liner, liner_coefficients
 from .refined_inverse import MAX_HALF_ANGLE, flatten_like, solve_contact
 from .refined_state import ScaledContact, peak_position, pressure_ratio, scaled_contact, shape_coefficient
-
-_FITTED = "fitted in this range with a rigid ball"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,14 +66,20 @@ class Refined(Model):
         ),
     )
     validity: ClassVar[tuple[Range, ...]] = (
-        Range(quantity="joint.liner.poisson", low=0.3, high=0.46, why=_FITTED),
-        Range(quantity="joint.thickness_ratio", low=1.0, high=6.5, why=_FITTED),
-        Range(quantity="half_angle", low=radians(15.0), high=radians(60.0), why=_FITTED),
+        Range(quantity="joint.liner.poisson", low=0.0, high=0.46, why="the fit is worse for incompressible liners"),
         Range(
-            quantity="joint.modulus_ratio",
-            high=0.0045,
-            why="the ball is assumed rigid, and softer balls exceed the model's error",
+            quantity="width_ratio",
+            low=0.5,
+            high=8.0,
+            why="a narrower contact hardly feels the liner's backing, and a wider one is beyond the fit",
         ),
+        Range(
+            quantity=lambda contact: contact.joint.modulus_ratio * contact.width_ratio,
+            symbol="(E/E_ball) a/L",
+            high=0.01,
+            why="the ball is assumed rigid, and gives way as the contact widens on a thin liner",
+        ),
+        RIGID_BALL,
         RIGID_BACKING,
         LINEAR_GAP,
         SMALL_STRAIN,
