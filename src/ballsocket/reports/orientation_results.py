@@ -107,7 +107,7 @@ def _draw_curve(
     known = orientations.held & numpy.isfinite(bar.value)
     shown, low, high = (factor * numpy.where(known, ends, numpy.nan).ravel() for ends in bar)
     angles, ends = numpy.degrees(getattr(orientations, name)), [shown - low, high - shown]
-    axes.errorbar(angles, shown, yerr=ends, fmt="o-", color=BLUE, markersize=4, capsize=2)
+    axes.errorbar(angles, shown, yerr=ends, fmt="o-", color=BLUE, markersize=4)
     for limit in (limit for limit in limits if limit.name == quantity.name):
         for end in filter(isfinite, (limit.low, limit.high)):
             axes.axhline(factor * end, label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
