@@ -95,7 +95,7 @@ def test_contacts_leave_the_rim_at_the_tilt_that_their_curve_states(load):
 
 def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
     """Tilts at first touch depend on the force over the clearance, in one bore."""
-    model, tilt = bs.Sphere(ring_width=radians(3.0)), radians(75.0)
+    model, tilt = bs.Sphere(ring_width=radians(3.0), gap=bs.LinearGap), radians(75.0)
     narrow = model.press(HIP, force=[500.0, 1000.0], tilt=tilt).edge_margin
     wider = HIP.replace(ball_radius=HIP.ball_radius - HIP.clearance, clearance=2 * HIP.clearance)
     contact = model.press(wider, force=[1000.0, 2000.0], tilt=tilt)
