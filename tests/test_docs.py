@@ -163,6 +163,17 @@ def test_pictures_are_those_of_the_printed_commands(name, folder):
     assert MAX_CURVES == 7  # "seven models" of the caption of press.png
 
 
+def test_map_of_hertz_in_a_pivot_has_a_stiffness_that_is_too_low(monkeypatch):
+    """Goodman and Keer's socket is stiffer than a half-space; at 1 kN d is 12 % off, pmax 3 % and dF/dd 15 %."""
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    from generated import hertz_map
+
+    head, _, preset, *_ = (line.strip("| ").split(" | ") for line in hertz_map().splitlines())
+    assert (head[2], preset[0]) == ("1\u202fkN", "0.004")
+    errors = [float(text) for text in preset[2].split(" / ")]  # not bold: Hertz is not valid there
+    assert errors == pytest.approx([12, -3, -15], abs=1)
+
+
 def test_references_of_the_short_paper_are_in_the_bibliography():
     """The bibliography of the paper has the entries of the package, and exactly the cited ones."""
     paper, entries = (DOCS / "paper" / "paper.md").read_text("utf-8"), (DOCS / "paper" / "paper.bib").read_text("utf-8")

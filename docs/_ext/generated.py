@@ -48,6 +48,7 @@ def write(folder: Path) -> None:
         "comparators": "\n".join(_comparator(make()) for make in PUBLISHED.values()),
         "file_keys": "\n".join(_file_keys(kind) for kind in FILE_TABLES),
         "glossary": _glossary(QUANTITIES.values()),
+        "hertz": hertz_map(),
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
@@ -107,6 +108,26 @@ def _nearness() -> str:
     rows[0] = [rows[0][0], *(f"{one['exact'].max_pressure:.4g}\u202fMPa" for one in answers)]
     widths = [f"{_degrees(one['exact'].half_angle)}°" for one in answers]
     return _table(["", *_JOINTS], [["half angle ε", *widths], *rows])
+
+
+_PIVOT_CLEARANCES, _PIVOT_FORCES = (0.004, 0.01, 0.03, 0.1), (100.0, 1000.0, 10_000.0)
+
+
+def hertz_map() -> str:
+    """Errors of Hertz on the pivot preset against the exact answer, over clearance and force; bold where valid."""
+    heads = ["c/R1", *(f"{force / 1000:g}\u202fkN" for force in _PIVOT_FORCES)]
+    return _table(
+        heads, [[ratio, *(_hertz_errors(ratio, force) for force in _PIVOT_FORCES)] for ratio in _PIVOT_CLEARANCES]
+    )
+
+
+def _hertz_errors(ratio: float, force: float) -> str:
+    pivot = bs.joints["tilting-pad-pivot"]
+    joint = pivot.replace(clearance=ratio * pivot.ball_radius)
+    exact, hertz = (model.press(joint, force=force) for model in (bs.Exact(gap=bs.CircularGap), bs.Hertz()))
+    names = ("indentation", "max_pressure", "stiffness")
+    text = " / ".join(f"{100 * (getattr(hertz, name) / getattr(exact, name) - 1):+.0f}" for name in names)
+    return f"**{text}**" if hertz.valid else text
 
 
 def _degrees(angle: float) -> int:
