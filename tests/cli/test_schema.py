@@ -14,13 +14,8 @@ from .command import run
 
 jsonschema = pytest.importorskip("jsonschema")
 
-KIND_OF_EXAMPLE = {
-    "evidence": "evidence",
-    "hip_in_use": "hip",
-    "hip_of_many": "hip",
-    "wear_test": "hip",
-    "wear_stations": "hip",
-}
+_HIPS = ("hip_in_use", "hip_of_many", "wear_test", "wear_stations")
+KIND_OF_EXAMPLE = {"evidence": "evidence", **dict.fromkeys(_HIPS, "hip")}
 KIND_OF_EXAMPLE |= {"measured_areas": "identify", "measured_joint": "identify"}
 """Kinds of the example files; all others are joint files."""
 
