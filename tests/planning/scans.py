@@ -10,6 +10,7 @@ import numpy as np
 
 from ..places import EXAMPLES
 
+CENTRE = np.array([7.0, -3.0, 40.0])
 NAMES = ("right ASIS", "left ASIS", "pubic symphysis")
 
 
@@ -153,11 +154,13 @@ def worn_bore(count=4000, head=15.9, shift=0.4, tilt=20.0, cover=90.0, noise=0.0
     rays = np.column_stack([ring * np.cos(azimuth), ring * np.sin(azimuth), -height])
     along = shift * (rays @ [np.sin(np.radians(tilt)), 0.0, -np.cos(np.radians(tilt))])
     worn = along + np.sqrt(head**2 - shift**2 + along**2)
-    return rays * np.maximum(radius, worn)[:, None] + generator.normal(0.0, noise, (count, 3)) + [7.0, -3.0, 40.0]
+    return rays * np.maximum(radius, worn)[:, None] + generator.normal(0.0, noise, (count, 3)) + CENTRE
 
 
 def removed_volume(head=15.9, shift=0.4, radius=16.0):
     """Volume in mm³ of a ball outside a sphere: the ball without the lens of both (closed form)."""
+    if head + shift <= radius:
+        return 0.0
     lens = np.pi * (radius + head - shift) ** 2 / (12 * shift)
     lens *= shift**2 + 2 * shift * (radius + head) - 3 * (radius - head) ** 2
     return 4 / 3 * np.pi * head**3 - lens

@@ -16,37 +16,27 @@ SHAPES = {
     "most of the bore worn": {"head": 15.9, "shift": 0.4, "tilt": 10.0},
     "rim of the points unworn": {"head": 15.7, "shift": 0.5, "tilt": 20.0, "cover": 75.0},
     "deep": {"head": 15.9, "shift": 1.5, "tilt": 5.0, "cover": 95.0},
-    "wear near the noise": {"head": 15.95, "shift": 0.1, "tilt": 5.0},
+    "near the noise": {"head": 15.95, "shift": 0.1, "tilt": 5.0},
+    "unworn": {"head": 15.9, "shift": 0.1},
 }
-SCANS = [
-    (name, noise, count) for name in SHAPES for noise, count in ((0.0, 1500), (0.005, 1500), (0.02, 1500), (0.02, 6000))
-]
+SCANS = [(name, noise, count) for name in SHAPES for noise, count in ((0.0, 1500), (0.02, 4000), (0.005, 1500))]
 
 
-@pytest.mark.parametrize(("name", "noise", "count"), some(SCANS, 7))
+@pytest.mark.parametrize(("name", "noise", "count"), some(SCANS, 6))
 def test_the_errors_contain_the_removed_volume_and_the_penetration(name, noise, count):
     shape = SHAPES[name]
     wear = measure_wear(PointCloud(scans.worn_bore(count=count, noise=noise, **shape)))
-    volume = scans.removed_volume(shape["head"], shape["shift"])
+    volume, depth = scans.removed_volume(shape["head"], shape["shift"]), shape["shift"] + shape["head"] - 16.0
     # two standard errors: the truth is outside in 5 of 100 scans, outside twice as much in none
     assert abs(wear.volume - volume) < 2.0 * wear.volume_error
-    assert abs(wear.depth - (shape["shift"] + shape["head"] - 16.0)) < 2.0 * wear.depth_error
+    assert abs(wear.depth - depth) < 2.0 * wear.depth_error
     assert abs(wear.radius - 16.0) < 2.0 * wear.radius_error
-    if noise <= 0.005 and name in ("small part worn", "most of the bore worn"):
-        assert wear.volume_error < 0.15 * volume + 5.0
-
-
-def test_an_unworn_bore_has_no_wear_above_its_error():
-    wear = measure_wear(PointCloud(scans.worn_bore(shift=0.05, noise=0.005)))
-    assert abs(wear.volume) < wear.volume_error < 3.0
-    assert any("no wear is found above the error" in note for note in wear.notes)
+    assert name == "near the noise" or noise == 0.02 or wear.volume_error < 0.15 * volume + 5.0
 
 
 def test_a_gap_in_the_points_is_named():
     points = scans.worn_bore(head=15.8, shift=0.25, tilt=0.0)
-    towards = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0)
-    offsets = points - [7.0, -3.0, 40.0]
-    gap = offsets @ towards > 16.0 * np.cos(np.radians(20.0))
+    gap = (points - scans.CENTRE) @ [1.0, 0.0, -1.0] > 16.0 * np.sqrt(2.0) * np.cos(np.radians(20.0))
     wear = measure_wear(PointCloud(points[~gap]))
     # the gap takes 1 - cos(20 deg) of the hemisphere, and moves the middle of the points
     assert wear.cover * (1.0 - np.cos(wear.reach)) == pytest.approx(np.cos(np.radians(20.0)), abs=0.02)
@@ -55,12 +45,13 @@ def test_a_gap_in_the_points_is_named():
 
 POINTS = scans.worn_bore(head=15.8, shift=0.25, count=1000)
 ROWS = [[f"{number:.4f}" for number in point] for point in POINTS]
+PLAIN = "\n".join(" ".join(row) for row in ROWS)
 TEXTS = {
-    "a.xyz": "\n".join(" ".join(row) for row in ROWS),
-    "a.pts": f"{len(ROWS)}\n" + "\n".join(" ".join([*row, "0.5"]) for row in ROWS),
+    "a.xyz": PLAIN,
+    "a.pts": f"{len(ROWS)}\n" + PLAIN.replace("\n", " 0.5\n"),
     "a.csv": "id,z [mm],y [mm],x [mm]\n" + "\n".join(",".join(["1", *row[::-1]]) for row in ROWS),
-    "a.txt": "X;Y;Z\n" + "\n".join(";".join(row) for row in ROWS).replace(".", ","),
-    "a.asc": "// scan\n" + "\n".join("\t".join(row) for row in ROWS).replace(".", ","),
+    "a.txt": "X;Y;Z\n" + PLAIN.replace(" ", ";").replace(".", ","),
+    "a.asc": "// scan\n" + PLAIN.replace(" ", "\t").replace(".", ","),
 }
 
 
@@ -76,7 +67,7 @@ def text(points, head=""):
     return head + "\n".join(" ".join(f"{number:.6f}" for number in point) for point in points)
 
 
-HEAD = POINTS - [7.0, -3.0, 40.0]
+HEAD = POINTS - scans.CENTRE
 HEAD = HEAD * (32.0 / np.linalg.norm(HEAD, axis=1) - 1.0)[:, None]
 REFUSED = {
     "two columns": (text(POINTS[:, :2]), "has 2 columns in .*: a point has three, x y z"),
@@ -101,8 +92,6 @@ def test_points_of_no_bore_are_refused(tmp_path, content, message):
 
 
 def test_the_command_prints_the_wear_with_its_error(tmp_path):
-    (tmp_path / "a.xyz").write_text(TEXTS["a.xyz"], encoding="utf-8")
-    done = run("planning", "--worn", "a.xyz", "--json", folder=tmp_path)
-    worn = json.loads(done.stdout)["worn"]
+    (tmp_path / "a.xyz").write_text(PLAIN, encoding="utf-8")
+    worn = json.loads(run("planning", "--worn", "a.xyz", "--json", folder=tmp_path).stdout)["worn"]
     assert abs(worn["volume"] - scans.removed_volume(15.8, 0.25)) < worn["volume_error"]
-    assert worn["points"] == len(POINTS)
