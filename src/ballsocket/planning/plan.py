@@ -156,7 +156,7 @@ class HipPlan:
         elif self.liner is not None:
             radius = self.liner.radius - clearance
         else:
-            raise ValueError("a joint needs a radius: read the STL file of a liner or a head")
+            raise ValueError("a joint needs a radius: read the mesh of a liner or a head")
         wall = None if self.liner is None else self.liner.wall_thickness
         thickness = wall if liner_thickness is None else liner_thickness
         if thickness is None:

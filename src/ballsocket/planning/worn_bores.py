@@ -445,7 +445,7 @@ def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: 
     if not low <= sphere.radius <= high or scatter > _MAX_FORM * sphere.radius:
         raise ValueError(
             f"{name} is not a bore: its points lie {scatter:.2g} mm (standard deviation) off the best sphere, of "
-            f"radius {sphere.radius:.4g} mm; a bore has a radius of {low:g} to {high:g} mm"
+            f"radius {sphere.radius:.4g} mm; a bore has {low:g} to {high:g} mm, and its file nothing else"
         )
     unworn = float(numpy.mean(sphere.mask))
     if unworn < _MIN_UNWORN:
