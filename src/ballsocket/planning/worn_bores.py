@@ -55,6 +55,9 @@ _MIN_REACH = radians(25.0)
 _MIN_UNWORN = 0.1
 """Least share of the covered surface that is not worn."""
 
+_MIN_FLATNESS = 0.02
+"""Smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°."""
+
 _MAX_FORM = 0.005
 """Largest scatter of the unworn part over its radius."""
 
@@ -198,6 +201,9 @@ def measure_wear(cloud: PointCloud) -> WornBore:
     """
     points, name = cloud.points, cloud.name
     require(f"points of {name}", len(points), len(points) >= _MIN_POINTS, f"a bore has at least {_MIN_POINTS} points")
+    extents = numpy.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if extents[2] < _MIN_FLATNESS * extents[0]:
+        raise ValueError(f"{name} is not a bore: its points lie in a plane or on a line")
     radius = fit_sphere(points, numpy.ones(len(points)))[1]
     if not RADII[0] / 2.0 < radius < 2.0 * RADII[1]:
         raise ValueError(
