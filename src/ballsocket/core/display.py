@@ -33,8 +33,9 @@ def full_repr(value: Any) -> str:
     return repr(value)
 
 
-_LATIN = {"ß": "ss", "ä": "ae", "ö": "oe", "ü": "ue", "Ö": "Oe", "Ü": "Ue", "Ä": "Ae", "ø": "o", "ł": "l", "æ": "ae"}
-_LATIN |= {"ν": "nu", "°": " deg", "±": "+-", "–": "-", "—": "-", "−": "-", "×": "x", "·": ".", "’": "'", "≤": "<="}
+_LATIN = {umlaut: f"{vowel}e" for umlaut, vowel in zip("äöüÄÖÜ", "aouAOU", strict=True)}
+_LATIN |= {"ß": "ss", "ø": "o", "ł": "l", "æ": "ae", "ν": "nu", "°": " deg", "±": "+-", "≤": "<="}
+_LATIN |= {"–": "-", "—": "-", "−": "-", "×": "x", "·": ".", "’": "'"}
 """Letters and signs that have no decomposition into ASCII, and German umlauts, in ASCII."""
 
 
