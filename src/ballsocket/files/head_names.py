@@ -29,7 +29,7 @@ _OTHER_NAMES = {
     "clearance": "radial_clearance",
     "diametral_clearance": "diameter_clearance durchmesserspiel",
     "cycles": "zyklen lastwechsel",
-    "volume": "wear_volume verschleissvolumen",
+    "volume": "volumen wear_volume verschleissvolumen",
     "mass": "masse mass_loss masseverlust",
     "station": "specimen probe pruefling",
 }
