@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue, reference
+from ..catalogue import catalogue, reference, with_gap
 from ..contact import Contact, Model
 from ..core.arrays import Numbers
 from ..core.validity import OutsideDomainError
@@ -142,7 +142,7 @@ def accuracies(
     within = paper_joints() if joints is None else joints
     family = _concatenate(within, edge_joints() if edges is None else edges)
     inner = slice(0, len(within.ball_radius))
-    exact = reference.press(family, force=FORCES[:, None])
+    exact = with_gap(reference, "linear").press(family, force=FORCES[:, None])
     rows = []
     for name, model in chosen.items():
         if name == reference.name:
