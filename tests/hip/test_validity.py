@@ -49,7 +49,7 @@ def test_springs_outside_their_range_are_not_valid():
     history, press = use_of(WIDE, iso_14242_1(24)).after(1e5, [5e4]), bs.HessForsbach().press(WIDE, force=3000.0)
     assert (press.valid, history.valid) == (False, False)
     starts = [sum(sentence.startswith(note) for sentence in history.notes) for note in press.notes]
-    assert starts == [1, 1]
+    assert starts == [1] * len(press.notes)
 
 
 def test_every_activity_is_checked():

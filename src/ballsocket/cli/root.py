@@ -19,7 +19,6 @@ from typing import Annotated, Any, ClassVar, TextIO
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from ..core.checks import shown
 from ..version import __version__
 
 UsageError: Any = typer.BadParameter.__base__  # typer contains a copy of click and does not export this class
@@ -254,6 +253,8 @@ def _usage_message(error: Any) -> str:
     """Return the message of a wrong command line; for an unknown option with no similar one, add where to look."""
     checks: list[Any] = getattr(error.__cause__ or error.__context__, "errors", list)()  # of typer's check of a type
     if checks:
+        from ..core.checks import shown  # NumPy, which it imports, is not needed for --help
+
         return f"{error.param.opts[0]} must be {_allowed_text(checks[0])}, got {shown(checks[0]['input'])}"
     message: str = error.format_message()
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
