@@ -20,7 +20,7 @@ from ballsocket.app import session
 from ballsocket.app.session import Page
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
-from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, read_link
+from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, link_of_file, read_link
 from ballsocket.app.widgets.cup_fields import cup_edited, cup_fields
 from ballsocket.app.widgets.fields import in_words_of
 from ballsocket.app.widgets.joint_fields import joint_inputs
@@ -119,6 +119,12 @@ def test_a_link_leads_back(screen):
 def test_presets_make_short_links():
     assert link_of(START) == "preset=hip-28&load.force=3000.0&theme=light"
     assert read_link(parse_qs(link_of(START))) == START
+
+
+def test_the_link_to_a_file_opens_its_joint():
+    file = read_joint(EXAMPLES / "metal_backed_hip.toml")
+    opened = read_link(parse_qs(link_of_file(file).removeprefix("?"))).file
+    assert (opened.joint, opened.joint.given_lengths, opened.load) == (file.joint, file.joint.given_lengths, file.load)
     assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
     bare = replace(START, shown=())  # without curves
     assert read_link(parse_qs(bare.link, keep_blank_values=True)) == bare

@@ -9,6 +9,7 @@ from ..places import EXAMPLES
 from .command import run
 
 ABBREVIATIONS = {
+    "{wear_test}": shlex.quote(str(EXAMPLES / "wear_test.toml")),
     "{hip}": shlex.quote(str(EXAMPLES / "hip.toml")),
     "{hip-36}": "hip-36 --force 3kN",
     "{sizes}": "--ball-radius 16 --clearance 0.1 --liner-thickness 6",
@@ -57,6 +58,9 @@ press {hip} --units inch => 'inch' is not one of 'si', 'imperial'
 press 'C:\\Users\\me\\hip.toml' => ballsocket: 'C:\\Users\\me\\hip.toml'
 pres => No such command 'pres'.
 study => Missing argument
+optimise {hip} => --vary is missing: --vary 'clearance=50..200 um', for example
+study {hip} => this is a joint file: ballsocket press
+press {wear_test} --force 1 => this is a wear test file: ballsocket identify wear_test.toml
 press {hip} --model fem --meshes 0 => --meshes
 --foo => No such option: --foo; ballsocket -h lists them
 press --qqq => No such option: --qqq; ballsocket press -h lists them

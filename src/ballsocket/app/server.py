@@ -236,11 +236,11 @@ def explorer(names: Iterable[str]) -> Application:
 class ExplorerServer:
     """HTTP server of an application, bound to its port."""
 
-    def __init__(self, application: Application, sockets: list[socket.socket], show: bool) -> None:
+    def __init__(self, application: Application, sockets: list[socket.socket], show: bool, link: str) -> None:
         self.io_loop: Any = IOLoop.current()
         self.port = int(sockets[0].getsockname()[1])
         self.application = application
-        self._sockets, self._show = sockets, show
+        self._sockets, self._show, self._link = sockets, show, link
         self._server = HTTPServer(
             application, max_buffer_size=_MAX_MESSAGE, max_body_size=_MAX_MESSAGE, idle_connection_timeout=60.0
         )
@@ -254,7 +254,7 @@ class ExplorerServer:
         """Accept connections while the loop runs."""
         self._server.add_sockets(self._sockets)
         if self._show:
-            webbrowser.open(f"http://{LOOPBACK}:{self.port}/")
+            webbrowser.open(f"http://{LOOPBACK}:{self.port}/{self._link}")
 
     def stop(self) -> None:
         """Close the port and the pages."""
@@ -267,7 +267,7 @@ LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
 
 
 def server(
-    port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False
+    port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False, link: str = ""
 ) -> ExplorerServer:
     """Set up the server without starting it.
 
@@ -281,6 +281,8 @@ def server(
         Hosts under which browsers may reach it, "hips.example.org:5006", beside this machine's own names.
     show : bool
         Open a browser.
+    link : str
+        Query of the link that it opens, "?...".
 
     Raises
     ------
@@ -302,7 +304,7 @@ def server(
     pressed(START.file, (START.answered_by, *START.shown))  # load at the start what the first press would load
     port = int(sockets[0].getsockname()[1])
     own_hosts = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
-    return ExplorerServer(explorer((*own_hosts, *origins)), sockets, show)
+    return ExplorerServer(explorer((*own_hosts, *origins)), sockets, show, link)
 
 
 def _allow_many_connections() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 import signal
 import sys
 import threading
@@ -257,6 +258,9 @@ def _usage_message(error: Any) -> str:
 
         return f"{error.param.opts[0]} must be {_allowed_text(checks[0])}, got {shown(checks[0]['input'])}"
     message: str = error.format_message()
+    example = re.search(r"'([^']+)'", getattr(getattr(error, "param", None), "help", None) or "")
+    if message.startswith("Missing option") and example:
+        return f"{error.param.opts[0]} is missing: {error.param.opts[0]} '{example[1]}', for example"
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"

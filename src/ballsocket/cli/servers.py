@@ -20,6 +20,7 @@ LIMITED_PROGRAM = ("-P", "-c", "from ballsocket.cli.servers import run_limited; 
 
 @app.command(name="app")
 def explorer(
+    file: Annotated[Path | None, typer.Argument(help="Joint file (TOML) to open. Default: a preset.")] = None,
     port: Annotated[int, typer.Option(help="Port of the page; 0 selects a free one.")] = 5006,
     address: Annotated[
         str, typer.Option(help="Address of the server; any other than 127.0.0.1 opens it to other machines.")
@@ -35,10 +36,13 @@ def explorer(
     """Open the explorer, an interactive page, in a browser."""
     needs("app", "tornado", "tomli_w", "skfem", "xarray")
     from ..app.server import EVERYWHERE, LOOPBACK, server  # slow to import
+    from ..app.state.screen import link_of_file
+    from ..files.joint_file import read_joint
 
-    page = server(port, address, origin or (), show=browser)
+    link = "" if file is None else link_of_file(read_joint(file))
+    page = server(port, address, origin or (), show=browser, link=link)
     name = LOOPBACK if address == EVERYWHERE else address
-    typer.echo(f"http://{name}:{page.port}/ (Ctrl-C ends it)")
+    typer.echo(f"http://{name}:{page.port}/{link} (Ctrl-C ends it)")
     if address not in (LOOPBACK, "localhost"):
         typer.echo("ballsocket: other machines can open this page; it has no passwords", err=True)
     if address == EVERYWHERE and not origin:

@@ -140,16 +140,16 @@ def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, roo
     for key in location.value:
         if key not in keys:
             where = f"in {table if '[' in table else f'[{table}]'}" if table else "at the top"
-            return f"{shown(key)} {where} is not known{_hint(key, keys, root)}"
+            return f"{shown(key)} {where} is not known{_hint(key, keys, root, table)}"
     missing = next(field for name, field in keys.items() if field.required and name not in location.value)
     label = f"{table}.{missing.encode_name}" if table else missing.encode_name
     parts = (meaning_of(missing.encode_name, missing.type), ", ".join(choices_in(missing.type)))
     return f"{label} is missing: {'; allowed: '.join(filter(None, parts))}"
 
 
-def _hint(key: str, keys: Mapping[str, Any], root: _Location) -> str:
-    """Format a hint for an unknown key: longer keys, other tables that have it, or a similar key."""
-    longer = [name for name in keys if name.endswith(f"_{key}")]
+def _hint(key: str, keys: Mapping[str, Any], root: _Location, table: str) -> str:
+    """Format a hint for an unknown key of a table ("" at the top): longer keys, other tables, or a similar key."""
+    longer = [name for name in keys if name.endswith(f"_{key}") or (table and name.startswith(f"{key}_"))]
     if len(longer) > 1:
         return f"; did you mean {' or '.join(map(repr, longer[:_MAX_HINTS]))}?"
     heads = dict(tables_of(root.type))
@@ -157,6 +157,9 @@ def _hint(key: str, keys: Mapping[str, Any], root: _Location) -> str:
         return f"; it belongs in {' or '.join(tables[:_MAX_HINTS])}"
     if tables := [head for head in heads if head.strip("[]") == key]:
         return f"; it is a separate table, {tables[0]}"
+    struct = struct_in(root.type)
+    if table and struct is not None and key in {field.encode_name for field in struct.fields}:
+        return f"; it belongs at the top of the file, above the first table: {key} = ..."
     return nearest(key, keys)
 
 

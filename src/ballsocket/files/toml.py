@@ -61,7 +61,28 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
     try:
         return make(content)
     except ValueError as error:
-        raise ValueError(f"{title}: {error}") from error
+        raise ValueError(f"{title}: {error}{_other_kind(content, kind, title)}") from error
+
+
+_KINDS = (
+    (("axes", "samples"), "study", "study"),
+    (("question", "context_of_use"), "question", "evidence"),
+    (("free", "machine"), "measurement", "identify"),
+    (("cycle", "activity"), "hip", "hip"),
+)
+"""Tables by which a file is known, its kind, and the command that reads it."""
+
+
+def _other_kind(content: Mapping[str, Any], kind: str, title: str) -> str:
+    """Name the command for a file of another kind; empty if it looks like the expected kind."""
+    for tables, found, command in _KINDS:
+        if any(table in content for table in tables):
+            if found == "hip" and "data" in content:
+                found, command = "wear test", "identify"
+            related = {kind, found} == {"hip", "wear test"} and "data" not in content
+            return "" if found == kind or related else f"; this is a {found} file: ballsocket {command} {title}"
+    is_joint = kind != "joint" and "joint" in content and "data" not in content
+    return f"; this is a joint file: ballsocket press {title}" if is_joint else ""
 
 
 def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:

@@ -160,6 +160,11 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 """Screen of a page without a link."""
 
 
+def link_of_file(file: JointFile) -> str:
+    """Return the query of the link to the start page with the joint of a file, "?..."."""
+    return f"?{replace(START, file=file if file.load else replace(file, load=START.file.load)).link}"
+
+
 def link_of(screen: Screen) -> str:
     """Return the query of a link: the differences from the start, and the joint."""
     changed = [name for name in (*_KNOWN, "across", "up") if getattr(screen, name) != getattr(START, name)]
