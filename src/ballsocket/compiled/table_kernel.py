@@ -13,9 +13,10 @@ import numpy
 from numba import literal_unroll
 from numba.extending import overload
 
+from ..contact import coordinates
 from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
-from ..elasticity.exact.tabulated import chebyshev, curves, inverse
+from ..elasticity.exact.tabulated import curves, inverse
 from ..elasticity.exact.tabulated.curves import JointCurves, Scale, Widest
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
@@ -201,7 +202,7 @@ _VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
 """Elementary functions and formulas of the tables, by name, that compile to vector instructions."""
 
 for _tabulated_formula in (
-    chebyshev.angle_root,
+    coordinates.angle_root,
     curves.log_angle_derivative,
     curves.opening,
     curves.tabulated_state,

@@ -16,7 +16,6 @@ from ..core.arrays import Array
 from ..core.deprecation import renamed_arguments
 from ..core.lazy import cached_property
 from ..problem import Joint
-from . import strength
 from .contact import Contact
 from .model import Model
 
@@ -248,12 +247,6 @@ class SolvedContact(Contact):
     def error(self) -> dict[str, Array]:
         """Estimated relative errors, one array for each quantity name."""
         return {name: self._match_load(error) for name, error in self.laws.error.items()}
-
-    @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound in MPa of the largest von Mises stress in the liner, from the fitted ratio."""
-        low, high = strength.von_mises_bounds(self, super()._compute_von_mises())
-        return self._match_load(low), self._match_load(high)
 
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa by solving for the stresses."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from math import degrees, isfinite, nan
 from typing import Any
 
@@ -17,8 +16,8 @@ import numpy
 from ..contact import Contact, Model, strength
 from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
-from ..core.validity import Status
-from ..elasticity.exact.model import Exact
+from ..core.validity import RIGID_BACKING, Status
+from ..elasticity.exact.exact_curve import exact_stress_ratio
 from ..elasticity.off_axis.grid import Grid
 from ..problem import Joint
 
@@ -48,40 +47,22 @@ class GridLaws:
 class GridContact(Contact):
     """Contact from a wear simulation, as a `Contact` that checks validity and strength.
 
-    Its von Mises stress is a fitted ratio times the largest pressure, with an error of typically 6 %. If the yield
-    stress is within that error, the ratio is computed from the exact solution at the same half angle.
+    Its von Mises stress is that of the axial contact of the same half angle and largest pressure, with the error of the
+    tabulated ratio added: an upper estimate.
     """
 
     def _compute_von_mises(self) -> Array:
-        """Compute the largest von Mises stress in the liner in MPa; near yield by the exact solution."""
-        estimate = super()._compute_von_mises()
-        if not isinstance(self.max_pressure, float) or not self._may_yield(estimate):
-            return estimate
-        ratio = exact_stress_ratio(self.joint, self.half_angle)
-        return ratio * self.max_pressure if isfinite(ratio) else estimate
+        """Compute the largest von Mises stress in the liner in MPa; by the exact solution on an elastic backing."""
+        joint = self.joint
+        if joint.backing_ratio <= RIGID_BACKING.high:
+            return (1 + strength.TABLE_ERROR) * super()._compute_von_mises()
+        mean_joint = joint.replace(clearance=float(numpy.mean(joint.clearance)))
+        return (1 + strength.TABLE_ERROR) * exact_stress_ratio(mean_joint, self.half_angle) * self.max_pressure
 
-    def _may_yield(self, estimate: float) -> bool:
-        """Check if a limit of yielding lies within the error of an estimated von Mises stress in MPa."""
-        yield_stress = self.joint.liner.yield_stress
-        low, high = strength.von_mises_bounds(self, estimate)
-        return yield_stress is not None and any(low <= limit * yield_stress <= high for limit in _NOTED_UTILISATIONS)
-
-
-_NOTED_UTILISATIONS = 1.0, strength.MAX_ELASTIC_UTILISATION
-"""Utilisations at which a note appears."""
-
-
-@lru_cache(maxsize=256)
-def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
-    """Compute the ratio of the liner's largest von Mises stress to the largest pressure, by `Exact`.
-
-    It is NaN without an exact solution.
-    """
-    try:
-        contact = Exact().press(joint, half_angle=half_angle)
-        return float(contact.von_mises / contact.max_pressure)
-    except ValueError:
-        return nan
+    @property
+    def von_mises_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bound of `von_mises` in MPa."""
+        return strength.off_axis_bounds(self.von_mises)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ import pytest
 from numpy.polynomial.chebyshev import chebval, chebvander
 
 import ballsocket as bs
+from ballsocket.contact.coordinates import LIMIT
 from ballsocket.core import arrays
 from ballsocket.core.chebyshev import chebyshev_points, traced_series
 from ballsocket.elasticity.exact.tabulated import build as build_tables
@@ -230,7 +231,7 @@ def test_results_do_not_depend_on_the_number_of_joints():
 def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     """The half angle of a load that follows from a half angle, from a millionth of the largest to all of it."""
     _, *numbers = build_tables.random_contacts(either(2000, 6000), seed=4, elastic=elastic)
-    angle = chebyshev.LIMIT * np.geomspace(1e-6, 1 - 1e-9, numbers[0].size)
+    angle = LIMIT * np.geomspace(1e-6, 1 - 1e-9, numbers[0].size)
     joint = build_tables.make_joints(*numbers)
     known = bs.Tabulated().press(joint, half_angle=angle)
     reached = known.indentation < 20 * joint.clearance  # beyond, the indentation is ill-conditioned in the half angle

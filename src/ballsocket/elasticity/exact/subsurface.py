@@ -8,6 +8,7 @@ from math import inf, isqrt, log1p, radians
 
 import numpy
 
+from ...contact.coordinates import angle_root, half_angle_at
 from ...contact.strength import ball_stress_ratio
 from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
@@ -16,7 +17,6 @@ from .free_face import free_face_of
 from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisphere
 from .kernel import Intervals
 from .load_curve import LoadCurve
-from .tabulated.chebyshev import angle_root, half_angle_at
 
 MIN_HALF_ANGLE = radians(1.0)
 """Half angle in rad of the narrowest contact whose interior is computed."""

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
-from ...contact.strength import von_mises_ratio
+from ...contact.strength import OFF_AXIS_ERROR, TABLE_ERROR, off_axis_bounds, von_mises_ratio
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.records import cached_array
-from ...core.validity import Status
+from ...core.validity import RIGID_BACKING, Status
+from ..exact.exact_curve import exact_stress_ratio
 from .directions import TILT_TOLERANCE, check_direction, polar_angle
 
 if TYPE_CHECKING:
@@ -38,10 +39,21 @@ class OffAxisContact(SolvedContact):
     _inside: ClassVar[str] = "pressure maps"
 
     def _joint_von_mises(self, indices: Numbers, contacts: JointContacts) -> Numbers:
-        """Estimate the largest von Mises stress in the liner in MPa from half angle and largest pressure."""
+        """Estimate the largest von Mises stress in the liner in MPa from the axial contact of the same half angle.
+
+        The estimate is an upper one: it has the error of the axial ratio added.
+        """
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
-        estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
-        return numpy.asarray(estimate * state.max_pressure)
+        ratio = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
+        if not joint.backing_ratio <= RIGID_BACKING.high:
+            ratio = exact_stress_ratio(joint, state.half_angle)
+        return numpy.asarray((1 + TABLE_ERROR) * ratio * state.max_pressure)
+
+    @property
+    def von_mises_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bound of `von_mises` in MPa."""
+        low, high = off_axis_bounds(self.von_mises)
+        return self._match_load(low), self._match_load(high)
 
     @cached_array
     def force_vector(self) -> Array:
@@ -141,6 +153,7 @@ class OffAxisContact(SolvedContact):
         cut = _CUT_ERROR * relative * (self.half_angle + self.tilt) + TILT_TOLERANCE
         return {
             **errors,
+            "von_mises": self._match_load(OFF_AXIS_ERROR + 0.0 * self.half_angle),
             "edge_margin": self._match_load(arrays.where(self.edge_loaded, cut, relative * self.half_angle)),
         }
 

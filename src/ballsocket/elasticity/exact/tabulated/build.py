@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy
 
+from ....contact.coordinates import half_angle_at
 from ....core.arrays import Numbers
 from ....core.chebyshev import chebyshev_coefficients, chebyshev_points
 from ....core.storage.atomic_files import write_atomically
@@ -168,7 +169,7 @@ def _sample_rigid_ball(
     liner: _LinerParameters, *, function: Callable[[AbelState], Numbers], angles: int, points: int
 ) -> Numbers:
     """Sample a function of contacts with a rigid ball, at Chebyshev points of the half angle."""
-    return function(_solve_state(liner, chebyshev.half_angle_at(chebyshev_points(angles), liner[1]), points))
+    return function(_solve_state(liner, half_angle_at(chebyshev_points(angles), liner[1]), points))
 
 
 def _sample_ball_change(
@@ -181,7 +182,7 @@ def _sample_ball_change(
     balls: Sequence[float],
 ) -> Numbers:
     """Sample the change of a function by balls of several shares and ν, divided by the coordinate of the share."""
-    angle = chebyshev.half_angle_at(chebyshev_points(angles), liner[1])
+    angle = half_angle_at(chebyshev_points(angles), liner[1])
     rigid = function(_solve_state(liner, angle, points))
 
     def function_change(coordinate: float, ball_poisson: float) -> Numbers:

@@ -6,20 +6,18 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from math import log, prod, radians
+from math import log, prod
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy
 
+from ....contact.coordinates import RATIO_SHIFT, angle_root
 from ....core import arrays
-from ....core.arrays import Array, exp, log1p, sqrt
+from ....core.arrays import Array, exp, sqrt
 from ....core.arrays import log as ln
 from ....core.chebyshev import chebyshev_polynomials, contract_factors, convert_like
 from ....core.input_files import open_input
-
-LIMIT = radians(85.0)
-"""Largest half angle of the tables in rad."""
 
 POISSON = (-0.5, 0.4993)
 """Range of ν in the tables, slightly wider than the model's domain."""
@@ -29,9 +27,6 @@ THICKNESS_RATIO = (0.195, 20.5)
 
 MAX_BALL_SHARE = 0.0275
 """Ratio β/(1 + β) of the softest ball in the tables: E/E_ball slightly above 0.02."""
-
-ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
-"""Scales of the coordinates of ε and R2/L; tables are valid for the scales they were built with."""
 
 WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
 """Name of the table for an elastic ball, by that for a rigid one."""
@@ -61,21 +56,6 @@ def angle_coordinate(angle: Array, ratio: Array) -> Array:
     A square root removes the singularity ε ln ε of a point contact, a logarithm scales with the thickness L.
     """
     return 2 * angle_root(angle, ratio) - 1
-
-
-def angle_root(angle: Array, ratio: Array) -> Array:
-    """Compute the half angle's coordinate from 0 to 1, the square root of a scaled logarithm.
-
-    It is accurate for tiny angles too.
-    """
-    scale = ANGLE_SCALE * (1 + ratio)
-    return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
-
-
-def half_angle_at(coordinate: Array, ratio: Array) -> Array:
-    """Compute the half angle ε in rad from its table coordinate."""
-    scale, share = ANGLE_SCALE * (1 + ratio), (1 + coordinate) / 2
-    return (exp(share * share * ln(1 + scale * LIMIT)) - 1) / scale
 
 
 def thickness_ratio_at(coordinate: Array) -> Array:

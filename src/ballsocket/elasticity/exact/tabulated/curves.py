@@ -17,16 +17,14 @@ from typing import NamedTuple
 
 import numpy
 
+from ....contact.coordinates import ANGLE_SCALE, LIMIT, angle_root
 from ....core import arrays
 from ....core.arrays import Array, exp, log1p, short_sine, sqrt
 from ....core.chebyshev import Pair, chebyshev_polynomials, convert_like, derivative_matrix, sum_series, traced_series
 from ....core.lazy import cached_property
 from ....problem import Joint
 from .chebyshev import (
-    ANGLE_SCALE,
-    LIMIT,
     WITH_BALL,
-    angle_root,
     ball_coordinate,
     ball_shrinkage,
     chebyshev_values,

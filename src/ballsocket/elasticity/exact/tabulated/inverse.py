@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy
 
+from ....contact.coordinates import LIMIT, angle_root, half_angle_at
 from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
 from ....core.arrays import Array, Numbers, exp, log, where
@@ -25,13 +26,7 @@ from ....core.chebyshev import (
     multiply_factors,
     series_values,
 )
-from .chebyshev import (
-    LIMIT,
-    angle_root,
-    half_angle_at,
-    load_tables,
-    thickness_ratio_at,
-)
+from .chebyshev import load_tables, thickness_ratio_at
 from .curves import (
     ONE,
     TWO,

@@ -14,6 +14,7 @@ import numpy
 from ....contact import Model
 from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
+from ....contact.coordinates import LIMIT
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....core.chebyshev import chebyshev_polynomials, convert_like, sum_series
@@ -22,13 +23,7 @@ from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Status
 from ....problem import Joint
 from ....problem.gaps import LINEAR_GAP, LINEAR_GAP_REMARK
-from .chebyshev import (
-    LIMIT,
-    POISSON,
-    THICKNESS_RATIO,
-    angle_coordinate,
-    chebyshev_values,
-)
+from .chebyshev import POISSON, THICKNESS_RATIO, angle_coordinate, chebyshev_values
 from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_curves
 from .inverse import solve_state
 
