@@ -155,6 +155,17 @@ class Contact(Outcome):
         return self._mask_failed(lambda: low), self._mask_failed(lambda: high)
 
     @property
+    def quick_von_mises(self) -> Array:
+        """Largest von Mises stress in the liner in MPa without a solution for stresses: the mean of its bounds."""
+        low, high = self.von_mises_bounds
+        return (low + high) / 2
+
+    @property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative errors as of `Outcome`, and that of the von Mises stress at the largest pressure."""
+        return {**super().error, "von_mises": self._mask_failed(lambda: strength.von_mises_error(self))}
+
+    @property
     def utilisation_bounds(self) -> tuple[Array, Array]:
         """Lower and upper bound of the ratio of largest von Mises stress to yield stress.
 

@@ -176,7 +176,7 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     """Yield a mask and a note for each strength limit; the note applies to points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:
-        stress, is_estimate = _mean_von_mises(contact)
+        stress, is_estimate = _quick_von_mises(contact)
         name = "estimated von Mises stress" if is_estimate else "von Mises stress"
         yield from _linearity_remarks("liner", joint.liner, stress, name)
     if joint.liner.strengths:
@@ -192,16 +192,15 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
 
-def _mean_von_mises(contact: Any) -> tuple[Array, bool]:
-    """Compute the mean of the bounds of the largest von Mises stress in the liner in MPa; True if they are wide.
+def _quick_von_mises(contact: Any) -> tuple[Array, bool]:
+    """Compute the largest von Mises stress in the liner in MPa from its bounds; True if they are wide.
 
     The stress is solved for only where a bound is infinite.
     """
     low, high = contact.von_mises_bounds
-    mean_of_bounds = (low + high) / 2
-    if all_true(isfinite(mean_of_bounds) | is_missing(contact.status)) is False:
+    if all_true(isfinite(high) | is_missing(contact.status)) is False:
         return contact.von_mises, False
-    return mean_of_bounds, all_true(logical_not(high - low > _ESTIMATE_WIDTH * high)) is False
+    return contact.quick_von_mises, all_true(logical_not(high - low > _ESTIMATE_WIDTH * high)) is False
 
 
 _ESTIMATE_WIDTH = 0.02
