@@ -218,9 +218,9 @@ def test_a_click_on_the_map_shows_a_design_that_is_used_in_one_step(user):
     user.open(MAP)
     user.page.mouse.click(*spot(user, 0.25, 0.25))
     user.page.locator("button", has_text="Use this design").click()
-    user.until("location.search.includes('joint.ball_radius')")
-    taken = [float(user.link()[f"joint.{name}"]) for name in ("ball_radius", "liner_thickness")]
-    assert taken == pytest.approx([14.0, 6.0], abs=0.1)
+    user.until("location.search.includes('joint.head_diameter')")
+    taken = [float(user.link()[f"joint.{name}"]) for name in ("head_diameter", "liner_thickness")]
+    assert taken == pytest.approx([28.0, 6.0], abs=0.1)
     user.answered()
     user.page.go_back()
     user.until("location.search.includes('preset=hip-28')")

@@ -64,7 +64,7 @@ def test_exact_kinematics_have_no_result_at_extreme_loads():
     contact = bs.Bartel().press(HIP, force=np.array([3000.0, 1e12]))
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
     assert np.isnan(contact.indentation[1])
-    assert contact.notes == ("1 of 2: the model does not reach this load",)
+    assert contact.notes[0] == "1 of 2: the model does not reach this load"
 
 
 def test_vessel_modulus_of_a_thin_liner_is_that_of_a_bonded_layer():

@@ -138,15 +138,15 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
 
 
 def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """Find the deepest indentation in mm with a finite force, less 1e-6 of it, by repeated refinement of a grid."""
+    """Find the indentation in mm up to which forces are finite, less 1e-6 of it, by repeated refinement of a grid."""
     if not force(numpy.array([low]))[0] > 0:
         raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
     while high / low > 1 + _END_TOLERANCE:
         depths = numpy.geomspace(low, high, 17)
-        last_finite = max(numpy.flatnonzero(numpy.isfinite(force(depths))), default=0)
-        if last_finite == 16:
+        first_missing = min(numpy.flatnonzero(~numpy.isfinite(force(depths))), default=len(depths))
+        if first_missing == len(depths):
             return high
-        low, high = float(depths[last_finite]), float(depths[last_finite + 1])
+        low, high = float(depths[first_missing - 1]), float(depths[first_missing])
     return low * (1 - _END_TOLERANCE)
 
 

@@ -207,8 +207,10 @@ class CohortSeries:
         outside = numpy.flatnonzero(~inside)
         if len(outside):
             simulated = self._select(outside).simulate(self.engine, self._outside_store(series.degree))
-            result.table[outside], result.contact[outside] = simulated.table, simulated.contact
-            result.refused[outside] = simulated.refused
+            merged = {name: getattr(result, name).copy() for name in ("table", "contact", "refused")}
+            for name, values in merged.items():
+                values[outside] = getattr(simulated, name)
+            result = replace(result, **merged)
         progress(len(self.run))
         return CohortSolution(
             result=result, accuracy=replace(accuracy, n_outside=len(outside)), indices=self._indices(series)

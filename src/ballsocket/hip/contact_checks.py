@@ -7,7 +7,7 @@ a `Contact` of the matching model. That `Contact` supplies validity, utilisation
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, isfinite, nan
 from typing import Any
 

@@ -13,7 +13,7 @@ from ..contact import Contact
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
-from ..problem.gaps import select_gap
+from ..problem.gaps import LinearGap, select_gap
 from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about
 from .inlet import SpringEdge
 from .mesh import FilmMesh, graded_rings, polar_mesh
@@ -293,13 +293,15 @@ def _yielding(
 def _gap(contact: Contact, mesh: FilmMesh) -> Numbers:
     """Compute the film (cells,) in mm of the centred ball on the undeformed bore, worn or not."""
     clearance, radius = float(contact.joint.clearance), float(contact.joint.socket_radius)
-    if not isinstance(contact, OffAxisContact):
-        return numpy.full(mesh.cells, clearance)
-    depth = contact.model.worn_depth(mesh.direction.T, radius)
-    displacement = numpy.asarray(contact.displacement)
+    if isinstance(contact, OffAxisContact):
+        depth = contact.model.worn_depth(mesh.direction.T, radius)
+        displacement = numpy.asarray(contact.displacement)
+    else:
+        depth, displacement = 0.0, numpy.array([0.0, 0.0, clearance + float(contact.indentation)])
+    kind = select_gap(contact.model.gap, contact.joint) if hasattr(contact.model, "gap") else LinearGap
     length = float(numpy.linalg.norm(displacement))
     reach = mesh.direction @ displacement
-    shape = select_gap(contact.model.gap, contact.joint)(clearance=clearance, socket_radius=radius)
+    shape = kind(clearance=clearance, socket_radius=radius)
     angle = numpy.arccos(numpy.clip(reach / length, -1.0, 1.0))
     gap: Numbers = reach - shape.displacement(angle, length - clearance) + depth
     return gap

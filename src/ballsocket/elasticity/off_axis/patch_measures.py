@@ -209,6 +209,7 @@ def largest_pressures(cells: CellArrays, pressure: Array, axis: Array) -> tuple[
     loaded = top > 0
     at_axis = (_quadratic_terms(*_project(axis[:, None], first, second, radius)) @ fit)[:, 0, 0]
     flat = (xp.sum(axis * middle, axis=1) > xp.cos(radius)) & (at_axis >= highest - _FLAT * top)
+    flat = flat & (axis[:, 2] >= xp.cos(cells.reach))
     peak = top + loaded * xp.maximum(highest, 0.0 * highest)
     return peak, xp.where((loaded & ~flat)[:, None], direction, axis)
 
