@@ -165,7 +165,7 @@ def test_bounds_of_the_stress_contain_the_exact_one_in_99_of_100_joints():
             contact = model.press(joint, force=force)
             if contact.valid:
                 low, high = contact.von_mises_bounds
-                assert high / low < 1 + 4 * TABLE_ERROR
+                assert high / low < 1 + 5 * TABLE_ERROR
                 inside.append(low * (1 - model.promise.within) <= known <= high * (1 + model.promise.within))
     assert np.mean(inside) >= 0.99
 
