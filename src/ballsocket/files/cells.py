@@ -142,7 +142,7 @@ def read_excel(raw: bytes) -> list[NumberedRow]:
         for sheet in load_workbook(BytesIO(raw), read_only=True, data_only=True).worksheets:
             rows += [(0, ["sheet", sheet.title])] if rows else []
             rows += [(number, [_excel_cell(cell) for cell in cells]) for number, cells in enumerate(sheet.rows, 1)]
-    except (BadZipFile, KeyError, TypeError, OSError) as error:
+    except (BadZipFile, SyntaxError, LookupError, AttributeError, TypeError, OSError) as error:
         raise ValueError(f"it is not a readable .xlsx file: {error}") from error
     return rows
 

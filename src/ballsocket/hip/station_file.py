@@ -78,7 +78,8 @@ def _read_cells(path: Path) -> tuple[list[str], list[list[Cell]], str]:
         (_, heads), *numbered = [row for row in rows if any(str(cell) for cell in row[1])] or [(0, [])]
         if len(heads) > 1 and numbered:
             mark = decimal_mark(((line, cell) for line, cells in numbered for cell in cells), separator)
-            return [str(head) for head in heads], [list(cells) for _, cells in numbered], mark
+            body = [[*cells, *[""] * (len(heads) - len(cells))] for _, cells in numbered]
+            return [str(head) for head in heads], body, mark
     raise ValueError("the table needs a line of heads and at least one line of readings")
 
 
@@ -91,6 +92,9 @@ def _parse_readings(table: tuple[list[str], list[list[Cell]], str], quantity: st
     is_long = _STATION in names
     if is_long and quantity not in names:
         raise ValueError(f"the column {quantity} is missing; the columns are {', '.join(texts)}")
+    twice = next((text for text in texts if text and texts.count(text) > 1), None)
+    if twice is not None:
+        raise ValueError(f"the column {shown(twice)} appears twice: keep one, or name them after their stations")
     columns = [names.index(quantity)] if is_long else [c for c in range(len(names)) if c != cycle_column]
     rows = [
         (number, row, column, str(row[names.index(_STATION)]) if is_long else _SIGNS.split(texts[column])[0].strip())

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any, TypedDict
 
 from ..core.arrays import Array, is_plain_number
-from ..core.checks import check_names, require
+from ..core.checks import check_names, require, shown
 from ..core.quantities import FIT, JOINT
 
 DIAMETERS = MappingProxyType(
@@ -187,8 +187,31 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
             f"{' and '.join(changed_names)} would change another length that the joint gives: add the one that stays, "
             f"{ways}"
         )
-    basis = choices[0] if choices else frozenset(new)
+    if not choices:
+        names = ", ".join((*changed_names, *(name for name in given if name not in changed_names)))
+        raise ValueError(
+            f"{names} do not determine a joint: two of ball_radius, socket_radius and clearance do so with "
+            "liner_thickness or outer_radius"
+        )
+    (basis,) = choices
     return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
+
+
+def check_given(names: Iterable[str]) -> tuple[str, ...]:
+    """Return names of lengths that determine a joint, one or more beside them; raise ValueError for others."""
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise TypeError(f"given must be a tuple of names of lengths, got {shown(names)}")
+    given = tuple(names)
+    check_names(given, LENGTHS, "among the given lengths of a joint")
+    if not any(basis <= {EQUIVALENTS.get(name, name) for name in given} for basis in _BASES):
+        raise ValueError(f"given = {shown(given)} does not determine a joint: it needs three lengths")
+    return given
+
+
+def lost_lengths(names: Iterable[str], given: Iterable[str]) -> list[str]:
+    """List the given lengths that are not among those which determine a changed joint."""
+    kept = {EQUIVALENTS.get(name, name) for name in names}
+    return [name for name in given if EQUIVALENTS.get(name, name) not in kept]
 
 
 def fit_beside(varied: Iterable[str], stated: Iterable[str]) -> list[str]:

@@ -14,7 +14,15 @@ from ..core.checks import check_names, require, shown
 from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
 from ..core.quantities import JOINT
-from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
+from .dimensions import (
+    LENGTHS,
+    STORED_LENGTHS,
+    Dimensions,
+    Lengths,
+    check_given,
+    lost_lengths,
+    resolve_lengths,
+)
 from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
 
@@ -114,8 +122,7 @@ class Joint(OneLine, Dimensions):
         layers = _check_backing(backing)
         set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
         if given:
-            check_names(given, LENGTHS, "among the given lengths of a joint")
-            set_fields(self, given=tuple(given))
+            set_fields(self, given=check_given(given))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
         for name, inner in self._named_thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
@@ -226,7 +233,8 @@ class Joint(OneLine, Dimensions):
 
         The joint keeps the lengths that it was made from, `given`. Another head diameter keeps the clearance, and the
         thickness of the liner or the outer diameter, whichever was given. A change that breaks a given length needs
-        the lengths that stay beside it. The name of a changed joint ends in ", varied".
+        the lengths that stay beside it. The name of a changed joint ends in ", varied", with the given lengths that
+        follow from others.
 
         Parameters
         ----------
@@ -252,12 +260,22 @@ class Joint(OneLine, Dimensions):
         new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
         shell = _shell_thickness(_check_backing(new_attributes.get("backing", self.backing)))
         stored = resolve_lengths(lengths, self.given_lengths, shell)
+        lost = lost_lengths(stored["given"], self.given)
         if is_plain_number(stored["clearance"]) and stored["clearance"] < 0:
             stored["interference"] = -stored.pop("clearance")
-        varied_name = f"{self.name.removesuffix(_VARIED)}{_VARIED}"
-        names = {"name": varied_name, "source": ""} if changes and self.name else {}
+        base = self.name.split(_VARIED)[0]
+        names = {"name": f"{base}{_VARIED}", "source": ""} if changes and self.name else {}
         old_attributes: dict[str, Any] = {name: getattr(self, name) for name in attributes}
-        return Joint(**old_attributes | names | new_attributes, **stored)
+        joint = Joint(**old_attributes | names | new_attributes, **stored)
+        changed = [(name, getattr(self, name), getattr(joint, name)) for name in lost]
+        words = [
+            f"{LENGTHS[name].title} {new:.6g} mm in place of {old:.6g} mm"
+            for name, old, new in changed
+            if is_plain_number(old) and is_plain_number(new) and abs(new - old) > 1e-9 * abs(old)
+        ]
+        if words and "name" not in new_attributes:
+            set_fields(joint, name=f"{base}{_VARIED}: {', '.join(words)}".removeprefix(", "))
+        return joint
 
     def with_floats(self) -> Joint:
         """Return a copy of the joint with floats in place of integers; its numbers must be plain."""

@@ -127,7 +127,7 @@ def _values(study: xarray.Dataset) -> dict[str, Any]:
     bounds = [name for name in BOUNDS if name in study.data_vars]
     values = {n: _plain(flat[n].values) for n in (*varying_parameters(study), *result_names(study), *bounds)}
     if VERDICT in study.data_vars:
-        values[VERDICT] = [Verdict(code).word for code in flat[VERDICT].values.tolist()]
+        values[VERDICT] = [None if code < 0 else Verdict(code).word for code in flat[VERDICT].values.tolist()]
     return values
 
 

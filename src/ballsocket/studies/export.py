@@ -203,7 +203,7 @@ def _column_head(name: str) -> str:
 def _in_written_unit(name: str, column: numpy.ndarray) -> numpy.ndarray:
     """Convert a column from internal units to the units of files, and verdicts to words."""
     if name == VERDICT:
-        return numpy.array([*(verdict.word for verdict in Verdict), "not computed"])[column]
+        return numpy.array([*(verdict.word for verdict in Verdict), "no result"])[column]
     quantity = _quantity(name)
     return column if quantity is None else column * quantity.written.factor
 

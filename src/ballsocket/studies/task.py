@@ -43,6 +43,9 @@ STRESSES = tuple(BEARING)
 VERDICT = "verdict"
 """Variable with the verdict on the yield stress, in every study of the utilisation."""
 
+NO_VERDICT = -1
+"""Verdict of a point without a result."""
+
 BOUNDS: dict[str, Quantity] = {
     f"{name}_{end}": replace(
         CONTACT_QUANTITIES[name],
@@ -193,7 +196,7 @@ class Task:
             status = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
             outcome = {"status": status, "valid": False, "broken_limit": 0}
             missing = {**dict.fromkeys(self.quantities, numpy.nan), **outcome}
-            return {**missing, VERDICT: int(Verdict.UNDECIDED)} if VERDICT in self.variables else missing
+            return {**missing, VERDICT: NO_VERDICT} if VERDICT in self.variables else missing
         results = {name: _read_variable(contact, name) for name in self.variables}
         if possible.all():
             return results
@@ -203,7 +206,7 @@ class Task:
         results["valid"] = results["valid"] & possible
         results["broken_limit"] = numpy.where(possible, results["broken_limit"], 0)
         if VERDICT in results:
-            results[VERDICT] = numpy.where(possible, results[VERDICT], int(Verdict.UNDECIDED))
+            results[VERDICT] = numpy.where(possible, results[VERDICT], NO_VERDICT)
         return results
 
 
@@ -220,8 +223,10 @@ def quantity_of_bound(name: str) -> str:
 def _read_variable(contact: Contact, name: str) -> Any:
     """Read a variable of a study from a contact: a quantity, an end of its error bar, or the verdict on yielding."""
     if name == VERDICT:
-        verdict = error_bar(contact, "utilisation").decide(high=1.0)
-        return numpy.where(contact.valid, verdict, numpy.maximum(verdict, int(Verdict.UNDECIDED)))
+        bar = error_bar(contact, "utilisation")
+        verdict = bar.decide(high=1.0)
+        verdict = numpy.where(contact.valid, verdict, numpy.maximum(verdict, int(Verdict.UNDECIDED)))
+        return numpy.where(numpy.isnan(bar.value), NO_VERDICT, verdict)
     if name in BOUNDS:
         return getattr(error_bar(contact, quantity_of_bound(name)), name.rpartition("_")[2])
     return getattr(contact, name)
