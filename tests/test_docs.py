@@ -152,7 +152,8 @@ def test_times_of_pages_are_measured():
 PICTURES = {"press": "--all --figure", "section": "--model fem --section", "tilted_cup": "--figure"}
 
 
-@pytest.mark.parametrize("name", list(PICTURES) if extent.whole else ["press"])
+@pytest.mark.long  # an old matplotlib draws other letters
+@pytest.mark.parametrize("name", list(PICTURES))
 def test_pictures_are_those_of_the_printed_commands(name, folder):
     """On another system letters differ by some pixels: 0.5 % of the light of the picture."""
     command = f"press examples/{'tilted_hip' if name == 'tilted_cup' else 'hip'}.toml {PICTURES[name]}"
