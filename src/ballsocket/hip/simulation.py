@@ -281,7 +281,7 @@ class HipSimulation(HipSetup):
         cycles: float,
         report_at: Sequence[float] = (),
         progress: Callable[[float], None] = lambda cycles: None,
-        lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+        lubricant: Lubricant | None = None,
         store: Path | None = None,
     ) -> History:
         """Simulate wear and creep up to a number of cycles.
@@ -293,8 +293,8 @@ class HipSimulation(HipSetup):
             Cycle counts of the reports; the last report is always at `cycles`.
         progress : function
             Called with the number of cycles so far after each block.
-        lubricant : Lubricant
-            Lubricant for the film in the summary.
+        lubricant : Lubricant, optional
+            Lubricant of the film in the summary; no film by default.
         store : Path, optional
             Folder that stores the run after each block: a stopped run resumes from there.
 
