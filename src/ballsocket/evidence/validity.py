@@ -16,7 +16,6 @@ import numpy
 from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import to_list
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint, Material
@@ -30,7 +29,6 @@ TRUTH = Tabulated()
 Numbers = numpy.ndarray
 
 
-@renamed_fields(asked="contacts", kept="kept_share")
 @dataclass(frozen=True, kw_only=True)
 class MeasuredValidity:
     """Measured errors of a model within its range.
@@ -150,6 +148,3 @@ def _select(number: Any, indices: Any) -> Numbers:
     """Return the numbers of some contacts; a single number belongs to all of them."""
     values = numpy.atleast_1d(numpy.asarray(number, dtype=float))
     return values if values.size == 1 else values[indices]
-
-
-__getattr__ = renamed_names(__name__, {"promising": "models_with_promise"})

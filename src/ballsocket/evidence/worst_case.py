@@ -16,7 +16,6 @@ import numpy
 from ..catalogue import reference
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
-from ..core.deprecation import renamed_names
 from ..core.quantities import CONTACT, QUANTITIES
 from ..core.validity import OutsideDomainError
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -304,14 +303,3 @@ def wear_history(question: Question, case: Case) -> dict[str, Any]:
         variability = replace(file.uncertain.variability, use=hip)
         result |= uncertainty(variability, history, count=file.uncertain.count, seed=file.uncertain.seed).summary()
     return result
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "beside": "compare_methods",
-        "scattered": "propagate_tolerances",
-        "rates": "wear_rates",
-        "worn": "wear_history",
-    },
-)

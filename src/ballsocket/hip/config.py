@@ -13,7 +13,6 @@ import msgspec
 
 from ..catalogue import catalogue
 from ..core.checks import number_of_percent, require, shown
-from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
@@ -366,8 +365,6 @@ class UncertaintySettings:
     variability: PatientVariability
     count: int
     seed: int
-
-    scatter = RenamedAttribute("variability")
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:
