@@ -5,9 +5,9 @@ A step of h seconds from r0 to r1 = r0 + h a, with the velocity a and the spin b
     2 m (a - v0)/h = F(a, b) + pull,   2 I (b - w0)/h = M(a, b).
 
 The elastic force is the discrete gradient of Gonzalez (1996, doi 10.1007/BF02440162) in the invariants of the contact:
-the distance e = |r| of the centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
-It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction and spin are evaluated at
-the midpoint of the step, and their dissipation is never negative.
+the distance e = |r| of the centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly
+the decrease of the energy. It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction
+and spin are evaluated at the midpoint of the step, and their dissipation is never negative.
 """
 
 from __future__ import annotations
