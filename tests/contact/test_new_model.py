@@ -25,12 +25,12 @@ def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(tmp_path):
     added = tmp_path / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, added, ignore=shutil.ignore_patterns("__pycache__"))
     (added / "models" / "mattress.py").write_text(FILE, encoding="utf-8")
-    catalogue = (added / "catalogue.py").read_text("utf-8")
+    catalogue = (added / "model_catalogue.py").read_text("utf-8")
     lines = {"from .models.pin": "from .models.mattress import Mattress\n", "    Hertz(),": "    Mattress(),\n"}
     for before, line in lines.items():
         assert before in catalogue
         catalogue = catalogue.replace(before, line + before, 1)
-    (added / "catalogue.py").write_text(catalogue, encoding="utf-8")
+    (added / "model_catalogue.py").write_text(catalogue, encoding="utf-8")
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     places = [str(ROOT / "tests" / name) for name in CONTRACT]
     options = ("-n", "0", "--long", "-o", "pythonpath=", "-p", "no:cacheprovider", "-k", "mattress")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import MACHINE_ERRORS, HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification import MACHINE_ERRORS, HeavyTailed, Machine, Measured, NormalScatter
 
 TRUTH = bs.Joint(ball_radius=15.3, clearance=0.12, liner_thickness=7.4, liner=bs.Material(young=780.0, poisson=0.42))
 VALUES = {"clearance": 0.12, "liner_young": 780.0}
