@@ -53,33 +53,7 @@ _CYCLES_PER_MILLION = 1e6
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HipSetup(OneLine):
-    """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle.
-
-    Attributes
-    ----------
-    joint : Joint
-        Joint of single numbers.
-    cycle : Cycle or Mix
-        Loads and rotations in the body's frame, for the right side of the body.
-    wear : WearLaw
-        Wear law of the socket.
-    cup : Cup
-        Arc of cover and orientation of the cup.
-    surface : Springs, ClosedShell or RealCup
-        Foundation of the socket.
-    ring_width : float
-        Width of the rings of the wear map in rad.
-    ball_wear : WearLaw, optional
-        Wear law of the ball; None for a ball without wear.
-    creep : CreepLaw, optional
-        Creep law of the liner; None for a liner without creep.
-    seconds_per_cycle : float, optional
-        Time in s that a cycle stands for in the creep of the liner; None is the duration of the cycle.
-    tolerance : float
-        Allowed error of a block of cycles, relative to the largest depth so far.
-    film_limit : FilmLimit, optional
-        Film ratio below which the surfaces wear; None for wear at any film.
-    """
+    """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle; see `HipSimulation`."""
 
     joint: Joint
     cycle: Cycle | Mix
