@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identification import MACHINE_ERRORS, Machine, Measured, sliding_torque
+from ballsocket.identification import MACHINE_ERRORS, MODEL_NUMBERS, Machine, Measured, sliding_torque
 from ballsocket.identification.file import read_identify
 from ballsocket.identification.misfit import by_differences
 from ballsocket.problem.cup import Cup
@@ -53,6 +53,22 @@ def test_the_work_of_adhesion_is_identified_from_indentations_at_small_forces():
     inside = bs.identify(covered, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3)}).model
     assert inside.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
     assert inside.cup == covered.cup
+
+
+@pytest.mark.parametrize("name", MODEL_NUMBERS)
+def test_a_number_of_a_model_is_identified_from_presses_with_it(name):
+    number = MODEL_NUMBERS[name]
+    model = next(filter(number.belongs_to, bs.catalogue.values()))
+    usual = getattr(model, name, None) or getattr(model.press(HIP, force=20.0), name, 0.0) or 2e-4
+    low, truth = number.insert_into(model, np.array([[0.5], [1.3]]) * usual).press(HIP, force=FORCE).indentation
+    alone = number.insert_into(model, 1.3 * usual).press(HIP, force=FORCE).indentation
+    assert truth == pytest.approx(alone, rel=1e-9)
+    assert np.abs(low - truth).max() > 1e-5
+    reading = Measured(quantity="indentation", values=truth, uncertainty=1e-6, force=FORCE)
+    result = bs.identify(model, HIP, reading, {name: (0.5 * usual, 3.0 * usual)})
+    assert result.point == pytest.approx({name: 1.3 * usual}, rel=1e-3)
+    with pytest.raises(ValueError, match=re.escape(number.quantity.allowed.partition(" ")[0])):
+        bs.identify(model, HIP, reading, {name: (-2.0, -1.0)})
 
 
 def identified_file(folder, model, free, data):
