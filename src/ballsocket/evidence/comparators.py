@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference
 from ..core.arrays import Array, to_numpy, where
+from ..model_catalogue import reference
 from ..models.half_space import Hertz
 from ..paper.claims import ELSEWHERE, Claim, judge
 from ..problem import Joint, Layer, Material

@@ -17,10 +17,10 @@ from ..hip.cycle_registry import named_cycle
 from ..hip.rim import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
-from ..hip.uncertainty import population
 from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
+from ..hip.wear_uncertainty import population
 from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular

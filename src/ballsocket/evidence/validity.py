@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import to_list
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
+from ..model_catalogue import catalogue
 from ..problem import Joint, Material
 
 SHARE, EXCESS = 0.99, 1.3

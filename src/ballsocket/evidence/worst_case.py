@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
 from ..core.quantities import CONTACT, QUANTITIES
@@ -23,13 +22,14 @@ from ..elasticity.finite_elements.model import FiniteElement
 from ..elasticity.off_axis.model import Sphere
 from ..hip.config import HipFile, read_hip
 from ..hip.simulation import HipSimulation
-from ..hip.uncertainty import uncertainty
+from ..hip.wear_uncertainty import uncertainty
+from ..model_catalogue import reference
 from ..problem import Joint
 from ..studies.axes import Method
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
 from ..studies.run import default_model
-from ..studies.sensitivity import sensitivity
+from ..studies.variance_shares import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
 

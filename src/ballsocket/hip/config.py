@@ -11,7 +11,6 @@ from typing import Any
 
 import msgspec
 
-from ..catalogue import catalogue
 from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
@@ -20,6 +19,7 @@ from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant, Stribeck
+from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal

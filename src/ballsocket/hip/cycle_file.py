@@ -32,7 +32,7 @@ from .cycle_tables import (
     select_time_range,
     time_column,
 )
-from .in_vivo import check_body_weight
+from .in_vivo_cycles import check_body_weight
 from .kinematics import rotation_matrices
 from .mix import Activity, Mix
 from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart

@@ -9,11 +9,11 @@ from rich.table import Table
 
 from ..core.kinds import Unit
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..identify.experiment import Experiment
-from ..identify.measured import MEASURED, Measured
-from ..identify.posterior import CONVERGED, Posterior
-from ..identify.result import IdentificationResult
-from ..identify.sensitivity import Sensitivity
+from ..identification.experiment import Experiment
+from ..identification.measured import MEASURED, Measured
+from ..identification.posterior import CONVERGED, Posterior
+from ..identification.result import IdentificationResult
+from ..identification.sensitivity import Sensitivity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 from .terminal import console, print_columns, print_folded
 

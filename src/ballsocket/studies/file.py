@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
 from ..core.executors.dask import Distributed
@@ -31,6 +30,7 @@ from ..files.schema import (
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import as_given, parse
+from ..model_catalogue import named_models
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Span

@@ -9,7 +9,6 @@ from typing import Annotated, Any, ClassVar
 
 import numpy
 
-from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
@@ -32,12 +31,13 @@ from ..files.schema import (
 from ..files.tables import parsed_values, quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
+from ..model_catalogue import named_models
 from ..problem import Joint
 from ..studies.expressions import parse_ends
 from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
-from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
+from .maximum_likelihood import identify
 from .measured import ALIASES, MEASURED, Measured
 from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import Estimate, HeavyTailed, Machine, Measured, NormalScatter
-from ballsocket.identify.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
-from ballsocket.identify.sensitivity import Sensitivity
-from ballsocket.identify.synthetic import Trials, draw_data_sets, trials
+from ballsocket.identification import Estimate, HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
+from ballsocket.identification.sensitivity import Sensitivity
+from ballsocket.identification.synthetic import Trials, draw_data_sets, trials
 from ballsocket.studies import Normal
 
 from .rigid import JOINT, MODEL

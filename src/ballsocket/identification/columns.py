@@ -47,7 +47,7 @@ def read_measured(
 ) -> tuple[Measured, ...]:
     """Read measurements from a table in a file, one data set for each measured quantity.
 
-    Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation [um]", "half_angle_deg",
+    Heads are names of `ballsocket.identification.MEASURED` with units: "force_N", "indentation [um]", "half_angle_deg",
     "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
     have heads such as "indentation_uncertainty_um". The forms of tables are those of `ballsocket.files.columns`.
 
