@@ -1,6 +1,6 @@
 """Read the text of an input file with any version of the package: numbers of the result, or the refusal.
 
-`tests/data/make_files.py` wrote `files_of_1_0.json` with this module and version 1.0; it knows names of that version.
+It wrote `files_of_1_0.json` with version 1.0, and knows names of that version.
 """
 
 import tempfile

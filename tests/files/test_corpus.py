@@ -1,6 +1,6 @@
 """Files written for version 1.0: read with the same numbers; those that it refused are still refused.
 
-`tests/data/make_files.py` wrote the files and what version 1.0 makes of them.
+The files were drawn at random from the inputs of each kind; `read_files.py` wrote what version 1.0 makes of them.
 """
 
 import json

@@ -227,7 +227,7 @@ ANGLES = {
 
 @pytest.mark.long
 @pytest.mark.parametrize("angles", [TILTS, ANGLES])
-def test_a_series_of_oriented_cups_is_within_its_tolerance(angles):
+def test_a_series_of_oriented_cups_is_within_its_tolerance(angles, few_held_out):
     weights = Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0)
     spread = {"coefficient": COEFFICIENT, "clearance": TIGHT, "body_weight": weights}
     accuracy = population(variability(hip(cycle=iso_14242_1(32)), **spread, **angles), [1e6], patients=1000)[1].accuracy
@@ -237,7 +237,7 @@ def test_a_series_of_oriented_cups_is_within_its_tolerance(angles):
 
 
 @pytest.mark.long
-def test_a_series_of_creeping_patients_is_within_its_tolerance():
+def test_a_series_of_creeping_patients_is_within_its_tolerance(few_held_out):
     creeping = hip(**QUICK, creep=logarithmic(), seconds_per_cycle=20.0)
     accuracy = population(variability(creeping, coefficient=COEFFICIENT), [1e6], patients=300)[1].accuracy
     assert accuracy.within_tolerance
