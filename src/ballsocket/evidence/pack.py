@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from datetime import date
 from importlib.metadata import PackageNotFoundError, version
 from math import degrees, inf
@@ -69,7 +70,7 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
     """Assemble the record from the results of all pieces, and assess it."""
     record: dict[str, Any] = {
         "version": fingerprint(),
-        "made_with": made_with(),
+        "made_with": _made_with(),
         "made_on": date.today().isoformat(),
         "question": question.text,
         "context_of_use": question.context,
@@ -198,28 +199,18 @@ def _tolerance_text(question: Question, name: str) -> str:
     return f"{low:g} to {high:g}"
 
 
-_LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib", "pillow")
-DRAWING = ("matplotlib", "pillow", "freetype", "zlib")
-"""Libraries that decide the bytes of a figure."""
-
-STATED = ("python", "system", *_LIBRARIES, "freetype", "zlib")
+_LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib")
+STATED = ("python", "system", *_LIBRARIES)
 """Names of the entries in `made_with`."""
 
 
-def made_with() -> dict[str, str]:
-    """Return the machine and the versions of the libraries that compute and draw."""
-    from matplotlib.ft2font import __freetype_version__
-    from PIL import features
-
-    versions = {}
+def _made_with() -> dict[str, str]:
+    """Return the machine and the versions of the installed libraries that compute and draw."""
+    versions = {"python": platform.python_version(), "system": f"{sys.platform} {platform.machine()}"}
     for name in _LIBRARIES:
-        try:
+        with suppress(PackageNotFoundError):
             versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    drawing = {"freetype": __freetype_version__, "zlib": str(features.version("zlib"))}
-    machine = f"{sys.platform} {platform.machine()}"
-    return {"python": platform.python_version(), "system": machine, **versions, **drawing}
+    return versions
 
 
 __getattr__ = renamed_names(
