@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -49,15 +49,11 @@ def code_level(record: Record) -> ReachedLevel:
     if off_axis or not checks.get(OWN_TOLERANCE):
         missing.append("an order of convergence of the solver in use, against an exact solution")
         return ReachedLevel("b", supported, "; ".join(missing))
-    if not (checks.get(ORDER_OF_ELEMENTS) and _has_elements(record)):
+    elements = any(method["name"].startswith("finite elements") for method in _valid_methods(record))
+    if not (checks.get(ORDER_OF_ELEMENTS) and elements):
         missing.append("the observed order of a second method that solves the worst cases (finite elements)")
         return ReachedLevel("c", supported, "; ".join(missing))
     return ReachedLevel("d", supported, "; ".join(missing))
-
-
-def _has_elements(record: Record) -> bool:
-    """Check that finite elements solved a worst case."""
-    return any(method["name"].startswith("finite elements") for method in _valid_methods(record))
 
 
 def error_margins(record: Record) -> list[dict[str, Any]]:
@@ -65,24 +61,22 @@ def error_margins(record: Record) -> list[dict[str, Any]]:
 
     The share is None where the number has no error bar, or no value. Above 1 the error could change a verdict.
     """
-    return [_margin(limit, record) for limit in record["limits"] if limit["name"] in NAMES]
-
-
-def _margin(limit: Mapping[str, Any], record: Record) -> dict[str, Any]:
-    """Compute the largest error bar of one limited number as a share of its margin."""
-    key, ratios = NAMES[limit["name"]].key, []
-    for row in record["matrix"]:
-        value, error = row["numbers"].get(key), row["errors"].get(key)
-        if value is None or error is None:
-            return {"limit": limit_text(limit), "name": limit["name"], "share": None}
-        ends = [abs(value - end) for end in (limit["low"], limit["high"]) if end is not None]
-        ratios.append(error * abs(value) / min(ends) if min(ends) else inf)
-    largest = max(ratios, default=None)
-    return {"limit": limit_text(limit), "name": limit["name"], "share": None if largest == inf else largest}
+    margins = []
+    for limit in (limit for limit in record["limits"] if limit["name"] in NAMES):
+        key, ratios = NAMES[limit["name"]].key, []
+        for row in record["matrix"]:
+            value, error = row["numbers"].get(key), row["errors"].get(key)
+            if value is None or error is None:
+                ratios = [inf]
+                break
+            margin = min(abs(value - end) for end in (limit["low"], limit["high"]) if end is not None)
+            ratios.append(error * abs(value) / margin if margin else inf)
+        share = max(ratios, default=inf)
+        margins.append({"limit": limit_text(limit), "name": limit["name"], "share": None if share == inf else share})
+    return margins
 
 
 def _titles(names: Sequence[str]) -> str:
-    """Join the titles of numbers."""
     return ", ".join(NAMES[name].title for name in names)
 
 
@@ -127,7 +121,6 @@ def solver_level(record: Record) -> ReachedLevel:
 
 
 def _valid_methods(record: Record) -> Iterator[Mapping[str, Any]]:
-    """Yield the valid methods of all worst cases."""
     return (method for calculation in record["calculation"] for method in calculation["methods"] if method["valid"])
 
 
@@ -142,7 +135,6 @@ def use_level(record: Record) -> ReachedLevel:
 
 
 def _input_titles(names: Sequence[str]) -> str:
-    """Join the titles of inputs."""
     return ", ".join(map(input_title, names))
 
 
@@ -187,32 +179,25 @@ def inputs_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c", supported, "measured distributions, and the correlation of the inputs")
 
 
-def _comparators(record: Record) -> Sequence[Mapping[str, Any]]:
-    """Return the claims of other authors and the comparators."""
-    return [*record["claims"], *record["comparators"]]
-
-
 def _applying(record: Record, *verdicts: str) -> list[Mapping[str, Any]]:
-    """Return the comparators with one of the verdicts on their applicability; by default all that apply in part."""
-    verdicts = verdicts or (APPLIES, APPLIES_IN_PART)
-    return [comparator for comparator in _comparators(record) if comparator["applicability"]["verdict"] in verdicts]
+    """Return claims of others and comparators with a verdict on their applicability; by default all that apply."""
+    verdicts, compared = verdicts or (APPLIES, APPLIES_IN_PART), [*record["claims"], *record["comparators"]]
+    return [comparator for comparator in compared if comparator["applicability"]["verdict"] in verdicts]
 
 
 def samples_level(record: Record) -> ReachedLevel:
     """Assess the test samples of the comparators."""
     applying = _applying(record)
     measured = [comparator for comparator in applying if MEASURED in comparator.get("kind", "")]
-    supported = f"{len(_comparators(record))} published results, {len(measured)} of them measured on joints like these"
+    count = len(record["claims"]) + len(record["comparators"])
+    supported = f"{count} published results, {len(measured)} of them measured on joints like these"
     missing = "measurements of the device itself"
     return ReachedLevel("b" if measured else "a", supported, missing)
 
 
-_FORCE = "F/(E R1²)"
-
-
 def conditions_level(record: Record) -> ReachedLevel:
     """Assess the test conditions of the comparators."""
-    where = [comparator["applicability"]["where"].get(_FORCE) for comparator in _applying(record)]
+    where = [comparator["applicability"]["where"].get("F/(E R1²)") for comparator in _applying(record)]
     count = {reach: where.count(reach) for reach in (WITHIN, IN_PART)}
     supported = f"the loads of the question lie within those of {count[WITHIN]} comparators that apply"
     supported += f", in part within those of {count[IN_PART]}" if count[IN_PART] else ""
@@ -275,10 +260,26 @@ def relevance_level(record: Record) -> ReachedLevel:
 
 
 def _name(comparator: Mapping[str, Any]) -> str:
-    """Return the title of a comparator, or the source of a claim."""
     return str(comparator.get("title") or comparator["where"])
 
 
 def _percent(share: float) -> str:
-    """Format a share in percent."""
     return f"{100 * share:.2g} %"
+
+
+LEVELS_REACHED: Mapping[str, Callable[[Record], ReachedLevel]] = {
+    "software quality assurance": software_level,
+    "numerical code verification": code_level,
+    "discretization error": discretization_level,
+    "numerical solver error": solver_level,
+    "use error": use_level,
+    "model form": form_level,
+    "model inputs": inputs_level,
+    "test samples": samples_level,
+    "test conditions": conditions_level,
+    "equivalency of input parameters": equivalency_level,
+    "output comparison": outputs_level,
+    "relevance of the quantities of interest": quantities_level,
+    "relevance of the validation activities to the context of use": relevance_level,
+}
+"""Assessments by factor."""
