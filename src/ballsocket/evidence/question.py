@@ -248,9 +248,23 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
     """Create the question of a file."""
     tables = read_table(content, QuestionTable)
     axes = parsed_values(tables.matrix, content.get("matrix", {}))
-    _check_axes(axes)
+    check_contradictions(axes)
+    if not any(name in axes for name in LOADS):
+        raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
+    count = prod(map(len, axes.values()))
+    require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
+    check_values(grid(**{name: list(values) for name, values in axes.items()}))
     tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
+    sources, friction = tables.sources or {}, tables.friction.coefficient
+    check_names(sources, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
+    if friction is not None:
+        require("coefficient", float(friction), 0 <= float(friction) <= 2, "a coefficient of friction is 0 to 2")
+    hip = None if tables.wear.file is None else path.parent / tables.wear.file
+    if hip is not None:
+        if not resolve_input(hip).is_file():
+            raise ValueError(f"[wear] file = {shown(str(tables.wear.file))} is not there")
+        read_hip(hip)
     return Question(
         text=check_filled("question", tables.question, _QUESTION),
         context=check_filled("context_of_use", tables.context_of_use, _CONTEXT),
@@ -262,22 +276,13 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         limits=tuple(map(parse_limit, tables.required.limits or ())),
         tolerances=tolerances,
         recentred=recentred,
-        sources=_sources(tables.sources or {}),
-        friction=_friction(tables.friction),
-        hip=_hip(tables.wear, path.parent),
+        sources={name: str(text) for name, text in sources.items()},
+        friction=None if friction is None else float(friction),
+        hip=hip,
         finite_elements=tables.finite_elements,
         path=path,
         files=(path,),
     )
-
-
-def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
-    check_contradictions(axes)
-    if not any(name in axes for name in LOADS):
-        raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
-    count = prod(map(len, axes.values()))
-    require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
-    check_values(grid(**{name: list(values) for name, values in axes.items()}))
 
 
 def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
@@ -330,29 +335,3 @@ _JOINERS = "\u200c\u200d"
 
 ALMOST_ALL = (0.001, 0.999)
 """Quantiles that count as the ends of a distribution."""
-
-
-def _sources(texts: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the sources of inputs as plain texts."""
-    check_names(texts, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
-    return {name: str(text) for name, text in texts.items()}
-
-
-def _friction(table: FrictionTable) -> float | None:
-    """Return the coefficient of friction; None if the file does not state it."""
-    if table.coefficient is None:
-        return None
-    coefficient = float(table.coefficient)
-    require("coefficient", coefficient, 0 <= coefficient <= 2, "a coefficient of friction is 0 to 2")
-    return coefficient
-
-
-def _hip(table: WearFileTable, folder: Path) -> Path | None:
-    """Return the path of the hip file, which is read once as a check; None if the file names none."""
-    if table.file is None:
-        return None
-    path = folder / table.file
-    if not resolve_input(path).is_file():
-        raise ValueError(f"[wear] file = {shown(str(table.file))} is not there")
-    read_hip(path)
-    return path
