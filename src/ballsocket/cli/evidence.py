@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -108,7 +109,7 @@ def _check(folder: Path, engine: Engine, as_json: bool) -> Record:
                 "made_by": record.get("version"),
                 "made_on": record.get("made_on"),
                 "compared": comparison.count,
-                "differences": [difference.summary() for difference in differences],
+                "differences": list(map(asdict, differences)),
                 "digest": comparison.digest,
                 "notes": comparison.notes,
             }

@@ -78,12 +78,12 @@ class Comparator:
     name: str
     title: str
     source: str
-    read: str
-    kind: str
     inputs: Mapping[str, str]
-    assumed: Mapping[str, str]
     published: Mapping[str, str]
     agreement: str
+    assumed: Mapping[str, str] = field(default_factory=dict)
+    read: str = "abstract"
+    kind: str = "computed by others"
     ours: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     reaches: Ranges = field(default_factory=dict)
 
@@ -126,8 +126,6 @@ def durom() -> Comparator:
         name="durom",
         title="DUROM resurfacing, metal on metal",
         source=_DUROM,
-        read="abstract",
-        kind="computed by others",
         inputs={"head": "50 mm", "bore": "50.145 mm", "wall": "around 4 mm", "load": "3200 N", "material": "CoCr"},
         assumed={
             "wall": "3.5 to 4.5 mm",
@@ -159,8 +157,6 @@ def metasul() -> Comparator:
         name="metasul",
         title="METASUL inlay, metal on metal in polyethylene",
         source=_DUROM,
-        read="abstract",
-        kind="computed by others",
         inputs={"head": "28 mm", "bore": "28.12 mm", "load": "3200 N", "material": "CoCr"},
         assumed={"wall of the inlay": "2 to 4 mm", "polyethylene behind": "3 to 5 mm", "CoCr": str(COCR)},
         published={"largest pressure": "about 47 MPa", "contact area": "74 mm²"},
@@ -187,8 +183,6 @@ def mak() -> Comparator:
         title="Ceramic insert on a ceramic head",
         source="Mak & Jin 2002, Proc. IMechE H, from page 231: Analysis of contact mechanics in ceramic-on-ceramic hip "
         "joint replacements",
-        read="abstract",
-        kind="computed by others",
         inputs={"insert": "at least 5 mm of ceramic", "material": "ceramic on ceramic"},
         assumed={
             "insert": "5 mm",
@@ -226,8 +220,6 @@ def kurtz() -> Comparator:
         name="kurtz",
         title="Liner of 3 to 12 mm in a metal shell",
         source="Kurtz, Edidin & Bartel 1997, doi 10.1016/S0021-9290(96)00181-9",
-        read="abstract",
-        kind="computed by others",
         inputs={"liner": "3 to 12 mm of polyethylene", "load": "36 to 63° from the dome"},
         assumed={
             "head": "22 to 32 mm",
@@ -253,10 +245,8 @@ def anderson() -> Comparator:
         name="anderson",
         title="Natural hip: cartilage on bone, pressure film",
         source="Anderson et al. 2008, J. Biomech. Eng. 130, 051008, doi 10.1115/1.2953472",
-        read="abstract",
         kind=f"{MEASURED}, and computed by others",
         inputs={"hip": "one cadaver, its own shape", "loads": "walking, stairs up and down, after loads in vivo"},
-        assumed={},
         published={
             "largest pressure, measured": "10.0 MPa, where the film saturates",
             "mean pressure, measured": "4.4 to 5.0 MPa",
@@ -280,7 +270,6 @@ def ptfe() -> Comparator:
         read="web pages",
         kind="stated by makers",
         inputs={"radial limit": "482 or 541 MPa on the projected area", "modulus": "4.5e5 psi, 3100 MPa"},
-        assumed={},
         published={"permanent set at the radial limit": "at most 0.076 mm", "at the axial limit": "at most 0.127 mm"},
         ours={"nominal strain at the radial limit, %": (100 * 482 / _PTFE, 100 * 541 / _PTFE)},
         agreement="Not comparable: a permanent set is not elastic, and at that load the strain of a linear liner would "

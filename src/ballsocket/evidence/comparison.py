@@ -6,7 +6,7 @@ import json
 import re
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import date, timedelta
 from hashlib import sha256
 from math import isclose
@@ -47,10 +47,6 @@ class Difference:
     written: Any
     now: Any
     reason: str = ""
-
-    def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
-        return asdict(self)
 
     def __str__(self) -> str:
         """Return the difference as one line of text."""

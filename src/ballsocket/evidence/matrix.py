@@ -254,7 +254,11 @@ def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitChec
     A case is beyond the limit if the whole error bar of its number is. It keeps the limit if the bar does so, widened
     to the required relative accuracy, and if the result is valid.
     """
-    bars = Bounded(*numpy.array([_limited_number(limit, row) for row in rows], dtype=float).reshape(-1, 3).T)
+    numbers = []
+    for row in rows:
+        value = row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan))
+        numbers.append((value, *row.bars.get(limit.name, (value, value))))
+    bars = Bounded(*numpy.array(numbers, dtype=float).reshape(-1, 3).T)
     widened = Bounded(
         bars.value,
         numpy.minimum(bars.low, bars.value - accuracy * abs(bars.value)),
@@ -277,22 +281,12 @@ def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitChec
     )
 
 
-def _limited_number(limit: Limit, row: Row) -> Bounded:
-    """Return the limited number of a row with its error bar, or the parameter of its case."""
-    value = float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
-    return Bounded(value, *row.bars.get(limit.name, (value, value)))
-
-
 # Titles and texts of the record and the page
-
-_LARGEST_INTEGER = 1e9
-_LONG_TITLES = {"utilisation": "utilisation (von Mises stress over yield stress)"}
-_LIMIT_ENDS = (("low", "at least"), ("high", "at most"))
 
 
 def title_of(name: str) -> str:
     """Return the title of a number by its name."""
-    return _LONG_TITLES.get(name) or LIMITED[name].title
+    return "utilisation (von Mises stress over yield stress)" if name == "utilisation" else LIMITED[name].title
 
 
 def number(value: Any) -> str:
@@ -300,15 +294,15 @@ def number(value: Any) -> str:
     if value is None or isinstance(value, str):
         return value or "–"
     text = f"{value:.5g}"
-    return f"{float(text):.0f}" if "e+" in text and abs(value) < _LARGEST_INTEGER else text
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
 def limit_text(limit: Mapping[str, Any]) -> str:
     """Format a limit with the title and the unit of its number: "largest pressure at most 15 MPa"."""
     quantity = KEYS.get(limit["name"]) or LIMITED[limit["name"]]
-    unit = quantity.written.text
-    ends = [f"{word} {number(limit[end])} {unit}".strip() for end, word in _LIMIT_ENDS if limit[end] is not None]
-    return f"{title_of(limit['name'])} {' and '.join(ends)}"
+    words = {"low": "at least", "high": "at most"}.items()
+    ends = [f"{word} {number(limit[end])} {quantity.written.text}" for end, word in words if limit[end] is not None]
+    return f"{title_of(limit['name'])} {' and '.join(end.strip() for end in ends)}"
 
 
 def verdict_text(limit: Mapping[str, Any]) -> str:

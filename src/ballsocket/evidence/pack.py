@@ -12,7 +12,6 @@ from math import degrees, inf
 from pathlib import Path
 from typing import Any
 
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Results, fingerprint
@@ -37,7 +36,6 @@ def ignore_progress(name: str) -> None:
     """Ignore the name of a completed piece."""
 
 
-@renamed_arguments(listen="progress")
 def gather_evidence(
     question: Question, folder: Path, progress: Listener = ignore_progress, engine: Engine = _SERIAL
 ) -> dict[str, Any]:
@@ -156,13 +154,17 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
         rows += _material_inputs("backing", layer.material, f"backing[{number}].")
     if question.friction is not None:
         rows.append(("friction", "friction.coefficient", question.friction, "", ""))
+    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
     return [
         {
             "name": name,
             "value": value if abs(value) < inf else "inf",
             "unit": unit,
             "tolerance": _tolerance_text(question, name),
-            "source": _source_text(question, name, body) or source,
+            "source": question.sources.get(name)
+            or ("nominal value of its tolerance in the question" if name in recentred else "")
+            or question.sources.get(body)
+            or source,
         }
         for body, name, value, unit, source in rows
     ]
@@ -178,13 +180,6 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
         for name, value in known.items()
         if value is not None
     ]
-
-
-def _source_text(question: Question, name: str, body: str) -> str:
-    """Return the source that the question states for an input; empty without one."""
-    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
-    by_tolerance = "nominal value of its tolerance in the question" if name in recentred else ""
-    return question.sources.get(name) or by_tolerance or question.sources.get(body, "")
 
 
 def _tolerance_text(question: Question, name: str) -> str:
@@ -211,8 +206,3 @@ def _made_with() -> dict[str, str]:
         with suppress(PackageNotFoundError):
             versions[name] = version(name)
     return versions
-
-
-__getattr__ = renamed_names(
-    __name__, {"gathered": "gather_evidence", "inputs": "list_inputs", "silent": "ignore_progress"}
-)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from hashlib import sha256
@@ -18,8 +18,7 @@ from .matrix import WEAR, Case, Row, compute_rows, list_cases
 from .question import Question
 from .worst_case import compare_methods, propagate_tolerances, solve_with_calculix, wear_history, wear_rates
 
-_FIRST, _LATER, _DIGEST_LENGTH = "first", "later", 12
-_STORE_NAME = re.compile(rf"({_FIRST}|{_LATER})-[0-9a-f]{{{_DIGEST_LENGTH}}}")
+_STORE_NAME = re.compile(r"(first|later)-[0-9a-f]{12}")
 
 
 def plan(question: Question) -> Plan:
@@ -31,7 +30,8 @@ def plan(question: Question) -> Plan:
         name=_store_names(question)[0],
         parts={
             "matrix": {
-                f"block {number}": partial(_row_summaries, question, block) for number, block in enumerate(blocks)
+                f"block {number}": partial(_summaries, compute_rows, question, block)
+                for number, block in enumerate(blocks)
             },
             "wear_rates": {
                 f"block {number}": partial(wear_rates, question, block)
@@ -49,9 +49,9 @@ def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
     """Return the plan of the pieces for the worst cases."""
     row = worst.get("max_pressure", next(iter(worst.values()), None))
     parts: dict[str, Mapping[str, Piece]] = {
-        "rival": {} if row is None else {"": partial(_calculix_summaries, question, row.case)},
+        "rival": {} if row is None else {"": partial(_summaries, solve_with_calculix, question, row.case)},
         "calculation": {
-            f"case {number}": partial(_method_summaries, question, case)
+            f"case {number}": partial(_summaries, compare_methods, question, case)
             for number, case in enumerate(distinct_cases(worst))
         },
         "uncertainty": {},
@@ -70,19 +70,8 @@ def distinct_cases(worst: Mapping[str, Row]) -> list[Case]:
     return list({tuple(case.items()): case for case in cases}.values())
 
 
-def _row_summaries(question: Question, cases: Sequence[Case]) -> list[dict[str, Any]]:
-    """Compute several cases and return their summaries."""
-    return [row.summary() for row in compute_rows(question, cases)]
-
-
-def _method_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
-    """Solve a case by all methods and return their summaries."""
-    return [method.summary() for method in compare_methods(question, case)]
-
-
-def _calculix_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
-    """Solve a case with CalculiX and return its summary."""
-    return [method.summary() for method in solve_with_calculix(question, case)]
+def _summaries(compute: Callable[[Question, Any], Sequence[Any]], question: Question, cases: Any) -> list[Any]:
+    return [result.summary() for result in compute(question, cases)]
 
 
 def count_stored_pieces(question: Question, folder: Path) -> int:
@@ -104,5 +93,5 @@ def _store_names(question: Question) -> tuple[str, str]:
     digest = sha256()
     for path in question.files:
         digest.update(path.read_bytes())
-    text = digest.hexdigest()[:_DIGEST_LENGTH]
-    return f"{_FIRST}-{text}", f"{_LATER}-{text}"
+    text = digest.hexdigest()[:12]
+    return f"first-{text}", f"later-{text}"

@@ -40,7 +40,6 @@ ALONG = " (along the axis)"
 _COMPARED = ("max_pressure", "half_angle", "area", "indentation", "force")
 _BANDED = ("max_pressure", "half_angle", "area", "indentation")
 
-_PERCENTILES = (2.5, 50.0, 97.5)
 _TABULATED_SAMPLES, _EXACT_SAMPLES = 1024, 64
 _SEED = 1
 
@@ -229,7 +228,9 @@ def _outside_notes(question: Question, case: Case) -> Iterator[str]:
 def _band(name: str, values: Numbers) -> Mapping[str, float]:
     """Compute low end, median and high end of a quantity over the samples with a result, in the unit of files."""
     known = values[numpy.isfinite(values)]
-    low, median, high = (float(end) for end in numpy.percentile(known, _PERCENTILES) * QUANTITIES[name].written.factor)
+    low, median, high = (
+        float(end) for end in numpy.percentile(known, (2.5, 50.0, 97.5)) * QUANTITIES[name].written.factor
+    )
     return {"low": low, "median": median, "high": high, "answered": len(known)}
 
 
