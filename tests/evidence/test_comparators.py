@@ -63,8 +63,7 @@ def test_comparators_apply_by_the_range_of_their_joints(published):
     assert applicability(published["durom"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     assert applicability(published["anderson"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     around = {name: (0.9 * low, 1.1 * high) for name, (low, high) in NEEDED.items()}
-    where = dict.fromkeys(SIMILARITY, "within")
-    assert applicability(around, NEEDED, tilted=False) == {"verdict": "applies", "where": where, "text": "applies"}
+    assert applicability(around, NEEDED, tilted=False)["text"] == "applies"
     tilted = applicability(around, NEEDED, tilted=True)["text"]
     assert tilted == "applies in part: a tilted load against one along the axis"
     thick = applicability({**around, "R1/L": (8.0, 9.0)}, NEEDED, tilted=False)
@@ -101,15 +100,9 @@ def test_verdict_follows_from_the_overlap_of_ranges():
     for reached, (position, verdict) in overlaps.items():
         result = applicability({"ν": reached}, {"ν": (2.0, 3.0)}, tilted=False)
         assert (result["where"], result["verdict"]) == ({"ν": position}, verdict)
-
-
-def test_half_of_the_numbers_outside_still_applies_in_part():
-    needed = {"ν": (0.4, 0.4), "c/R1": (0.01, 0.01)}
-    assert applicability({**needed, "c/R1": (0.02, 0.02)}, needed, tilted=False)["verdict"] == "applies in part"
-    stiff = {"E/E of the ball": (0.0, 0.0), **needed}
-    soft = {**stiff, "E/E of the ball": (0.5, 0.5)}
-    assert applicability(soft, stiff, tilted=False)["verdict"] == "does not apply"
-    assert (comparators.range_text((0.12345, 0.12345)), comparators.range_text((1.0, 2.5))) == ("0.123", "1 to 2.5")
+    two = {"ν": (0.4, 0.4), "E/E of the ball": (0.0, 0.0)}  # half of the numbers outside, and those of a soft ball
+    assert applicability({**two, "ν": (0.3, 0.3)}, two, tilted=False)["verdict"] == "applies in part"
+    assert applicability({**two, "E/E of the ball": (0.5, 0.5)}, two, tilted=False)["verdict"] == "does not apply"
 
 
 def test_ranges_of_a_question_include_its_tolerances(pack):

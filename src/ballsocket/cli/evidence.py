@@ -20,8 +20,7 @@ from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
 from ..evidence.credibility_levels import Record
 from ..evidence.folder import SUMS, WORK, check_folder, digest, write
-from ..evidence.pack import Listener, gather_evidence
-from ..evidence.plan import count_stored_pieces, remove_stored_pieces
+from ..evidence.pack import Listener, count_stored_pieces, gather_evidence, remove_stored_pieces
 from ..evidence.question import Question, read_question
 from ..reports.evidence_page import conclusions, evidence_page
 from ..version import __version__

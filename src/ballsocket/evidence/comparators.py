@@ -174,10 +174,7 @@ def mak() -> Comparator:
         for radius, gap, backing in product((14.0, 18.0), (0.02, 0.04, 0.08), backings)
     ]
     pairs = [(reference.press(joint, force=force), Hertz().press(joint, force=force)) for joint in joints]
-    width = [
-        float(joint.socket_radius) * sin(exact.half_angle) / 5.0
-        for joint, (exact, _) in zip(joints, pairs, strict=True)
-    ]
+    width = [float(exact.joint.socket_radius) * sin(exact.half_angle) / 5.0 for exact, _ in pairs]
     return Comparator(
         name="mak",
         title="Ceramic insert on a ceramic head",
@@ -262,6 +259,7 @@ def anderson() -> Comparator:
 
 def ptfe() -> Comparator:
     """State the limits of a bearing with a PTFE liner: a permanent set."""
+    young = 4.5e5 * 6.894757e-3  # MPa, from psi
     return Comparator(
         name="ptfe",
         title="Spherical bearings lined with PTFE: static limit loads",
@@ -271,14 +269,11 @@ def ptfe() -> Comparator:
         kind="stated by makers",
         inputs={"radial limit": "482 or 541 MPa on the projected area", "modulus": "4.5e5 psi, 3100 MPa"},
         published={"permanent set at the radial limit": "at most 0.076 mm", "at the axial limit": "at most 0.127 mm"},
-        ours={"nominal strain at the radial limit, %": (100 * 482 / _PTFE, 100 * 541 / _PTFE)},
+        ours={"nominal strain at the radial limit, %": (100 * 482 / young, 100 * 541 / young)},
         agreement="Not comparable: a permanent set is not elastic, and at that load the strain of a linear liner would "
         "be a sixth. The limit shows the end of the range of our models, not their accuracy within it.",
     )
 
-
-_PTFE = 4.5e5 * 6.894757e-3
-"""Young's modulus of PTFE in MPa."""
 
 PUBLISHED: Mapping[str, Callable[[], Comparator]] = MappingProxyType(
     {make.__name__: make for make in (durom, metasul, mak, kurtz, anderson, ptfe)}

@@ -18,7 +18,7 @@ from ..core.executors.processes import Engine, Serial
 from .credibility import assess
 from .credibility_levels import Record
 from .folder import QUESTION, RECORD, SIGNATURES, SUMS, digest, names_of
-from .pack import STATED, Listener, gather_evidence, ignore_progress
+from .pack import STATED, Listener, gather_evidence
 from .question import read_question
 
 RELATIVE_TOLERANCE = 1e-9
@@ -78,7 +78,7 @@ class PackComparison:
     record: Record
 
 
-def compare(folder: Path, progress: Listener = ignore_progress, engine: Engine = _SERIAL) -> PackComparison:
+def compare(folder: Path, progress: Listener = lambda name: None, engine: Engine = _SERIAL) -> PackComparison:
     """Compare a pack with the results of this version for its question.
 
     Everything is computed again: no stored result of an earlier run is used. The page is compared with its checksum.

@@ -25,8 +25,7 @@ class ReachedLevel:
     missing: str
 
 
-def software_level(record: Record) -> ReachedLevel:
-    """Assess the software quality assurance."""
+def _software_level(record: Record) -> ReachedLevel:
     run = [check for check in record["code_verification"] if check["passed"] is not None]
     failed = [check["name"] for check in run if not check["passed"]]
     supported = f"ballsocket {record['version']}, its libraries and {len(run)} checks run on this machine"
@@ -36,8 +35,7 @@ def software_level(record: Record) -> ReachedLevel:
     return ReachedLevel("b", supported, missing)
 
 
-def code_level(record: Record) -> ReachedLevel:
-    """Assess the numerical code verification."""
+def _code_level(record: Record) -> ReachedLevel:
     checks = {check["name"]: check["passed"] for check in record["code_verification"]}
     passed, failed, absent = ([name for name, state in checks.items() if state is s] for s in (True, False, None))
     supported = f"{len(passed)} of {len(passed) + len(failed)} checks passed on this machine"
@@ -80,8 +78,7 @@ def _titles(names: Sequence[str]) -> str:
     return ", ".join(NAMES[name].title for name in names)
 
 
-def discretization_level(record: Record) -> ReachedLevel:
-    """Assess the discretization error."""
+def _discretization_level(record: Record) -> ReachedLevel:
     errors = [error for row in record["matrix"] for error in row["errors"].values()]
     required, margins = record["required"]["accuracy"], error_margins(record)
     if not errors:
@@ -101,8 +98,7 @@ def discretization_level(record: Record) -> ReachedLevel:
     return ReachedLevel("d", supported, "")
 
 
-def solver_level(record: Record) -> ReachedLevel:
-    """Assess the numerical solver error."""
+def _solver_level(record: Record) -> ReachedLevel:
     calculations, required = record["calculation"], record["required"]["accuracy"]
     largest = max((max(calculation["deviation"].values(), default=0.0) for calculation in calculations), default=0.0)
     alone = [calculation["worst_of"] for calculation in calculations if not calculation["deviation"]]
@@ -124,8 +120,7 @@ def _valid_methods(record: Record) -> Iterator[Mapping[str, Any]]:
     return (method for calculation in record["calculation"] for method in calculation["methods"] if method["valid"])
 
 
-def use_level(record: Record) -> ReachedLevel:
-    """Assess the use error."""
+def _use_level(record: Record) -> ReachedLevel:
     without = [item["name"] for item in record["inputs"] if not item["source"]]
     supported = "the question file, which is checked on reading, and the call for every number"
     missing = "a second person who compares drawing, inputs and the text of the question"
@@ -138,8 +133,7 @@ def _input_titles(names: Sequence[str]) -> str:
     return ", ".join(map(input_title, names))
 
 
-def form_level(record: Record) -> ReachedLevel:
-    """Assess the model form."""
+def _form_level(record: Record) -> ReachedLevel:
     bodies = {method["name"].split(" (")[0].split(",")[0] for method in _valid_methods(record)} - {"tabulated"}
     rows = record["matrix"]
     utilisations = [row["numbers"].get("utilisation") for row in rows]
@@ -164,8 +158,7 @@ def form_level(record: Record) -> ReachedLevel:
 _KEY_INPUTS = ("ball_radius", "clearance", "liner_thickness", "liner_young", "liner_poisson")
 
 
-def inputs_level(record: Record) -> ReachedLevel:
-    """Assess the model inputs."""
+def _inputs_level(record: Record) -> ReachedLevel:
     known = {item["name"]: item for item in record["inputs"]}
     fixed = [name for name in _KEY_INPUTS if name in known and not known[name]["tolerance"]]
     without = [name for name, item in known.items() if not item["source"]]
@@ -185,8 +178,7 @@ def _applying(record: Record, *verdicts: str) -> list[Mapping[str, Any]]:
     return [comparator for comparator in compared if comparator["applicability"]["verdict"] in verdicts]
 
 
-def samples_level(record: Record) -> ReachedLevel:
-    """Assess the test samples of the comparators."""
+def _samples_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     measured = [comparator for comparator in applying if MEASURED in comparator.get("kind", "")]
     count = len(record["claims"]) + len(record["comparators"])
@@ -195,8 +187,7 @@ def samples_level(record: Record) -> ReachedLevel:
     return ReachedLevel("b" if measured else "a", supported, missing)
 
 
-def conditions_level(record: Record) -> ReachedLevel:
-    """Assess the test conditions of the comparators."""
+def _conditions_level(record: Record) -> ReachedLevel:
     where = [comparator["applicability"]["where"].get("F/(E R1²)") for comparator in _applying(record)]
     count = {reach: where.count(reach) for reach in (WITHIN, IN_PART)}
     supported = f"the loads of the question lie within those of {count[WITHIN]} comparators that apply"
@@ -209,8 +200,7 @@ def conditions_level(record: Record) -> ReachedLevel:
     )
 
 
-def equivalency_level(record: Record) -> ReachedLevel:
-    """Assess the equivalency of input parameters."""
+def _equivalency_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     assumed = [comparator for comparator in applying if comparator.get("assumed")]
     supported = f"{len(applying) - len(assumed)} of {len(applying)} comparators that apply state all of their inputs"
@@ -221,8 +211,7 @@ def equivalency_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c", supported, "")
 
 
-def outputs_level(record: Record) -> ReachedLevel:
-    """Assess the output comparison."""
+def _outputs_level(record: Record) -> ReachedLevel:
     compared = [comparator for comparator in _applying(record) if comparator.get("numbers") or comparator.get("ours")]
     supported = f"differences of {len(compared)} published results that apply, as numbers"
     missing = "an experiment with stated uncertainty at the loads of the question"
@@ -233,8 +222,7 @@ _COMPARED = ("max_pressure", "half_angle", "area", "indentation")
 """Quantities that comparators publish."""
 
 
-def quantities_level(record: Record) -> ReachedLevel:
-    """Assess the relevance of the quantities of interest."""
+def _quantities_level(record: Record) -> ReachedLevel:
     limited = [limit["name"] for limit in record["limits"] if limit["name"] in NAMES] or list(record["worst"])
     names = list(dict.fromkeys(name for name in limited if name not in LOADS))
     shared = [name for name in names if name in _COMPARED]
@@ -244,8 +232,7 @@ def quantities_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c" if not unpublished and shared else "b" if shared else "a", supported, missing)
 
 
-def relevance_level(record: Record) -> ReachedLevel:
-    """Assess the relevance of the validation activities to the context of use."""
+def _relevance_level(record: Record) -> ReachedLevel:
     full, partial = _applying(record, APPLIES), _applying(record, APPLIES_IN_PART)
     foreign = [_name(comparator) for comparator in _applying(record, DOES_NOT_APPLY)]
     applying = [f"{_name(comparator)} ({comparator['applicability']['verdict']})" for comparator in (*full, *partial)]
@@ -268,18 +255,18 @@ def _percent(share: float) -> str:
 
 
 LEVELS_REACHED: Mapping[str, Callable[[Record], ReachedLevel]] = {
-    "software quality assurance": software_level,
-    "numerical code verification": code_level,
-    "discretization error": discretization_level,
-    "numerical solver error": solver_level,
-    "use error": use_level,
-    "model form": form_level,
-    "model inputs": inputs_level,
-    "test samples": samples_level,
-    "test conditions": conditions_level,
-    "equivalency of input parameters": equivalency_level,
-    "output comparison": outputs_level,
-    "relevance of the quantities of interest": quantities_level,
-    "relevance of the validation activities to the context of use": relevance_level,
+    "software quality assurance": _software_level,
+    "numerical code verification": _code_level,
+    "discretization error": _discretization_level,
+    "numerical solver error": _solver_level,
+    "use error": _use_level,
+    "model form": _form_level,
+    "model inputs": _inputs_level,
+    "test samples": _samples_level,
+    "test conditions": _conditions_level,
+    "equivalency of input parameters": _equivalency_level,
+    "output comparison": _outputs_level,
+    "relevance of the quantities of interest": _quantities_level,
+    "relevance of the validation activities to the context of use": _relevance_level,
 }
 """Assessments by factor."""

@@ -11,7 +11,7 @@ from unicodedata import category
 
 from ..catalogue import off_axis, reference
 from ..contact import Model
-from ..core.checks import check_filled, check_names, check_text, number_of_percent, require, shown
+from ..core.checks import check_filled, check_names, number_of_percent, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
@@ -60,17 +60,6 @@ class MatrixValues(Parsed):
         if twice:
             raise ValueError(f"[matrix] {name} has {shown(twice[0])} twice")
         return values
-
-
-class Tolerance(Parsed):
-    """Tolerance or range, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45'."""
-
-    schema: ClassVar[Mapping[str, Any]] = Text.schema
-
-    @classmethod
-    def parse(cls, name: str, value: Any) -> str:
-        """Return the text of a tolerance."""
-        return check_text(name, value)
 
 
 class Share(Value, float):
@@ -124,9 +113,9 @@ class MatrixTable(Table, frozen=True, kw_only=True):
     """Values of the matrix of cases, by parameter."""
 
 
-@with_keys(quantity_keys(PARAMETERS, Tolerance))
+@with_keys(quantity_keys(PARAMETERS, Text))
 class TolerancesTable(Table, frozen=True, kw_only=True):
-    """Tolerances of inputs, by parameter."""
+    """Tolerances or ranges of inputs, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45', by parameter."""
 
 
 _QUESTION = "decision that the evidence is for, in a sentence"
@@ -254,7 +243,7 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
     count = prod(map(len, axes.values()))
     require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
     check_values(grid(**{name: list(values) for name, values in axes.items()}))
-    tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
+    tolerances = _tolerances({name: str(getattr(tables.tolerances, name)) for name in content.get("tolerances", {})})
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
     sources, friction = tables.sources or {}, tables.friction.coefficient
     check_names(sources, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
