@@ -13,7 +13,6 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from .core.deprecation import present_module_path, register_old_paths
 from .reports.figure_files import register_plots
 from .version import __version__ as __version__
 
@@ -36,12 +35,10 @@ if TYPE_CHECKING:
         DepthTable,
         Orientations,
         OvalBore,
-        Pinched,
         Preload,
         RealCup,
         Sphere,
         Springs,
-        Worn,
         orient,
         pull_out,
         read_scan,
@@ -88,7 +85,6 @@ if TYPE_CHECKING:
     )
     from .studies.run import study
 
-register_old_paths()
 register_plots()
 
 __all__ = [  # noqa: RUF022, grouped by subject
@@ -104,9 +100,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "Side",
     "Support",
     "BoreDeviation",
-    "Worn",
     "OvalBore",
-    "Pinched",
     "DepthTable",
     "read_scan",
     "read_joint",
@@ -212,8 +206,8 @@ _NAMES_BY_MODULE = {
     "elasticity.exact.tabulated.model": "Tabulated",
     "elasticity.finite_elements.model": "FiniteElement",
     "elasticity.finite_elements.spacing": "Adapted Element Uniform",
-    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Pinched Preload RealCup "
-    "Sphere Springs Worn orient pull_out read_scan",
+    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Preload RealCup "
+    "Sphere Springs orient pull_out read_scan",
     "files.joint_file": "read_joint",
     "identify": "as_constant as_corrected_vessel as_polynomial calibrate identify",
     "lubrication": "Lubricant",
@@ -252,12 +246,12 @@ sys.modules[__name__].__class__ = _Package
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Import a name, a subpackage, or a moved module of version 1.0 on first use."""
+        """Import a name or a subpackage on first use."""
         if name in _MODULES:
             value = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
             globals()[name] = value
             return value
-        if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
+        if name not in _DOORS:
             hint = f"; {_HINTS[name]}" if name in _HINTS else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
         return import_module(f"{__name__}.{name}")

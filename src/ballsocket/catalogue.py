@@ -9,7 +9,6 @@ from .contact import Model
 from .contact.model import RimLimited
 from .contact.outcome import ModelInfo
 from .core.checks import NamedItems, known_name
-from .core.deprecation import renamed_names
 from .elasticity.exact.exact_curve import ExactCurve
 from .elasticity.exact.model import Exact
 from .elasticity.exact.tabulated.model import Tabulated
@@ -87,6 +86,3 @@ def with_gap(model: Model, name: str | None) -> Model:
         choices = [known for known, other in named_models.items() if hasattr(other, "gap")]
         raise ValueError(f"{model.name} has no choice of the gap; models with one: {', '.join(choices)}")
     return replace(model, gap=kind)  # type: ignore[type-var]
-
-
-__getattr__ = renamed_names(__name__, {"theories": "listed_models"})

@@ -244,7 +244,7 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance():
     assert accuracy.relative["creep_depth"] < TOLERANCES["creep_depth"]
 
 
-def test_the_command_states_method_and_error(tmp_path, few_held_out, short_film):
+def test_the_command_states_method_and_error(tmp_path, few_held_out):
     file = short_file(tmp_path, extra=UNCERTAINTY.partition("clearance")[0])
     words = "hip", str(file), "--patients", "200"
     answer = json.loads(run_command(*words, "--json").stdout)

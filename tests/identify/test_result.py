@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import Estimate, HeavyTailed, Machine, Measured, NormalScatter, oscillation
+from ballsocket.identify import Estimate, HeavyTailed, Machine, Measured, NormalScatter
 from ballsocket.identify.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
 from ballsocket.identify.sensitivity import Sensitivity
 from ballsocket.identify.synthetic import Trials, draw_data_sets, trials
@@ -141,31 +141,6 @@ def test_the_shift_ratio_is_the_shift_over_half_the_band():
     both = measured(machine=Machine(name="a")), measured(machine=Machine(name="b", offset=(-0.01, 0.01)))
     cases = [(error.machine, error.part) for error in identified(*both, measured("area")).sensitivity]
     assert cases == [("a", "offset"), ("a", "compliance"), ("a", "drift"), ("b", "compliance"), ("b", "drift")]
-
-
-def test_earlier_names_warn_or_are_those_of_today():
-    from ballsocket.identify.oscillation import oscillation as earlier
-    from ballsocket.identify.tracing import by_tracing
-
-    from ballsocket.identify import IdentificationResult, Identified, Own, observables, parameters
-
-    assert (Identified, Own) == (IdentificationResult, observables.CustomObservable)
-    assert (earlier, by_tracing.__module__) == (observables.oscillation, "ballsocket.identify.misfit")
-    result, normal = identified(measured()), NormalScatter()
-    with pytest.warns(DeprecationWarning, match="'own'.*'observable'"):
-        frequencies = measured("frequency", FORCE, own=oscillation(1.0))
-    renamed = [(result, "told identifiable"), (result, "scales transform"), (result.best, "places theta")]
-    renamed += [(result.information, "untold unidentifiable"), (result["clearance"], "left width_ratio")]
-    renamed += [(result.next, "each_quantity best_by_quantity"), (frequencies, "own observable")]
-    renamed += [(normal, "told information"), (normal, "beyond censored")]
-    for owner, names in renamed:
-        old, new = names.split()
-        with pytest.warns(DeprecationWarning, match=old):
-            assert getattr(owner, old) == getattr(owner, new)
-    with pytest.warns(DeprecationWarning, match="Identified"):
-        assert parameters.Identified is IdentificationResult
-    with pytest.warns(DeprecationWarning, match="'place'.*'index'"):
-        result.curve(place=0)
 
 
 def candidates_of(quantity, result):

@@ -16,7 +16,6 @@ from math import isfinite as is_finite_number
 from typing import Any, NamedTuple
 
 from ..core.arrays import Array, all_true, isfinite, where
-from ..core.deprecation import renamed_names
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
 from .contact import Contact
@@ -322,13 +321,3 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
 
 def _undecided(reason: str) -> StrengthVerdict:
     return StrengthVerdict(verdict=Verdict.UNDECIDED, words=f"undecided: {reason}")
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Share": "StrengthUse",
-        "shares": "strength_uses",
-        "verdict": "assess_strength",
-    },
-)

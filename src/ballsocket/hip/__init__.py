@@ -27,40 +27,27 @@ from .variability import PatientVariability
 from .wear_fit import MeasuredWear, WearFit, fit_wear_coefficient
 from .wear_laws import WEAR_FACTORS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
-AreaLaw = ContactAreaWear
-EnergyLaw = FrictionEnergyWear
-OwnLaw = CustomWearLaw
-InUse = HipSimulation
-Ladder = KelvinVoigtChain
-Scatter = PatientVariability
-
 __all__ = [
     "WEAR_FACTORS",
     "Activity",
     "Archard",
-    "AreaLaw",
     "Bands",
     "ContactAreaWear",
     "CrossShear",
     "CustomWearLaw",
     "Cycle",
-    "EnergyLaw",
     "Film",
     "FilmLimit",
     "Frame",
     "FrictionEnergyWear",
     "HipSimulation",
     "History",
-    "InUse",
     "KelvinVoigtChain",
-    "Ladder",
     "LogarithmicCreep",
     "Lubricant",
     "MeasuredWear",
     "Mix",
-    "OwnLaw",
     "PatientVariability",
-    "Scatter",
     "Spring",
     "Stribeck",
     "WearFit",

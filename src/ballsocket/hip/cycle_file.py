@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..files.tables import read_table as read_schema
@@ -37,8 +36,6 @@ from .in_vivo import check_body_weight
 from .kinematics import rotation_matrices
 from .mix import Activity, Mix
 from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
-
-__getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 
 _FRAMES, _BODIES = FrameName.choices, LoadedPart.choices
 _MAX_FORCE = 1e9
@@ -89,7 +86,6 @@ class TableOptions:
         require("closing", self.closing, 0 <= self.closing <= 0.5, "0 to 0.5 of the range of a column")
 
 
-@renamed_arguments(instants="n_steps", reading="options")
 def read_cycle(
     path: str | Path | Sequence[str | Path],
     n_steps: int = DEFAULT_STEPS,

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
-from ..core.deprecation import renamed_arguments
 from ..core.display import plain_number
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, PhaseFunction
 from .simulator_cycles import iso_14242_1
@@ -132,7 +131,6 @@ def check_body_weight(body_weight: float) -> float:
     return body_weight
 
 
-@renamed_arguments(instants="n_steps")
 def in_vivo(name: str, body_weight: float, n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of an activity, such as "walking", from a peak load measured in patients.
 

@@ -10,7 +10,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..studies.variance_indices import check_sample_memory, sobol_indices
 from .bands import COEFFICIENT, CONVERTED, Bands, SharedCoefficient
@@ -41,7 +40,6 @@ def _ignore_progress(finished: int) -> None:
     """Ignore the number of finished patients."""
 
 
-@renamed_arguments(scatter="variability", listen="progress")
 def uncertainty(
     variability: PatientVariability,
     history: History,
@@ -99,7 +97,6 @@ def uncertainty(
     )
 
 
-@renamed_arguments(scatter="variability", listen="progress")
 def population(
     variability: PatientVariability,
     counts: Sequence[float],
@@ -291,13 +288,3 @@ def _cycle_ratios(variability: PatientVariability, sampled: Mapping[str, Numbers
     if "cycles_per_year" not in sampled or not nominal:
         return numpy.ones(len(sampled[COEFFICIENT]))
     return sampled["cycles_per_year"] / nominal
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "LEVEL": "ballsocket.hip.variability.DEFAULT_LEVEL",
-        "SHARED": "ballsocket.hip.variability.INFLUENCED_RESULTS",
-        "COUNT": "ballsocket.hip.variability.DEFAULT_COUNT",
-    },
-)

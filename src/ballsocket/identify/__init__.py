@@ -3,10 +3,7 @@
 `ballsocket.identify` itself is the function that fits measurements; this package has its data and results.
 """
 
-import sys
-
 from ..studies.calibration import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
-from . import observables
 from .identification import identify
 from .information import Estimate, Information, Product
 from .machine import Machine
@@ -16,12 +13,6 @@ from .registry import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter
 from .unknown_kinds import MachineError, ModelNumber
-
-Identified = IdentificationResult
-Own = CustomObservable
-
-# old path of the module; importing by it later would otherwise replace the function `oscillation`
-sys.modules[f"{__name__}.oscillation"] = observables
 
 __all__ = [
     "MACHINE_ERRORS",
@@ -33,14 +24,12 @@ __all__ = [
     "Estimate",
     "HeavyTailed",
     "IdentificationResult",
-    "Identified",
     "Information",
     "Machine",
     "MachineError",
     "Measured",
     "ModelNumber",
     "NormalScatter",
-    "Own",
     "Product",
     "as_constant",
     "as_corrected_vessel",

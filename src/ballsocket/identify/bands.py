@@ -9,7 +9,6 @@ from math import isfinite
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_names
 from .fit import minimise_misfit
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
@@ -330,6 +329,3 @@ def _newton_step(path: _EndSearch, point: _QuadraticModel, low: Numbers, high: N
             numpy.clip(theta[worst_index] + theta_step[worst_index], low[worst_index], high[worst_index])
             - theta[worst_index]
         )
-
-
-__getattr__ = renamed_names(__name__, {"banded": "compute_bands"})

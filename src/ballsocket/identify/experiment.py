@@ -10,7 +10,6 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from .fit import FittedModel
 from .information import MAX_WIDTH_RATIO
 from .machine import IDEAL_MACHINE, Machine
@@ -81,8 +80,6 @@ class Gain:
     bits: float
     uncertainty_ratio: dict[str, float]
     identifies: tuple[str, ...]
-    left = RenamedAttribute("uncertainty_ratio")
-    settles = RenamedAttribute("identifies")
 
     def summary(self) -> dict[str, Any]:
         """Return the information gain of the candidate as a dictionary for JSON."""
@@ -108,9 +105,6 @@ class Experiment:
 
     gains: tuple[Gain, ...]
     unidentifiable: tuple[str, ...]
-    untold = RenamedAttribute("unidentifiable")
-    each_quantity = RenamedAttribute("best_by_quantity")
-    settling = RenamedAttribute("sufficient_quantities")
 
     @property
     def best(self) -> Gain:
@@ -139,7 +133,6 @@ class Experiment:
         return [gain.summary() for gain in self.gains]
 
 
-@renamed_arguments(found="fitted")
 def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = None) -> Experiment:
     """Compute the expected information gain of each candidate for the next measurement.
 
@@ -257,6 +250,3 @@ def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) ->
         ),
         identifies=tuple(name for name in fitted.information.unidentifiable if name in narrow_unknowns),
     )
-
-
-__getattr__ = renamed_names(__name__, {"USUAL": "STANDARD_QUANTITIES", "usual": "standard_candidates"})

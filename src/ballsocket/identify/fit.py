@@ -11,7 +11,6 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..problem import Joint
 from ..studies.parameters import vary_joint
 from .forward_model import insert_model_numbers, split_joint_and_model_values
@@ -127,8 +126,6 @@ class FittedModel:
     misfit: Misfit
     best: FitResult
     information: Information
-    answers = RenamedAttribute("results")
-    scales = RenamedAttribute("transform")
 
     @property
     def model(self) -> Model:
@@ -184,7 +181,6 @@ class FittedModel:
         results = self.misfit.forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
         return self._split_by_data_set(results)
 
-    @renamed_arguments(place="index")
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
         """Compute model results at equally spaced loads over the load range of a data set.
 

@@ -12,7 +12,6 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import shown
-from ..core.deprecation import renamed_names
 from ..problem import Joint
 from .bands import compute_bands
 from .fit import find_best_fit, minimise_misfit
@@ -227,9 +226,3 @@ def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
     for name in OBSERVABLE_NUMBERS:
         if name in names and name not in needed:
             raise ValueError(f"no data depend on {name}: do not free it, or add data that depend on it")
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.information.Estimate"},
-)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute, renamed_names
 from .unknowns import ParameterTransform, Unknown
 
 MAX_WIDTH_RATIO = 0.5
@@ -54,8 +53,6 @@ class Estimate:
     high: float
     width_ratio: float
     limited_by: tuple[str, ...] = ()
-    left = RenamedAttribute("width_ratio")
-    told = RenamedAttribute("identifiable")
 
     @property
     def identifiable(self) -> bool:
@@ -176,9 +173,6 @@ class Information:
     matrix: Numbers
     intervals: tuple[Interval, ...]
     quantile: float = QUANTILE_95
-    scales = RenamedAttribute("transform")
-    places = RenamedAttribute("theta")
-    untold = RenamedAttribute("unidentifiable")
 
     @cached_property
     def _eigenvalues_and_vectors(self) -> tuple[Numbers, Numbers]:
@@ -362,8 +356,3 @@ def _round_exponent(power: float) -> float:
     """Round an exponent to the nearest multiple of 1/2 if the difference is below 0.1."""
     half_integer = round(2 * power) / 2
     return half_integer if abs(power - half_integer) < 0.1 and half_integer else power
-
-
-__getattr__ = renamed_names(
-    __name__, {"TOLD": "MAX_WIDTH_RATIO", "MOVED": "MAX_SHIFT", "WIDE": "QUANTILE_95", "SURE": "QUANTILE_99"}
-)

@@ -8,7 +8,6 @@ from math import inf
 from typing import Any
 
 from ..core.checks import nearest, require, shown
-from ..core.deprecation import RenamedAttribute
 from .registry import MACHINE_ERRORS
 from .unknown_kinds import MachineError
 
@@ -84,9 +83,6 @@ class Machine:
     def known_errors(self) -> dict[str, float]:
         """Return the size of each known error, by full name such as "machine.offset"."""
         return {self.key(error): size for error, size in self.errors if not isinstance(size, tuple)}
-
-    known = RenamedAttribute("known_errors")
-    unknowns = RenamedAttribute("unknown_errors")
 
     @property
     def has_zero_error(self) -> bool:

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, select_load, shown
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
 from .machine import IDEAL_MACHINE, Machine
@@ -115,7 +114,6 @@ class Measured:
     """Name of the load; empty for a quantity of the joint."""
     has_unknown_noise: bool = field(init=False, default=False)
     """True if no uncertainty was stated: `uncertainty` is then a start of its estimate."""
-    own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
         """Check all fields of the data set, and convert them to arrays."""
@@ -266,15 +264,3 @@ def _to_float_array(name: str, numbers: Any) -> Numbers:
     if float_array.ndim != 1 or float_array.size == 0:
         raise ValueError(f"{name} of shape {float_array.shape} must be a row of numbers")
     return float_array
-
-
-_init: Any = renamed_arguments(own="observable")(Measured.__init__)
-Measured.__init__ = _init  # type: ignore[method-assign]
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Own": "ballsocket.identify.observables.CustomObservable",
-        "PERFECT": "ballsocket.identify.machine.IDEAL_MACHINE",
-    },
-)

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.deprecation import RenamedAttribute
 from .forward_model import ForwardModel
 from .scatter import ScatterModel
 from .unknowns import ParameterTransform, log_prior
@@ -144,7 +143,6 @@ class FitResult:
     cost: float
     converged: bool
     rivals: tuple[Numbers, ...] = ()
-    places = RenamedAttribute("theta")
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs, require
-from ..core.deprecation import renamed_arguments
 from .fit import FittedModel
 
 _N_WALKERS = 64
@@ -53,7 +52,6 @@ class Posterior:
         """True if R-hat of every unknown is at most `CONVERGED`."""
         return max(self.r_hat.values()) <= CONVERGED
 
-    @renamed_arguments(share="probability")
     def band(self, name: str, probability: float = 0.95) -> tuple[float, float]:
         """Compute the ends of the central credible interval of an unknown for a probability."""
         column = self.samples[:, self.names.index(name)]
@@ -80,7 +78,6 @@ class Posterior:
         }
 
 
-@renamed_arguments(found="fitted")
 def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Posterior:
     """Draw samples from the posterior distribution of the unknowns by Markov chain Monte Carlo.
 

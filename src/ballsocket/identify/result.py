@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy
 
-from ..core.deprecation import RenamedAttribute
 from ..core.display import load_plot
 from .experiment import Experiment, experiment
 from .fit import FittedModel
@@ -32,8 +31,6 @@ class IdentificationResult(FittedModel):
 
     The fields are those of `FittedModel`.
     """
-
-    told = RenamedAttribute("identifiable")
 
     @cached_property
     def sensitivity(self) -> tuple[Sensitivity, ...]:

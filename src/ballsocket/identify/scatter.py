@@ -10,7 +10,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import RenamedAttribute, renamed_names
 
 
 class ScatterModel(Protocol):
@@ -75,9 +74,6 @@ class NormalScatter:
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw random readings from the standard normal distribution."""
         return random.standard_normal(count)
-
-    beyond = RenamedAttribute("censored")
-    told = RenamedAttribute("information")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,9 +142,6 @@ class HeavyTailed:
         """Draw random readings from Student's t distribution."""
         return random.standard_t(self.degrees, count)
 
-    beyond = RenamedAttribute("censored")
-    told = RenamedAttribute("information")
-
 
 def _censored_residual(log_probability: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
     """Compute the least-squares residual sqrt(-2 ln P) of a saturated reading, and its derivative.
@@ -157,6 +150,3 @@ def _censored_residual(log_probability: Numbers, hazard: Numbers) -> tuple[Numbe
     """
     r = numpy.sqrt(-2 * numpy.minimum(log_probability, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)
-
-
-__getattr__ = renamed_names(__name__, {"Scatter": "ScatterModel"})

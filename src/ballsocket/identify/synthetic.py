@@ -9,7 +9,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_arguments, renamed_names
 from .bands import compute_bands
 from .fit import FittedModel, find_best_fit
 from .measured import Measured
@@ -56,7 +55,6 @@ class Trials:
         return {"trials": len(self.middle), "coverage": self.coverage, "bias": self.bias}
 
 
-@renamed_arguments(found="fitted")
 def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     """Identify the unknowns from many synthetic data sets, to test coverage and bias of the bands.
 
@@ -91,7 +89,6 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     return Trials(fitted.transform.names, fitted.best.theta, *map(numpy.array, (best_points, low_ends, high_ends)))
 
 
-@renamed_arguments(found="fitted")
 def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
     """Draw synthetic data sets with random scatter about the results of the best fit.
 
@@ -112,6 +109,3 @@ def _add_reading_noise(measured: Measured, results: Numbers, noise: Numbers) -> 
     """Add random noise to model results, and limit the readings to the range of the machine."""
     readings = results + noise
     return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)
-
-
-__getattr__ = renamed_names(__name__, {"drawn": "draw_data_sets"})

@@ -13,7 +13,6 @@ from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_names, require, shown
-from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
@@ -260,6 +259,3 @@ def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
     log_jacobian = numpy.sum(has_range * numpy.log(transform.derivatives(theta)), axis=-1)
     half_squares = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
     return numpy.where(in_range, log_jacobian - half_squares, -inf)
-
-
-__getattr__ = renamed_names(__name__, {"Scales": "ParameterTransform"})

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.table import Table
 
-from ..core.deprecation import renamed_arguments
 from ..core.kinds import Unit
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identify.experiment import Experiment
@@ -33,7 +32,6 @@ _CONTENTS = (0.5, 0.95)
 """Shares of the samples within the drawn regions."""
 
 
-@renamed_arguments(found="result")
 def fit_figure(result: IdentificationResult) -> Figure:
     """Draw measured values with the fitted model above, and residuals in units of the uncertainty below."""
     from .notebook_figure import NotebookFigure
@@ -94,7 +92,6 @@ def _horizontal_values(data: Measured) -> tuple[Numbers, str]:
     return load.shown.factor * data.loads, load.label()
 
 
-@renamed_arguments(found="result", drawn="posterior")
 def corner_figure(result: IdentificationResult, posterior: Posterior | None = None) -> Figure:
     """Draw samples of the posterior: each unknown alone, and each pair of unknowns.
 

@@ -51,7 +51,6 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "Optimum",
     "allowed",
     "elasticities",
-    "limit_of",
     "optimise",
     "pareto",
     "parse_limit",
@@ -62,9 +61,6 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "front_figure",
     "sensitivity_figure",
 ]
-
-limit_of = parse_limit
-"""Earlier name of `parse_limit`."""
 
 _PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
 band_figure: Callable[..., Any]

@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar
 from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
-from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
@@ -295,8 +294,3 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
-
-
-__getattr__ = renamed_names(
-    __name__, {"models": "ballsocket.catalogue.named_models", "named_model": "ballsocket.catalogue.named_model"}
-)

@@ -14,7 +14,6 @@ from ..contact import Model
 from ..core import arrays
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
-from ..core.deprecation import renamed_names
 from ..problem import Joint
 from .derivatives import elasticities, press_quantities
 from .distributions import Correlation, Distribution, copula_matrix, correlation_text
@@ -26,7 +25,6 @@ from .variance_indices import check_sample_memory, shapley_effects, sobol_indice
 if TYPE_CHECKING:
     import xarray
 
-__getattr__ = renamed_names(__name__, {"sobol": "sobol_indices"})
 
 MAX_SAMPLES = 1 << 30
 """Largest number of samples."""

@@ -11,7 +11,6 @@ from urllib.parse import urlencode
 
 from ...catalogue import catalogue, reference
 from ...core.checks import check_names, shown
-from ...core.deprecation import renamed_names
 from ...core.kinds import Kind
 from ...core.quantities import QUANTITIES
 from ...files.joint_file import JointFile, joint_of
@@ -289,6 +288,3 @@ def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> li
     """Write each end of a limit as text that `parse_limit` reads."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
-
-
-__getattr__ = renamed_names(__name__, {"Axis": "MapAxis"})
