@@ -24,7 +24,6 @@ from .question import read_question
 RELATIVE_TOLERANCE = 1e-9
 """Largest relative difference between the numbers of two machines."""
 
-_ABSOLUTE_TOLERANCE = 1e-12
 _OBSERVED_TOLERANCE = 1e-3
 """Largest difference of an observed error, as a share of the allowed error: observed errors depend on rounding."""
 
@@ -100,7 +99,13 @@ def compare(folder: Path, progress: Listener = lambda name: None, engine: Engine
     for name in (SUMS, QUESTION, RECORD):
         if not (folder / name).is_file():
             raise ValueError(f"{folder} holds no pack of evidence: {name} is missing")
-    checksums, record = (folder / SUMS).read_bytes(), _read_record(folder / RECORD)
+    checksums = (folder / SUMS).read_bytes()
+    try:
+        record = json.loads((folder / RECORD).read_bytes())
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{folder / RECORD} cannot be read as JSON: {shown(str(error))}") from error
+    if not isinstance(record, dict):
+        raise ValueError(f"{folder / RECORD} holds no record of a pack")
     question = read_question(folder / QUESTION)
     names = names_of(question)
     files = list(_compare_files(folder, names, checksums.decode("utf-8", "replace")))
@@ -121,17 +126,6 @@ def compare(folder: Path, progress: Listener = lambda name: None, engine: Engine
         digest=digest(checksums),
         record=record,
     )
-
-
-def _read_record(path: Path) -> dict[str, Any]:
-    """Read the record of a pack."""
-    try:
-        record = json.loads(path.read_bytes())
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path} cannot be read as JSON: {shown(str(error))}") from error
-    if not isinstance(record, dict):
-        raise ValueError(f"{path} holds no record of a pack")
-    return record
 
 
 def _compare_files(folder: Path, names: Sequence[str], checksums: str) -> Iterator[Difference]:
@@ -180,8 +174,7 @@ def _agrees(pair: Difference, computed: Record) -> bool:
         return False
     if not isinstance(pair.now, float):
         return bool(pair.written == pair.now)
-    match = _OBSERVED.fullmatch(pair.where)
-    absolute = _ABSOLUTE_TOLERANCE
+    match, absolute = _OBSERVED.fullmatch(pair.where), 1e-12
     if match is not None:
         check = computed["code_verification"][int(match[1])]
         absolute = _OBSERVED_TOLERANCE * (check["low"] if check["high"] is None else check["high"])

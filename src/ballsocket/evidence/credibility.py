@@ -72,15 +72,17 @@ class Factor:
         }
 
 
-def _factors() -> Iterator[Factor]:
-    """Read the factors in the order of the standard."""
-    text = (files("ballsocket") / "data" / "credibility.csv").read_text(encoding="utf-8")
-    for row in csv.DictReader(text.splitlines()[1:]):
-        gradation = tuple(row[level] for level in "abcd" if row[level])
-        yield Factor(row["activity"], row["factor"], gradation, row["goals"], LEVELS_REACHED[row["factor"]])
-
-
-FACTORS: Sequence[Factor] = tuple(_factors())
+_TABLE = (files("ballsocket") / "data" / "credibility.csv").read_text(encoding="utf-8").splitlines()[1:]
+FACTORS: Sequence[Factor] = tuple(
+    Factor(
+        activity=row["activity"],
+        name=row["factor"],
+        gradation=tuple(row[level] for level in "abcd" if row[level]),
+        goals=row["goals"],
+        assess=LEVELS_REACHED[row["factor"]],
+    )
+    for row in csv.DictReader(_TABLE)
+)
 """Credibility factors in the order of the standard."""
 
 MET, NOT_MET, UNKNOWN = "met", "not met", "not known"
@@ -90,13 +92,12 @@ MET, NOT_MET, UNKNOWN = "met", "not met", "not known"
 def assess(record: Record) -> dict[str, Any]:
     """Return the credibility factors, the matrix of requirements and the adequacy of a record."""
     factors = [factor.summary(record) for factor in FACTORS]
-    rows = [
-        *_limit_rows(record),
-        *_error_rows(record),
-        *_band_rows(record),
-        *_source_rows(record),
-        *_factor_rows(factors),
-    ]
+    rows = [*_limit_rows(record), *_error_rows(record), *_band_rows(record), *_source_rows(record)]
+    for index, factor in enumerate(factors):
+        goal, where = factor["goal"], f"credibility[{index}]"
+        text = f"{factor['factor']}: level {goal}, {factor['gradation'][goal]}"
+        evidence = f"level {factor['reached']}: {factor['supported_by']}"
+        rows.append(_row(f"F{index + 1}", text, evidence, factor["adequate"], where, factor["missing"]))
     short = [factor["factor"] for factor in factors if not factor["adequate"]]
     met, risk = len(factors) - len(short), record["risk"]["level"]
     adequacy = {
@@ -176,11 +177,3 @@ def _source_rows(record: Record) -> Iterator[dict[str, Any]]:
     for index, item in enumerate(record["inputs"]):
         text, source = f"source of the {input_title(item['name'])}", item["source"]
         yield _row(f"I{index + 1}", text, source or "none", bool(source), f"inputs[{index}]", "a source in [sources]")
-
-
-def _factor_rows(factors: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    for index, factor in enumerate(factors):
-        goal = factor["goal"]
-        text = f"{factor['factor']}: level {goal}, {factor['gradation'][goal]}"
-        evidence = f"level {factor['reached']}: {factor['supported_by']}"
-        yield _row(f"F{index + 1}", text, evidence, factor["adequate"], f"credibility[{index}]", factor["missing"])

@@ -105,13 +105,11 @@ def _solver_level(record: Record) -> ReachedLevel:
     count = len(calculations)
     supported = f"other methods of the same body differ by {_percent(largest)} at most, at {count} worst cases"
     if len(alone) == count:
-        return ReachedLevel(
-            "a", "one method only", "a second method or other settings of the solver at the worst cases"
-        )
+        missing = "a second method or other settings of the solver at the worst cases"
+        return ReachedLevel("a", "one method only", missing)
     if alone or largest > required:
         return ReachedLevel("b", supported, f"agreement within the required {_percent(required)} at every worst case")
-    names = [method["name"] for method in _valid_methods(record)]
-    if not any(name.startswith("CalculiX") for name in names):
+    if not any(method["name"].startswith("CalculiX") for method in _valid_methods(record)):
         return ReachedLevel("c", supported, "another program at the worst case (CalculiX, with finite_elements = true)")
     return ReachedLevel("d", supported, "")
 
@@ -195,9 +193,8 @@ def _conditions_level(record: Record) -> ReachedLevel:
     missing = "conditions of the device's own use, measured with their uncertainty"
     if count[WITHIN]:
         return ReachedLevel("c", supported, missing)
-    return ReachedLevel(
-        "b" if count[IN_PART] else "a", supported, f"a comparator at the loads of the question; {missing}"
-    )
+    missing = f"a comparator at the loads of the question; {missing}"
+    return ReachedLevel("b" if count[IN_PART] else "a", supported, missing)
 
 
 def _equivalency_level(record: Record) -> ReachedLevel:

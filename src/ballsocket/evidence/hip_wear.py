@@ -261,7 +261,6 @@ def _results(hip: HipSimulation, distributions: Mapping[str, Distribution], coun
 
 
 def _band(name: str, values: Numbers) -> Predicted:
-    """Compute the band of predicted values."""
     tail = (1 - DEFAULT_LEVEL) / 2
     low, median, high = (float(value) for value in numpy.nanquantile(values, [tail, 0.5, 1 - tail]))
     return Predicted(name=name, low=low, median=median, high=high)

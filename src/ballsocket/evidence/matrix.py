@@ -132,41 +132,33 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
     joint, load, possible = press_arguments(question.file.joint, values)
     contact = question.model.press(joint, **load)
-    edge_distance = _edge_distance(question, contact)
+    if question.model.off_axis:
+        edge_distance = error_bar(contact, EDGE_DISTANCE)
+    else:  # a round contact under a vertical load
+        angle, cup = error_bar(contact, "half_angle"), question.file.cup
+        ends = (cup.edge_distance(joint.socket_radius, end, UP) for end in (angle.value, angle.high, angle.low))
+        edge_distance = Bounded(*ends)
     numbers = {name: getattr(contact, name) for name in COMPUTED} | {EDGE_DISTANCE: edge_distance.value}
-    if question.friction is not None:
-        numbers[TORQUE.name] = _friction_torque(question, contact, question.friction)
+    if question.friction is not None and question.model.off_axis:  # an upper bound: the ball radius is every lever
+        numbers[TORQUE.name] = question.friction * joint.ball_radius * contact.pressure_integral
+    elif question.friction is not None:
+        numbers[TORQUE.name] = contact.friction_torque(question.friction)
     bars = {**{name: error_bar(contact, name) for name in COMPUTED}, EDGE_DISTANCE: edge_distance}
     columns = {name: _column(value, cases) for name, value in numbers.items() if value is not None}
     errors = {name: _column(value, cases) for name, value in known_errors(contact).items() if name in NAMES}
-    ends = {name: (_column(bar.low, cases), _column(bar.high, cases)) for name, bar in bars.items()}
+    bounds = {name: (_column(bar.low, cases), _column(bar.high, cases)) for name, bar in bars.items()}
     status, valid, made = (_column(value, cases) for value in (contact.status, contact.valid, possible))
     return [
         Row(
             case,
             {name: float(value[i]) if made[i] else numpy.nan for name, value in columns.items()},
             {name: float(value[i]) for name, value in errors.items()},
-            {name: (float(low[i]), float(high[i])) for name, (low, high) in ends.items() if made[i]},
+            {name: (float(low[i]), float(high[i])) for name, (low, high) in bounds.items() if made[i]},
             Status(int(status[i]) if made[i] else Status.NO_JOINT).name,
             bool(valid[i] and made[i]),
         )
         for i, case in enumerate(cases)
     ]
-
-
-def _edge_distance(question: Question, contact: Contact) -> Bounded:
-    """Compute the edge distance in mm: of the off-axis contact, or of a round contact under a vertical load."""
-    if question.model.off_axis:
-        return error_bar(contact, EDGE_DISTANCE)
-    angle, radius = error_bar(contact, "half_angle"), contact.joint.socket_radius
-    return Bounded(*(question.file.cup.edge_distance(radius, end, UP) for end in (angle.value, angle.high, angle.low)))
-
-
-def _friction_torque(question: Question, contact: Contact, friction: float) -> Any:
-    """Compute the friction torque in N mm; off the axis an upper bound, with the ball radius as every lever."""
-    if question.model.off_axis:
-        return friction * contact.joint.ball_radius * contact.pressure_integral
-    return contact.friction_torque(friction)
 
 
 def known_errors(contact: Contact) -> Mapping[str, Any]:

@@ -152,9 +152,6 @@ def _store_names(question: Question) -> tuple[str, str]:
     return f"first-{text}", f"later-{text}"
 
 
-# Record
-
-
 def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
     """Assemble the record from the results of all pieces, and assess it."""
     call = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"

@@ -71,7 +71,7 @@ class Share(Value, float):
     def read(cls, name: str, value: Any) -> Self:
         """Convert a share above 0, at most 1."""
         percent = number_of_percent(value)
-        share = parse(name, value, Kind.NUMBER) if percent is None else parse(name, percent, Kind.NUMBER) / 100
+        share = parse(name, value if percent is None else percent, Kind.NUMBER) / (1 if percent is None else 100)
         require(name, share, 0 < share <= 1, "above 0, at most 100 %")
         return cls(share)
 
@@ -229,7 +229,8 @@ def read_question(path: str | Path) -> Question:
         question = read_toml(path, "question", lambda content: _question(content, path))
     files = packed_files(path, opened)
     for file in files:
-        _check_visible(file)
+        if file.suffix == ".toml":
+            _check_visible(file)
     return replace(question, files=files)
 
 
@@ -309,18 +310,14 @@ def _recentred(
 
 def _check_visible(path: Path) -> None:
     """Raise ValueError for an invisible character, which can change the text of a page."""
-    if path.suffix != ".toml":
-        return
+    joiners = "\u200c\u200d"  # which some scripts need between letters
     with open_input(path) as stream:
         text = stream.read().decode("utf-8-sig")
     for number, line in enumerate(text.splitlines(), 1):
         for character in line:
-            if category(character) == "Cf" and character not in _JOINERS:
+            if category(character) == "Cf" and character not in joiners:
                 raise ValueError(f"{path.name} has the invisible character U+{ord(character):04X} in line {number}")
 
-
-_JOINERS = "\u200c\u200d"
-"""Invisible characters that some scripts need between letters."""
 
 ALMOST_ALL = (0.001, 0.999)
 """Quantiles that count as the ends of a distribution."""

@@ -91,7 +91,6 @@ def population(size: int, seed: int = 1) -> tuple[Joint, Numbers]:
 
 
 def _log_uniform(rng: numpy.random.Generator, low: float, high: float, size: int) -> Numbers:
-    """Sample a log-uniform distribution."""
     return numpy.exp(rng.uniform(log(low), log(high), size))
 
 
