@@ -127,7 +127,7 @@ def station_tables():
     joined = "".join(texts.values()).replace("][", ", ")
     return {
         "wide": (["cycles [Mc],A [mg],B [mg],C [mg],D [mg]", *wide], mass),
-        "long": (["Station;volume;cycles;remark", *long], f'{head}{file}unit = "mm^3"\n'),
+        "long": (["Station;volume;cycles;remark", *long], f'{head}{file}unit = "mm^3"\nskip = "remark"\n'),
         "tables": ([], "".join(f"{head}values = {text}\ncycles = {cycles}\n" for text in texts.values())),
         "unnamed": ([], f"{head}values = {joined}\ncycles = {cycles * 4}\n"),
     }

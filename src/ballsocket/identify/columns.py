@@ -105,7 +105,7 @@ def read_measured(
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
-                remark=table.remark(len(table) - len(order)),
+                remark=table.remark({"with a gap": len(table) - len(order)}),
                 **_load_arguments(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
