@@ -353,6 +353,19 @@ def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Co
         raise ValueError(f"{path.name}: {error}") from error
 
 
+def find_cells(
+    title: str, candidates: Iterable[tuple[str, Sequence[NumberedRow]]], names: Collection[str]
+) -> CellTable:
+    """Find the table with the most known heads; the candidates are separators of cells, with the rows.
+
+    Raises
+    ------
+    ValueError
+        No heads above numbers, a known column that appears twice, or two tables with the same columns.
+    """
+    return _best_block(candidates, _HeadReader(names, ALL_COLUMNS)).parse(title, _HeadReader(names, ALL_COLUMNS))
+
+
 def _read_bytes(path: Path) -> bytes:
     """Read the content of a table, or the beginning of a Parquet file."""
     resolved = resolve_input(path)
