@@ -130,7 +130,11 @@ def read_excel(raw: bytes) -> dict[str, list[NumberedRow]]:
             ]
     except (BadZipFile, SyntaxError, LookupError, AttributeError, TypeError, OSError) as error:
         raise ValueError(f"it is not a readable .xlsx file: {error}") from error
-    return {title: rows for title, rows in sheets.items() if any(is_data(cells) for _, cells in rows)} or sheets
+    return (
+        {title: rows for title, rows in sheets.items() if any(is_data(cells) for _, cells in rows)}
+        or sheets
+        or {"": []}
+    )
 
 
 def _excel_cell(cell: Any) -> Cell:

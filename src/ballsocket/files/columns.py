@@ -59,7 +59,7 @@ _MAX_LISTED = 20
 
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
-_NAME = re.compile(r"[^\[(]*\w\.?")
+_NAME = re.compile(r"\w(?:[^\[(]*\w)?\.?")
 _SEPARATOR = re.compile(r"[\s_\[(/,;:'-]")
 _BRACKETED = re.compile(r"[\s_/,;:'-]*+[\[(]\s*+([^\])]*+)[\])]?\s*+")
 _LABEL = re.compile(r"[\s_#-]*+\w[\s\w.#-]*+[\[(][^\])]*+[\])]\s*+")
@@ -386,15 +386,13 @@ def _parse_table(title: str, raw: bytes, reader: _HeadReader) -> CellTable:
         return _best_block(split_text(decode_text(raw)), reader).parse(title, reader)
     sheets = read_excel(raw)
     blocks = {name: _best_block([("", rows)], reader) for name, rows in sheets.items()}
-    name = max(blocks, key=lambda name: blocks[name].score, default="")
-    known = blocks[name].score[0] if blocks else 0
-    others = [other for other, block in blocks.items() if other != name and block.score[0] == known > 0]
-    if others:
-        raise ValueError(f"the sheets {shown(name)} and {shown(others[0])} have such columns: keep one of them")
-    if len(sheets) < 2:
-        return _best_block([("", next(iter(sheets.values()), []))], reader).parse(title, reader)
-    table = blocks[name].parse(f"{title}, sheet {shown(name)}", reader)
-    n_lines = sum(bool(count_words(cells)) for other in sheets if other != name for _, cells in sheets[other])
+    name = max(blocks, key=lambda name: blocks[name].score)
+    others = [other for other in sheets if other != name]
+    for other in others:
+        if blocks[other].score[0] == blocks[name].score[0] > 0:
+            raise ValueError(f"the sheets {shown(name)} and {shown(other)} have such columns: keep one of them")
+    table = blocks[name].parse(f"{title}, sheet {shown(name)}" if others else title, reader)
+    n_lines = sum(bool(count_words(cells)) for other in others for _, cells in sheets[other])
     return replace(table, left_out={**table.left_out, "in other sheets": n_lines})
 
 
@@ -438,11 +436,12 @@ class _HeadReader:
 
     def count(self, cells: Iterable[Cell]) -> tuple[int, int]:
         """Count the heads in a row that are known; with such heads, the others are a negative number."""
-        heads = [self.read(cell) for cell in cells if isinstance(cell, str) and cell]
+        names = (*self.names, *self.texts)
+        heads = [split_head(cell, names) for cell in cells if isinstance(cell, str) and cell]
+        joined = [head.unit and re.search("[,;\t]", head.text) and not _parse_unit(head.unit) for head in heads]
         known = sum(
-            (bool(head.name) and not (head.unit and re.search("[,;\t]", head.text) and not _parse_unit(head.unit)))
-            or self.skips(head)
-            for head in heads
+            bool((head.name and not is_joined) or self.target(head) or self.skips(head))
+            for head, is_joined in zip(heads, joined, strict=True)
         )
         return known, known - len(heads) if known else min(len(heads), 2)
 
@@ -513,8 +512,9 @@ class _Block:
 
     @property
     def rank(self) -> tuple[int, int]:
-        """Number of known heads, and of cells up to two: the first separator with the largest rank is chosen."""
-        return self.score[0], min(count_words(self.rows[self.head][1]), 2) if self.rows else 0
+        """Order of separators, of which the first with the largest rank is chosen: known heads, numbers, cells."""
+        n_cells = count_words(self.rows[self.head][1]) if self.rows else 0
+        return self.score[0] + (self.start < len(self.rows)), min(n_cells, 2)
 
     def parse(self, title: str, reader: _HeadReader) -> CellTable:
         """Return the cells below the heads.
@@ -546,9 +546,13 @@ class _Block:
             for index, (text, unit) in enumerate(zip_longest(texts, units, fillvalue=""))
             if text or index in filled
         ]
+        chosen = reader.choose(heads)
+        for line, cells in body if all(head.column for head in chosen) else ():  # a mean below an unused counter
+            if str(cells[0])[:1].isalpha() and is_data(body[0][1][:1]) and not is_data(cells[:1]):
+                raise ValueError(f"line {line} begins with {shown(cells[0])}, and other lines with a number: cut it")
         return CellTable(
             title=title,
-            heads=reader.choose(heads),
+            heads=chosen,
             rows=body,
             separator=self.separator,
             left_out={
@@ -624,7 +628,10 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
 
 def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
     """Convert the lines of an OpenSim file to columns."""
-    settings = dict(_parse_setting(line) for line in lines[:end] if line.strip())
+    settings = {
+        name.strip().lower(): value.strip()
+        for name, _, value in (line.strip().partition("=" if "=" in line else " ") for line in lines[:end])
+    }  # `nRows=5`, or in old files `datarows 5`
     rows = [(number, line.split()) for number, line in enumerate(lines[end + 1 :], end + 2) if line.strip()]
     if not rows:
         raise ValueError("it has no line of column heads below its header")
@@ -635,12 +642,6 @@ def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
     in_degrees = {"yes": True, "no": False}.get(settings.get("indegrees", "").lower())
     table = CellTable(title=title, heads=heads, rows=rows[1:], separator=",").numbers(heads)
     return replace(table, in_degrees=in_degrees, is_opensim=True)
-
-
-def _parse_setting(line: str) -> tuple[str, str]:
-    """Split a header line into name and value: `nRows=5`, or in old files `datarows 5`."""
-    name, _, value = line.strip().partition("=" if "=" in line else " ")
-    return name.strip().lower(), value.strip()
 
 
 def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:

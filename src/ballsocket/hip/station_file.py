@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 
 from ..core.checks import check_text, shown
-from ..files.cells import Cell, count_words
+from ..files.cells import count_words
 from ..files.columns import CellTable, Head, HeadChoice, read_cells
 
 _STATION = "station"
@@ -92,7 +92,10 @@ def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> Statio
             raise ValueError(f"the column {quantity} is missing; the columns are {columns_text}")
         if other := next((shown(head.text) for head in columns if not head.name), ""):
             raise ValueError(f"column {other} is not known: leave it out with skip = [{other}]")
-        columns, names = [heads[quantity]], [[_station_name(cell) for _, cell in table.cells(heads[_STATION])]]
+        columns, names = (
+            [heads[quantity]],
+            [[cell if isinstance(cell, str) else f"{cell:g}" for _, cell in table.cells(heads[_STATION])]],
+        )
     elif twice := next((name for name, *_ in names if names.count([name] * len(table.rows)) > 1), None):
         raise ValueError(f"the column {shown(twice)} appears twice: keep one, or name them after their stations")
     numbers = table.numbers([*counts, *columns])
@@ -122,10 +125,6 @@ def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> Statio
         cycles=tuple(count for *_, count in readings) if cycles else (),
         remark=numbers.remark({"at 0 cycles": len(unused)}),
     )
-
-
-def _station_name(cell: Cell) -> str:
-    return cell if isinstance(cell, str) else f"{cell:g}"
 
 
 def _check_unit(head: Head, unit: str | None) -> str:
