@@ -356,14 +356,9 @@ def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Co
 def find_cells(
     title: str, candidates: Iterable[tuple[str, Sequence[NumberedRow]]], names: Collection[str]
 ) -> CellTable:
-    """Find the table with the most known heads; the candidates are separators of cells, with the rows.
-
-    Raises
-    ------
-    ValueError
-        No heads above numbers, a known column that appears twice, or two tables with the same columns.
-    """
-    return _best_block(candidates, _HeadReader(names, ALL_COLUMNS)).parse(title, _HeadReader(names, ALL_COLUMNS))
+    """Find the table with the most known heads among separators with their rows; raise ValueError without any."""
+    reader = _HeadReader(names, ALL_COLUMNS)
+    return _best_block(candidates, reader).parse(title, reader)
 
 
 def _read_bytes(path: Path) -> bytes:
@@ -438,11 +433,8 @@ class _HeadReader:
         """Count the heads in a row that are known; with such heads, the others are a negative number."""
         names = (*self.names, *self.texts)
         heads = [split_head(cell, names) for cell in cells if isinstance(cell, str) and cell]
-        joined = [head.unit and re.search("[,;\t]", head.text) and not _parse_unit(head.unit) for head in heads]
-        known = sum(
-            bool((head.name and not is_joined) or self.target(head) or self.skips(head))
-            for head, is_joined in zip(heads, joined, strict=True)
-        )
+        named = [head for head in heads if head.name and (_parse_unit(head.unit) or not re.search("[,;\t]", head.text))]
+        known = sum(head in named or bool(self.target(head)) or self.skips(head) for head in heads)
         return known, known - len(heads) if known else min(len(heads), 2)
 
     def choose(self, heads: Sequence[Head]) -> tuple[Head, ...]:
@@ -468,20 +460,18 @@ class _HeadReader:
 
     def check_known(self, heads: Iterable[Head]) -> None:
         """Raise ValueError for a head that is not known."""
-        for head in heads:
-            if not head.name:
-                raise ValueError(self._unknown(head))
-
-    def _unknown(self, head: Head) -> str:
-        """Return the message for a head that is not known."""
+        head = next((head for head in heads if not head.name), None)
+        if head is None:
+            return
         if target := self.target(head):
-            return f"columns names {shown(target)} for {shown(head.text)}{nearest(plain_name(target), self.names)}"
+            hint = nearest(plain_name(target), (*self.names, *self.texts))
+            raise ValueError(f"columns names {shown(target)} for {shown(head.text)}{hint}")
         if not head.text:
-            return "a column of numbers has no head: name it, or skip it with skip = ['']"
+            raise ValueError("a column of numbers has no head: name it, or skip it with skip = ['']")
         names = [name for name in self.names if not name.endswith(UNCERTAINTY)]
         text, close = shown(head.text), closest(plain_name(head.text), names)
         hint = f"did you mean {close!r}?" if close else f"known: {', '.join(names[:_MAX_NAMES])}, ...;"
-        return (
+        raise ValueError(
             f"column {text} is not known; {hint} columns = {{{text} = '{close or 'NAME'}'}} names it, "
             f"skip = [{text}] leaves it out"
         )
@@ -627,7 +617,6 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
 
 
 def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
-    """Convert the lines of an OpenSim file to columns."""
     settings = {
         name.strip().lower(): value.strip()
         for name, _, value in (line.strip().partition("=" if "=" in line else " ") for line in lines[:end])
@@ -645,7 +634,6 @@ def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
 
 
 def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:
-    """Read the columns of a Parquet file."""
     needs("study", "pyarrow")
     from pyarrow import ArrowException, parquet
 

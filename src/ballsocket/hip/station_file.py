@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
+import numpy
+
 from ..core.checks import check_text, shown
-from ..files.cells import count_words
+from ..files.cells import Cell, count_words
 from ..files.columns import CellTable, Head, HeadChoice, read_cells
 
 _STATION = "station"
@@ -78,67 +81,58 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
 
 def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> StationReadings:
     """Find the columns of a table, and collect its readings."""
-    heads = {head.name: head for head in table.heads if head.name}
-    counts = [head for name, head in heads.items() if name in _CYCLES]
-    if len(counts) > 1:
-        raise ValueError(
-            f"the cycles are in two columns, {' and '.join(shown(head.text) for head in counts)}: skip one"
-        )
+    heads = {head.name: head for head in table.heads}
+    counts = [heads[name] for name in _CYCLES if name in heads]
     columns = [head for head in table.heads if head not in counts]
-    names = [[re.split(r"[\[(]", head.text)[0].strip()] * len(table.rows) for head in columns]
+    names = [re.split(r"[\[(]", head.text)[0].strip() for head in columns]
+    stations: dict[int, Cell] = {}
     if _STATION in heads:
         if quantity not in heads:
-            columns_text = ", ".join(head.text for head in table.heads)
-            raise ValueError(f"the column {quantity} is missing; the columns are {columns_text}")
-        if other := next((shown(head.text) for head in columns if not head.name), ""):
-            raise ValueError(f"column {other} is not known: leave it out with skip = [{other}]")
-        columns, names = (
-            [heads[quantity]],
-            [[cell if isinstance(cell, str) else f"{cell:g}" for _, cell in table.cells(heads[_STATION])]],
-        )
-    elif twice := next((name for name, *_ in names if names.count([name] * len(table.rows)) > 1), None):
+            texts = ", ".join(head.text for head in table.heads)
+            raise ValueError(f"the column {quantity} is missing; the columns are {texts}")
+        if "" in heads:
+            text = shown(heads[""].text)
+            raise ValueError(f"column {text} is not known: leave it out with skip = [{text}]")
+        columns, names, stations = [heads[quantity]], [""], dict(table.cells(heads[_STATION]))
+    elif twice := next((name for name in names if names.count(name) > 1), None):
         raise ValueError(f"the column {shown(twice)} appears twice: keep one, or name them after their stations")
     numbers = table.numbers([*counts, *columns])
-    cycles = [_cycle_factor(head) * numbers.columns[0] for head in counts]
+    cycles = _cycle_factor(counts) * numbers.columns[0] if counts else numpy.ones(len(numbers))
     readings: list[tuple[str, str, float]] = []
     unused = set()
-    for head, values, stations in zip(columns, numbers.columns[len(counts) :], names, strict=True):
-        for row, (line, cell) in enumerate(table.cells(head)):
+    for head, name, values in zip(columns, names, numbers.columns[len(counts) :], strict=True):
+        for (line, cell), value, count in zip(table.cells(head), values.tolist(), cycles.tolist(), strict=True):
             if not count_words([cell]):
                 continue
-            if not isfinite(values[row]):
+            if not isfinite(value):
                 raise ValueError(f"line {line} has {shown(cell)} under {shown(head.text)}, which is not a number")
-            if not stations[row]:
-                raise ValueError(f"line {line} names no station")
-            if cycles and not isfinite(cycles[0][row]):
+            if not isfinite(count):
                 raise ValueError(f"line {line} has a reading, and no number of cycles")
-            if cycles and cycles[0][row] == values[row] == 0:
+            if not (head.unit or unit):
+                text = head.text
+                raise ValueError(
+                    f"the column {shown(text)} has no unit: write '{text} [mg]' as its head, or unit = 'mg'"
+                )
+            station = stations.get(line, name)
+            station = station if isinstance(station, str) else f"{station:g}"
+            if not station:
+                raise ValueError(f"line {line} names no station")
+            if value == count == 0:
                 unused.add(line)
-                continue
-            count = float(cycles[0][row]) if cycles else 0.0
-            readings.append((stations[row], f"{float(values[row])!r} {_check_unit(head, unit)}", count))
+            else:
+                readings.append((check_text("station", station), f"{value!r} {head.unit or unit}", count))
     if not readings:
         raise ValueError("the table has no readings")
-    return StationReadings(
-        stations=tuple(str(check_text("station", name)) for name, *_ in readings),
-        values=tuple(value for _, value, _ in readings),
-        cycles=tuple(count for *_, count in readings) if cycles else (),
-        remark=numbers.remark({"at 0 cycles": len(unused)}),
-    )
+    labels, stated, ends = zip(*readings, strict=True)
+    remark = numbers.remark({"at 0 cycles": len(unused)})
+    return StationReadings(stations=labels, values=stated, cycles=ends if counts else (), remark=remark)
 
 
-def _check_unit(head: Head, unit: str | None) -> str:
-    """Return the unit in a head, or else the stated one."""
-    text = head.unit or unit
-    if not text:
-        raise ValueError(
-            f"the column {shown(head.text)} has no unit: write '{head.text} [mg]' as its head, or unit = 'mg'"
-        )
-    return text
-
-
-def _cycle_factor(head: Head) -> float:
+def _cycle_factor(counts: Sequence[Head]) -> float:
     """Return the number of cycles for which 1 stands in the column of cycles."""
+    head, *others = counts
+    if others:
+        raise ValueError(f"the cycles are in two columns, {shown(head.text)} and {shown(others[0].text)}: skip one")
     if head.unit.lower() not in _CYCLE_UNITS:
         raise ValueError(f"the unit of {shown(head.text)} is not known; allowed are cycles and Mc (million cycles)")
     return _CYCLES[head.name] * _CYCLE_UNITS[head.unit.lower()]

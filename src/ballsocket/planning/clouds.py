@@ -137,20 +137,14 @@ def _read_points(lines: Sequence[str], table: CellTable, columns: Sequence[int])
     try:
         points = numpy.loadtxt(body, delimiter=delimiter, usecols=columns, ndmin=2, comments=None, quotechar='"')
     except (ValueError, IndexError) as error:
-        row = next((row for row, line in enumerate(body) if not _is_point(line.split(delimiter), columns)), 0)
+        rows = [[cell.strip(' "') for cell in line.split(delimiter)] for line in body]
+        bad = (row for row, cells in enumerate(rows) if not all(is_data(cells[axis : axis + 1]) for axis in columns))
+        row = next(bad, 0)
         raise ValueError(
             f"line {numbers[row]} has {shown(lines[numbers[row] - 1])}: that is no point, three numbers x y z"
         ) from error
     note = f"{table.title}: {n_unnamed} columns without names are not read, behind x, y and z"
     return points, (note,) * bool(n_unnamed)
-
-
-def _is_point(cells: Sequence[str], columns: Sequence[int]) -> bool:
-    """Return True for a row with numbers in some columns."""
-    try:
-        return bool([float(cells[column].strip(' "')) for column in columns])
-    except (ValueError, IndexError):
-        return False
 
 
 def _find_columns(table: CellTable, units: str) -> list[int]:
