@@ -280,7 +280,7 @@ UNCERTAIN = [
 VALUES = 'values = "38 mm^3/Mc"\n'
 STATION_TABLES = {
     "cycles,A\n1,2\n": r"the column 'A' has no unit: write 'A \[mg\]'",
-    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "row 2 has 'x' under 'A ",
+    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "line 3 has 'x' under 'A ",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
 MEASURED = [

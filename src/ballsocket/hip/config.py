@@ -14,6 +14,7 @@ import msgspec
 from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
+from ..files.columns import ALL_COLUMNS
 from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
@@ -178,7 +179,7 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     if table.quantity is None:
         raise ValueError("[[data]] of measured wear needs its quantity")
     quantity = str(table.quantity)
-    stated, cycles, station = _stated_readings(table, quantity, folder)
+    stated, cycles, station, remark = _stated_readings(table, quantity, folder)
     if per_year is None and tables.cycles_per_year is not None:
         per_year = float(tables.cycles_per_year)
     unit, density = _WEAR_UNITS.get(quantity, "mm"), _density(table, quantity)
@@ -202,23 +203,26 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
         relative_uncertainty=None if percent is None else parse("uncertainty", percent, Kind.NUMBER) / 100,
         station=station,
         name=str(table.name or ""),
+        remark=remark,
     )
 
 
-def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple[Any, Any, Any]:
-    """Return values with units, cycles and stations of a table [[data]], as stated or from its file."""
+def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple[Any, Any, Any, str]:
+    """Return values with units, cycles, stations and a remark of a table [[data]], as stated or from its file."""
     if (table.values is None) == (table.file is None):
         raise ValueError("[[data]] of measured wear needs its values, or else the file with a table of them")
     if table.values is not None:
         if table.unit is not None:
             raise ValueError("unit belongs to a file: write the values with it, such as '38 mm^3'")
+        if table.choice() != ALL_COLUMNS:
+            raise ValueError("columns and skip belong to a file: remove them, or name the file")
         names = table.station
-        return table.values.value, table.cycles, names[0] if names is not None and len(names) == 1 else names
+        return table.values.value, table.cycles, names[0] if names is not None and len(names) == 1 else names, ""
     for key in ("cycles", "station"):
         if getattr(table, key) is not None:
             raise ValueError(f"{key} and file exclude each other: the file has a column of them; remove {key}")
-    readings = read_stations(folder / str(table.file), quantity, table.unit)
-    return list(readings.values), list(readings.cycles) or None, readings.stations
+    readings = read_stations(folder / str(table.file), quantity, table.unit, table.choice())
+    return list(readings.values), list(readings.cycles) or None, readings.stations, readings.remark
 
 
 def _density(table: WearDataTable, quantity: str) -> float:

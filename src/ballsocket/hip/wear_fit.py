@@ -80,6 +80,8 @@ class MeasuredWear:
         are further specimens, in the order of the values.
     name : str
         Name in messages.
+    remark : str
+        Sentence on lines of its file that are left out; empty without any.
 
     Raises
     ------
@@ -102,6 +104,7 @@ class MeasuredWear:
     relative_uncertainty: float | None = None
     station: str | Sequence[str] | None = None
     name: str = ""
+    remark: str = ""
 
     def __post_init__(self) -> None:
         """Check all fields, and convert numbers to arrays."""
@@ -307,7 +310,8 @@ class WearFit:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on rates, uncertainties, scatter and the simulation."""
-        return (*self._fit_notes(), *self.simulation.notes)
+        remarks = dict.fromkeys(measured.remark for measured in self.data if measured.remark)
+        return (*remarks, *self._fit_notes(), *self.simulation.notes)
 
     def _fit_notes(self) -> Iterator[str]:
         """Yield sentences on rates, uncertainties and scatter."""
