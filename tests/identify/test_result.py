@@ -101,9 +101,7 @@ def test_the_corner_figure_draws_the_printed_bands():
     (panel,) = corner_figure(result).axes
     estimate = result["clearance"]
     assert [line.get_xdata()[0] for line in panel.lines] == pytest.approx([estimate.low, estimate.high])
-    assert np.ptp(panel.patches[0].xy[:, 0]) > 1.2 * (
-        estimate.high - estimate.low
-    )  # by Student's quantile for five degrees, 2.57
+    assert np.ptp(panel.patches[0].xy[:, 0]) > 1.2 * (estimate.high - estimate.low)  # Student's quantile: 2.57
 
 
 def test_the_best_value_at_the_end_of_a_range_is_noted():

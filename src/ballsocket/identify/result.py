@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy
 
+from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute
 from ..core.display import load_plot
 from .experiment import Experiment, experiment
