@@ -9,7 +9,7 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import Any, TypedDict
 
-from ..core.arrays import Array, is_plain_number
+from ..core.arrays import Array, all_true, is_plain_number
 from ..core.checks import check_names, require, shown
 from ..core.quantities import FIT, JOINT
 
@@ -106,7 +106,7 @@ class Dimensions:
     @property
     def fit(self) -> tuple[str, Array]:
         """Name and positive radial value in mm of the fit: "clearance", or "interference" of a preloaded joint."""
-        preloaded = is_plain_number(self.clearance) and self.clearance < 0
+        preloaded = all_true(self.clearance < 0)
         return ("interference", self.interference) if preloaded else ("clearance", self.clearance)
 
     @property
