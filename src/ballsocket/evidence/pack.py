@@ -16,7 +16,7 @@ from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Results, fingerprint
 from ..problem import Material
-from ..problem.dimensions import DIAMETERS, EQUIVALENTS, STORED_LENGTHS
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, canonical
 from ..studies.parameters import hold, press_arguments
 from .comparators import applicability, question_ranges
 from .credibility import assess, model_risk
@@ -143,7 +143,7 @@ FOLLOWS = "follows from the other lengths"
 def list_inputs(question: Question) -> list[dict[str, Any]]:
     """List every number of the input, with unit, tolerance and source."""
     joint = question.file.joint
-    given = {EQUIVALENTS.get(name, name) for name in joint.given_lengths}
+    given = {canonical(name) for name in joint.given_lengths}
     lengths = dict.fromkeys((*STORED_LENGTHS, *(name for name in JOINT if name in given)))
     rows = [
         ("joint" if name in given else "", name, getattr(joint, name), "mm", joint.source if name in given else FOLLOWS)
@@ -181,16 +181,16 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
 
 def _source_text(question: Question, name: str, body: str) -> str:
     """Return the source that the question states for an input; empty without one."""
-    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
+    recentred = {canonical(entry.name) for entry in question.recentred}
     by_tolerance = "nominal value of its tolerance in the question" if name in recentred else ""
     return question.sources.get(name) or by_tolerance or question.sources.get(body, "")
 
 
 def _tolerance_text(question: Question, name: str) -> str:
     """Format the tolerance of an input; empty without one."""
-    spreads = {DIAMETERS.get(stated, stated): (stated, spread) for stated, spread in question.tolerances.items()}
+    spreads = {canonical(stated): (stated, spread) for stated, spread in question.tolerances.items()}
     if name not in spreads:
-        varied = {DIAMETERS.get(axis, axis) for axis in question.axes}
+        varied = {canonical(axis) for axis in question.axes}
         return "varied in the matrix" if name in varied else ""
     stated, spread = spreads[name]
     factor = 0.5 if stated in DIAMETERS else 1.0

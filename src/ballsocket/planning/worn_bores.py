@@ -172,9 +172,9 @@ class WornBore:
             )
         if self.hidden_shift:
             notes.append(
-                f"{self.name}: the points do not show if the sphere is unworn: a head of its radius may have worn it, by a "
-                f"shift of up to {self.hidden_shift:.2g} mm, which the errors contain; measure surface that the head does "
-                "not reach, more than 90° from the direction of its load"
+                f"{self.name}: the points do not show if the sphere is unworn: a head of its radius may have worn it, "
+                f"by a shift of up to {self.hidden_shift:.2g} mm, which the errors contain; measure surface that the "
+                "head does not reach, more than 90° from the direction of its load"
             )
         if self.ambiguous:
             notes.append(
