@@ -147,6 +147,7 @@ def test_readings_of_one_station_are_one_specimen(tmp_path, form):
     assert (fit.coefficient, fit.low, fit.high) == pytest.approx((2.05e-7, 1.507e-7, 2.593e-7), rel=2e-3)
     assert fit.scatter == pytest.approx(0.3416 / 2.05, rel=5e-3)
     assert any("no station is stated" in note for note in fit.notes) == (form in ("tables", "unnamed"))
+    assert test.data[0].measured_quantity == ("mass" if form == "wide" else "volume")
 
 
 LONG = "Specimen\tCycles\tMass loss\n\tMc\tmg\nA\t0\t0\nA\t0.5\t1.25\nA\t1\t2.5\nB\t0.5\t1.5\n"

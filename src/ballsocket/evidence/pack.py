@@ -20,7 +20,7 @@ from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Piece, Plan, Results, Summary, fingerprint
 from ..problem import Material
-from ..problem.dimensions import DIAMETERS, EQUIVALENTS, STORED_LENGTHS
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, canonical
 from ..studies.parameters import hold, press_arguments
 from .code_checks import CHECKS
 from .comparators import CLAIMS, PUBLISHED, applicability, claim, question_ranges
@@ -225,7 +225,7 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
     """List every number of the input, with unit, tolerance and source."""
     joint = question.file.joint
     follows = "follows from the other lengths"
-    given = {EQUIVALENTS.get(name, name) for name in joint.given_lengths}
+    given = {canonical(name) for name in joint.given_lengths}
     lengths = dict.fromkeys((*STORED_LENGTHS, *(name for name in JOINT if name in given)))
     rows = [
         ("joint" if name in given else "", name, getattr(joint, name), "mm", joint.source if name in given else follows)
@@ -237,7 +237,7 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
         rows += _material_inputs("backing", layer.material, f"backing[{number}].")
     if question.friction is not None:
         rows.append(("friction", "friction.coefficient", question.friction, "", ""))
-    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
+    recentred = {canonical(entry.name) for entry in question.recentred}
     return [
         {
             "name": name,
@@ -267,9 +267,9 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
 
 def _tolerance_text(question: Question, name: str) -> str:
     """Format the tolerance of an input; empty without one."""
-    spreads = {DIAMETERS.get(stated, stated): (stated, spread) for stated, spread in question.tolerances.items()}
+    spreads = {canonical(stated): (stated, spread) for stated, spread in question.tolerances.items()}
     if name not in spreads:
-        varied = {DIAMETERS.get(axis, axis) for axis in question.axes}
+        varied = {canonical(axis) for axis in question.axes}
         return "varied in the matrix" if name in varied else ""
     stated, spread = spreads[name]
     factor = 0.5 if stated in DIAMETERS else 1.0

@@ -34,7 +34,7 @@ from ..model_catalogue import named_models
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Span
-from .design import Design, grid, sample, table
+from .design import Design, check_values, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
@@ -124,6 +124,8 @@ class AxisValues(Parsed):
         """Convert the values of an axis."""
         if isinstance(value, list):
             return [parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)]
+        if isinstance(value, str) and ".." in value:
+            raise ValueError(f"{name} = {shown(value)} must be a list, or equal steps such as {{from, to, count}}")
         if not isinstance(value, Mapping):
             return parse(name, value, cls.kind)
         check_names(value, ("from", "to", "count"), f"in {name}")
@@ -131,7 +133,8 @@ class AxisValues(Parsed):
         if missing:
             raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
         low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
-        return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
+        with as_given(value, f"{name}."):
+            return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
 
 
 class AxisMaterials(Parsed):
@@ -273,9 +276,21 @@ def _engine(table: EngineTable) -> Engine:
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
 
+def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of axes as the file writes them, by name and index; of equal steps both ends."""
+    texts: dict[str, Any] = {}
+    for name, values in axes.items():
+        ends = [values.get("from"), values.get("to")] if isinstance(values, Mapping) else values
+        texts |= {f"{name}[{i}]": text for i, text in enumerate(ends if isinstance(ends, list) else [ends])}
+    return texts
+
+
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
     """Create the design of a study: the product of samples, rows of a table and a grid."""
-    design = grid(**parsed_values(tables.axes, content.get("axes", {})))
+    axes = content.get("axes", {})
+    design = grid(**parsed_values(tables.axes, axes))
+    with as_given(_texts_of_values(axes), "axes."):
+        check_values(design)
     if tables.samples is not None:
         samples = tables.samples
         spreads = parsed_values(samples, content["samples"])
