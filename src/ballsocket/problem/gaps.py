@@ -76,8 +76,8 @@ class CircularGap:
 
     clearance: float
     socket_radius: float
-    steps: ClassVar[int] = 7
-    """Number of Newton steps from d = 0."""
+    steps: ClassVar[int] = 40
+    """Largest number of Newton steps from d = 0; the widest contact takes most."""
 
     conservative: ClassVar[bool] = False
     """False since ∂u/∂d is not cos φ: the work of the force differs from that of the pressure."""

@@ -246,18 +246,37 @@ def test_linear_gap_of_a_wide_clearance_is_judged_by_its_computed_error(clearanc
         assert noted == ([pytest.approx(100 * reduction, rel=0.25)] if reduction > 0.01 else [])
 
 
+LOOSE = RIGID.replace(ball_radius=17.0, clearance=1.0)
+EQUATOR = bs.Exact(gap=bs.CircularGap).law(LOOSE).deepest
+"""Indentation in mm of the widest contact of a circular ball, whose edge is a great circle."""
+
+
 def test_a_circular_ball_ends_at_its_equator():
-    loose = RIGID.replace(ball_radius=17.0, clearance=1.0)
-    wide = bs.Exact(gap=bs.CircularGap).press(loose, half_angle=np.radians([60.0, 80.0]))
-    np.testing.assert_array_equal(wide.status, [bs.Status.OK, bs.Status.NOT_REACHED])
-    assert np.isnan(wide.max_pressure[1])
+    """Contacts up to the widest one converge, and wider or deeper ones do not exist."""
+    model, d = bs.Exact(gap=bs.CircularGap), EQUATOR * np.append(np.geomspace(0.3, 1.0, 60), [1.001, 1.1, 2.0])
+    contact = model.press(LOOSE, indentation=d)
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK] * 60 + [bs.Status.NOT_REACHED] * 3)
+    assert (np.diff(contact.half_angle[:60]) > 0).all()
+    springs = np.arccos(np.sqrt(1 - (17 / 18) ** 2))  # the widest contact of a circle on springs
+    assert contact.half_angle[59] == pytest.approx(springs, abs=np.radians(2.0))
+    wider = model.press(LOOSE, half_angle=contact.half_angle[59] + np.radians([-0.1, 0.1, 1.0, 10.0]))
+    np.testing.assert_array_equal(wider.status, [bs.Status.OK] + [bs.Status.NOT_REACHED] * 3)
+    assert np.isnan(wider.max_pressure[1:]).all()
 
 
-@pytest.mark.parametrize("gap", [bs.LinearGap, bs.CircularGap])
-def test_energy_is_the_work_and_stiffness_the_slope(gap):
-    d = np.array([0.005, 0.02, 0.04])
+@pytest.mark.parametrize(
+    ("joint", "gap", "d"),
+    [
+        (HIP, bs.LinearGap, [0.005, 0.02, 0.04]),
+        (HIP, bs.CircularGap, [0.005, 0.02, 0.04]),
+        (LOOSE, bs.CircularGap, [0.5 * EQUATOR, 0.9 * EQUATOR]),
+    ],
+)
+def test_energy_is_the_work_and_stiffness_the_slope(joint, gap, d):
+    d = np.array(d)
     step = 1e-4 * d
-    above, here, below = (bs.Exact(gap=gap, tolerance=1e-9).press(HIP, indentation=x) for x in (d + step, d, d - step))
+    model = bs.Exact(gap=gap, tolerance=1e-9)
+    above, here, below = (model.press(joint, indentation=x) for x in (d + step, d, d - step))
     np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
     np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)
 
