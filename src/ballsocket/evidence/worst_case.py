@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference
+from ..catalogue import reference, with_gap
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
 from ..core.deprecation import renamed_names
@@ -114,12 +114,12 @@ def _solve_aligned(question: Question, joint: Joint, load: Mapping[str, Any]) ->
     """Solve a case with its load along the axis, by every method that can."""
     cup, suffix = question.file.cup, _suffix(question)
     models: dict[str, Model] = {
-        f"exact{suffix}": reference.in_cup(cup),
+        f"exact{suffix}": with_gap(reference, question.gap).in_cup(cup),
         f"tabulated{suffix}": Tabulated().in_cup(cup),
-        f"sphere{ALONG}": Sphere(cup=cup),
+        f"sphere{ALONG}": with_gap(Sphere(cup=cup), question.gap),
     }
     if question.finite_elements and find_spec("skfem") is not None:
-        models[f"finite elements{suffix}"] = FiniteElement(cup=cup)
+        models[f"finite elements{suffix}"] = with_gap(FiniteElement(cup=cup), question.gap)
     for name, model in models.items():
         try:
             yield _solve(name, model, joint, load)
@@ -144,11 +144,11 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
     if not (question.finite_elements and shutil.which("ccx") and find_spec("skfem")):
         return []
     joint, load, _ = press_arguments(question.file.joint, case)
-    model = FiniteElement(cup=question.file.cup, meshes=1)
+    model = with_gap(FiniteElement(cup=question.file.cup, meshes=1), question.gap)
     return [_run_calculix(f"CalculiX{_suffix(question)}", model, joint, _size(load))]
 
 
-def _run_calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
+def _run_calculix(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     """Run CalculiX on the input deck of a contact."""
     from ..elasticity.finite_elements.calculix import run
     from ..elasticity.finite_elements.deck import deck_of
@@ -205,8 +205,8 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
         for name, spread in spreads.items()
         if name not in LOADS
     }
-    model = default_model(joint, ends)
-    count = _EXACT_SAMPLES if model is reference else _TABULATED_SAMPLES
+    model = default_model(joint, ends) if question.gap is None else with_gap(reference, question.gap)
+    count = _EXACT_SAMPLES if model.name == reference.name else _TABULATED_SAMPLES
     drawn = sample(count, seed=_SEED, method=Method.SOBOL, **dict[str, Any](spreads)).values_in([slice(None)])
     made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
