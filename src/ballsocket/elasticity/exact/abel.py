@@ -90,7 +90,7 @@ class AbelState(PeakPressure):
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation d in mm, solved by Newton's method; NaN for half angles without a contact.
+        """Indentation d in mm, solved by Newton's method; NaN if a circular gap has no contact of this half angle.
 
         The condition is H(ε) = 0: the pressure is bounded at the edge. H(ε) is concave in d, so that the steps from
         d = 0 do not pass its root. Under a circular gap the widest contact lies along a great circle of the ball; for
@@ -103,12 +103,13 @@ class AbelState(PeakPressure):
                 for right_side in (self.gap.transform, self.gap.indentation_derivative)
             )
             step = (self._solve_edge_value(residual) / self._solve_edge_value(slope))[:, None]
-            d = numpy.where(step > _DEPTH_TOLERANCE * abs(d), numpy.nan, d - step)
-            unsolved = abs(step) > _DEPTH_TOLERANCE * abs(d)
+            d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
                 break
+            if self.gap.steps > 1:
+                d[step > _DEPTH_TOLERANCE * abs(d)] = numpy.nan  # back from beyond the maximum
         if self.gap.steps > 1:
-            d[unsolved] = numpy.nan
+            d[abs(step) > _DEPTH_TOLERANCE * abs(d)] = numpy.nan
         return d[:, 0]
 
     @cached_property
