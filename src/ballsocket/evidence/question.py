@@ -32,10 +32,11 @@ from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
-from ..model_catalogue import off_axis, reference
+from ..model_catalogue import off_axis, reference, with_gap
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit
+from ..studies.file import ModelGap
 from ..studies.limits import Limit
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, nominal_value, vary_joint
 
@@ -128,6 +129,7 @@ class QuestionTable(JointTables, frozen=True, kw_only=True):
     question: Annotated[Text, meaning(_QUESTION)]
     context_of_use: Annotated[Text, meaning(_CONTEXT)]
     finite_elements: Annotated[bool, meaning("check of the worst cases with finite elements")] = False
+    gap: ModelGap = None
     risk: Annotated[RiskTable, meaning("risk of a wrong decision")]
     required: Annotated[RequiredTable, meaning("requirements on the numbers")]
     matrix: MatrixTable | None = None
@@ -181,6 +183,8 @@ class Question:
         File of a hip simulation, whose wear belongs to the evidence.
     finite_elements : bool
         True for a check of the worst cases by finite elements.
+    gap : str, optional
+        Gap of all models that have a choice, "linear" or "circular".
     path : Path
         The file.
     files : tuple of Path
@@ -201,6 +205,7 @@ class Question:
     friction: float | None
     hip: Path | None
     finite_elements: bool
+    gap: str | None
     path: Path
     files: tuple[Path, ...]
 
@@ -208,7 +213,7 @@ class Question:
     def model(self) -> Model:
         """Model of the matrix: `Exact`, or the off-axis solver for tilted loads or cups."""
         chosen = off_axis if any(name in AIMS for name in self.axes) else reference
-        return chosen.in_cup(self.file.cup)
+        return with_gap(chosen, self.gap).in_cup(self.file.cup)
 
 
 def read_question(path: str | Path) -> Question:
@@ -270,6 +275,7 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         friction=None if friction is None else float(friction),
         hip=hip,
         finite_elements=tables.finite_elements,
+        gap=tables.gap,
         path=path,
         files=(path,),
     )

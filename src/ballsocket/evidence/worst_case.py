@@ -24,7 +24,7 @@ from ..elasticity.off_axis.model import Sphere
 from ..hip.config import HipFile, read_hip
 from ..hip.simulation import HipSimulation
 from ..hip.wear_uncertainty import uncertainty
-from ..model_catalogue import reference
+from ..model_catalogue import reference, with_gap
 from ..problem import Joint
 from ..studies.axes import Method
 from ..studies.design import sample
@@ -98,12 +98,12 @@ def compare_methods(question: Question, case: Case) -> list[CalculationMethod]:
             methods.append(replace(_solve(name, solver, joint, load), aligned=False))
     cup, suffix = question.file.cup, ALONG if question.model.off_axis else ""
     models: dict[str, Model] = {
-        f"exact{suffix}": reference.in_cup(cup),
+        f"exact{suffix}": with_gap(reference, question.gap).in_cup(cup),
         f"tabulated{suffix}": Tabulated().in_cup(cup),
-        f"sphere{ALONG}": Sphere(cup=cup),
+        f"sphere{ALONG}": with_gap(Sphere(cup=cup), question.gap),
     }
     if question.finite_elements and find_spec("skfem") is not None:
-        models[f"finite elements{suffix}"] = FiniteElement(cup=cup)
+        models[f"finite elements{suffix}"] = with_gap(FiniteElement(cup=cup), question.gap)
     for name, model in models.items():
         with suppress(OutsideDomainError):
             methods.append(_solve(name, model, joint, size))
@@ -136,7 +136,8 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
     from ..elasticity.finite_elements.deck import deck_of
 
     joint, _, size = _joint_and_load(question, case)
-    contact: Contact = FiniteElement(cup=question.file.cup, meshes=1).press(joint, **size)
+    model = with_gap(FiniteElement(cup=question.file.cup, meshes=1), question.gap)
+    contact: Contact = model.press(joint, **size)
     name = f"CalculiX{ALONG if question.model.off_axis else ''}"
     failed = CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))
     if contact.status.failed:
@@ -184,8 +185,8 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
         for name, spread in spreads.items()
         if name not in LOADS
     }
-    model = default_model(joint, ends)
-    count = _EXACT_SAMPLES if model is reference else _TABULATED_SAMPLES
+    model = default_model(joint, ends) if question.gap is None else with_gap(reference, question.gap)
+    count = _EXACT_SAMPLES if model.name == reference.name else _TABULATED_SAMPLES
     drawn = sample(count, seed=_SEED, method=Method.SOBOL, **dict[str, Any](spreads)).values_in([slice(None)])
     made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
