@@ -11,6 +11,7 @@ from math import degrees, inf
 from pathlib import Path
 from typing import Any
 
+from ..contact.strength import unchecked_strength_reason
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
@@ -67,6 +68,7 @@ def gather_evidence(
 
 def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
     """Assemble the record from the results of all pieces, and assess it."""
+    missing = {"utilisation": unchecked_strength_reason(question.file.joint)}
     record: dict[str, Any] = {
         "version": fingerprint(),
         "made_with": made_with(),
@@ -82,7 +84,10 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         "matrix": [row.summary() for row in rows],
         "worst": {name: row.summary() for name, row in worst.items()},
         "drawn": _drawn_joint(question, worst),
-        "limits": [check_limit(limit, rows, question.accuracy).summary() for limit in question.limits],
+        "limits": [
+            check_limit(limit, rows, question.accuracy, missing.get(limit.name, "")).summary()
+            for limit in question.limits
+        ],
         "code_verification": results["code_verification"],
         "calculation": _calculations(worst, results),
         "claims": [dict(entry) for entry in results["claims"]],

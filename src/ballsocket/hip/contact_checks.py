@@ -60,14 +60,9 @@ class GridContact(Contact):
         return (1 + strength.TABLE_ERROR) * exact_stress_ratio(mean_joint, self.half_angle) * self.max_pressure
 
     @property
-    def quick_von_mises(self) -> Array:
-        """Largest von Mises stress in the liner in MPa: `von_mises`, which needs no further solution."""
-        return self.von_mises
-
-    @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa."""
-        return strength.off_axis_bounds(self.von_mises)
+    def quick_von_mises(self) -> Bounded:
+        """Largest von Mises stress in the liner in MPa with its bounds; it needs no solution for stresses."""
+        return strength.off_axis_von_mises(self.von_mises)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
-from ...contact.strength import OFF_AXIS_ERROR, TABLE_ERROR, off_axis_bounds, von_mises_ratio
+from ...contact.strength import OFF_AXIS_ERROR, TABLE_ERROR, off_axis_von_mises, von_mises_ratio
+from ...contact.verdict import Bounded
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.records import cached_array
@@ -50,15 +51,9 @@ class OffAxisContact(SolvedContact):
         return numpy.asarray((1 + TABLE_ERROR) * ratio * state.max_pressure)
 
     @property
-    def quick_von_mises(self) -> Array:
-        """Largest von Mises stress in the liner in MPa: `von_mises`, which needs no further solution."""
-        return self.von_mises
-
-    @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa."""
-        low, high = off_axis_bounds(self.von_mises)
-        return self._match_load(low), self._match_load(high)
+    def quick_von_mises(self) -> Bounded:
+        """Largest von Mises stress in the liner in MPa with its bounds; it needs no solution for stresses."""
+        return Bounded(*map(self._match_load, off_axis_von_mises(self.von_mises)))
 
     @cached_array
     def force_vector(self) -> Array:
