@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..core.arrays import Array, all_true, clip, logical_not, sqrt, to_numpy, where
+from ..core.arrays import Array, all_true, clip, exp, logical_not, sqrt, to_numpy, where
 from ..core.deprecation import renamed_names
 from ..core.quantities import LINEARITY, STRENGTH
 from ..core.validity import RIGID_BACKING, Range
@@ -29,11 +29,8 @@ The force of a ball on an elastic, perfectly plastic flat follows Hertz up to 1.
 TABLE_ERROR = 0.005
 """Relative error of the tabulated ratio of von Mises stress to pressure, for a rigid ball on a rigid backing."""
 
-OFF_AXIS_ERROR = 0.2
-"""Relative error of the stress of a tilted, worn or rimmed contact, estimated by that of the axial contact.
-
-Finite elements of nine cups with a rim have 0 to 6 % more stress, and 7 to 19 % if the contact reaches the rim.
-"""
+_RIM_ERRORS, _RIM_REACH = (0.04, 0.35), 0.9
+"""Errors below and above at the rim, for ν of 0.5, and the arc over the thickness that leaves 37 % of them."""
 
 _AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15, 0.3
 """Errors beyond the table: over -ν below 0, for ν above 0.4993, R2/L above 20.5, and, not measured, ε above 85°."""
@@ -111,9 +108,22 @@ def bounded_von_mises(contact: Any, von_mises: Array) -> Bounded:
     return Bounded(von_mises, clip(1 - error, 0.0, 1.0) * von_mises, high)
 
 
-def off_axis_von_mises(von_mises: Array) -> Bounded:
-    """Return a von Mises stress in MPa that is estimated from the axial contact, with its bounds."""
-    return Bounded(von_mises, (1 - 2 * TABLE_ERROR) * von_mises, (1 + OFF_AXIS_ERROR) * von_mises)
+def rim_errors(joint: Joint, edge_distance: Array) -> tuple[Array, Array]:
+    """Compute the relative errors, below and above, of the stress of the axial contact near the rim of a cup.
+
+    Finite elements of 251 axial and 250 tilted contacts have 99.3 % of the stresses within, and no bound where the
+    contact reaches the rim. A quarter of the thickness around its corners is omitted: there the stress is unbounded.
+
+    Parameters
+    ----------
+    joint : Joint
+    edge_distance : float or array
+        Arc in mm from the edge of the contact to the rim.
+    """
+    L, R2, (low, high) = joint.liner_thickness, joint.socket_radius, _RIM_ERRORS
+    near = exp(-edge_distance / (_RIM_REACH * where(L < R2, L, R2)))
+    above = where(edge_distance > 0, high * (2 * clip(joint.liner.poisson, 0.0, 0.5)) ** 8 * near, inf)
+    return clip(TABLE_ERROR + low * near, 0.0, 1.0), TABLE_ERROR + above
 
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
