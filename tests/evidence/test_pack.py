@@ -6,7 +6,6 @@ import shutil
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from pkgutil import resolve_name
 
 import pytest
 
@@ -268,18 +267,3 @@ def test_named_files_in_the_folder_of_stored_results_are_refused(tmp_path):
     (tmp_path / "data" / "joint.toml").write_bytes((EXAMPLES / "hip.toml").read_bytes())
     with pytest.raises(ValueError, match="'data/joint.toml' is reserved for a file of the pack"):
         source_files(question_of(tmp_path, ("hip-36", "data/joint.toml")))
-
-
-RENAMED = {
-    "calculation.beside": "worst_case.compare_methods", "scatter.scattered": "worst_case.propagate_tolerances",
-    "wear.worn": "worst_case.wear_history", "matrix.rows": "matrix.compute_rows", "matrix.cases": "matrix.list_cases",
-    "pack.gathered": "pack.gather_evidence", "requirements.assessed": "requirements.assess",
-    "comparison.signature_of": "folder.signature_of", "comparator.reach_of": "applicability.similarity_ranges",
-    "code_checks.Checked": "code_checks.CheckResult",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("old", "new"), RENAMED.items())
-def test_calls_in_packs_of_version_1_0_still_work(old, new):
-    with pytest.warns(DeprecationWarning, match=new.rpartition(".")[2]):
-        assert resolve_name(f"ballsocket.evidence.{old}") is resolve_name(f"ballsocket.evidence.{new}")

@@ -14,7 +14,7 @@ from ballsocket.hip.config import read_hip, read_wear_test
 from ballsocket.hip.creep_law import constrained_share
 from ballsocket.hip.cycle import check_step_count
 from ballsocket.hip.cycle_file import TableOptions
-from ballsocket.hip.in_vivo import check_body_weight
+from ballsocket.hip.in_vivo_cycles import check_body_weight
 from ballsocket.hip.wear_law import wear_factor, with_coefficient
 from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular

@@ -12,7 +12,6 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import check_numeric, check_vectors, degrees_hint, require, shown
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.display import load_plot
 from ..core.kinds import Unit
 from ..core.lazy import cached_property
@@ -133,7 +132,6 @@ class Contact(Outcome):
         is_liner_checked = self.joint.liner.yield_stress is not None
         return self._compute_utilisation(self.von_mises if is_liner_checked else self.max_pressure)
 
-    @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
         """Compute the ratio of von Mises to yield stress at the points of a mask; other points may be NaN.
 
@@ -158,8 +156,6 @@ class Contact(Outcome):
     def error(self) -> dict[str, Array]:
         """Estimated relative errors as of `Outcome`, and that of the von Mises stress at the largest pressure."""
         return {**super().error, "von_mises": self._mask_failed(lambda: strength.von_mises_error(self))}
-
-    utilisation_where = RenamedAttribute("utilisation_at")
 
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa from the tabulated ratio."""
@@ -447,6 +443,3 @@ def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:
         for azimuth in azimuths
     ]
     return arrays.weighted_sum(sines, [1 / 64] * 64)
-
-
-__getattr__ = renamed_names(__name__, {"Pressed": "ballsocket.contact.outcome.ModelInfo"})

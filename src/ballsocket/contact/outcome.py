@@ -11,7 +11,6 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
 from ..core.records import cached_array
 from ..core.sources import Source
@@ -199,6 +198,3 @@ class Outcome(ABC):
         if hasattr(self._load, "shape"):
             return arrays.read_only(arrays.broadcast(value, self._load))
         return value
-
-
-__getattr__ = renamed_names(__name__, {"Theory": "ModelInfo"})

@@ -11,7 +11,6 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Array, all_true, clip, exp, logical_not, sqrt, to_numpy, where
-from ..core.deprecation import renamed_names
 from ..core.quantities import LINEARITY, STRENGTH
 from ..core.validity import RIGID_BACKING, Range
 from ..problem import Joint, Material, elementwise_maximum
@@ -259,14 +258,3 @@ def _stress_ratio_text(ratio: Array) -> str:
     digits_text = f"{numpy.nanmax(ratios, initial=0.0):.2g}"
     largest = f"{'1.0' if digits_text == '1' else digits_text} times"
     return largest if ratios.size == 1 else f"up to {largest}"
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "ELASTIC": "MAX_ELASTIC_UTILISATION",
-        "ball_share": "joint_ball_stress_ratio",
-        "share": "von_mises_ratio",
-        "share_of_ball": "ball_stress_ratio",
-    },
-)

@@ -14,7 +14,6 @@ from math import inf, nextafter
 from math import isfinite as is_finite_number
 
 from ..core.arrays import isfinite, where
-from ..core.deprecation import renamed_names
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
 from .bounded import Bounded as Bounded
@@ -233,13 +232,3 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
 
 def _undecided(reason: str) -> StrengthVerdict:
     return StrengthVerdict(verdict=Verdict.UNDECIDED, words=f"undecided: {reason}")
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Share": "StrengthUse",
-        "shares": "strength_uses",
-        "verdict": "assess_strength",
-    },
-)

@@ -9,7 +9,6 @@ from math import inf
 from typing import Any, NamedTuple
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
-from .deprecation import RenamedAttribute
 from .kinds import Unit
 from .lazy import cached_property
 from .quantities import QUANTITIES
@@ -123,8 +122,6 @@ class Range:
     def quantity_of(self) -> Callable[[Any], Array]:
         """Function that reads or computes the quantity from a contact."""
         return self.quantity if callable(self.quantity) else _AttributePath(self.quantity)
-
-    of = RenamedAttribute("quantity_of")
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""

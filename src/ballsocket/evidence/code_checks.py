@@ -16,7 +16,6 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_fields, renamed_names
 from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.elasticity import ElasticBlock
 from ..elasticity.finite_elements.mesh import Block, mesh_block
@@ -32,7 +31,6 @@ from ..problem.gaps import LinearGap
 from ..problem.presets import joints
 
 
-@renamed_fields(what="description")
 @dataclass(frozen=True, kw_only=True)
 class CheckResult:
     """Result of a check.
@@ -298,5 +296,3 @@ CHECKS: Mapping[str, Callable[[], CheckResult]] = MappingProxyType(
     }
 )
 """Checks by name."""
-
-__getattr__ = renamed_names(__name__, {"Checked": "CheckResult"})

@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference
 from ..core.arrays import Array, to_numpy, where
-from ..core.deprecation import renamed_names
+from ..model_catalogue import reference
 from ..models.half_space import Hertz
 from ..paper.claims import ELSEWHERE, Claim, judge
 from ..problem import Joint, Layer, Material
@@ -404,6 +403,3 @@ def range_text(ends: Sequence[float]) -> str:
     """Format a range with three digits, such as "1 to 2.5"."""
     low, high = (f"{end:.3g}" for end in ends)
     return low if low == high else f"{low} to {high}"
-
-
-__getattr__ = renamed_names(__name__, {"between": "range_text", "reach_of": "similarity_ranges"})

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.pieces import fingerprint
 from .credibility import assess
@@ -104,7 +103,6 @@ class PackComparison:
     record: Record
 
 
-@renamed_arguments(listen="progress")
 def compare(
     folder: Path,
     page: PageMaker,
@@ -350,8 +348,3 @@ def _agrees(pair: Difference, computed: Mapping[str, Any]) -> bool:
 
 
 _OBSERVED = re.compile(r"code_verification\[(\d+)\]\.observed")
-
-
-__getattr__ = renamed_names(
-    __name__, {name: f"ballsocket.evidence.folder.{name}" for name in ("Signed", "signature_of")}
-)

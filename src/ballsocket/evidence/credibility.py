@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..contact.verdict import Verdict
-from ..core.deprecation import renamed_names
 from . import credibility_levels
 from .credibility_levels import ReachedLevel, Record, error_margins
 from .matrix import NAMES, input_title, limit_text, number
@@ -367,6 +366,3 @@ def _adequacy(record: Record, factors: list[dict[str, Any]]) -> dict[str, Any]:
 def gaps(record: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return the rows with the status not met or not known."""
     return [row for row in record["requirements"] if row["status"] != MET]
-
-
-__getattr__ = renamed_names(__name__, {"assessed": "assess"})

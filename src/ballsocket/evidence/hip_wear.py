@@ -11,23 +11,21 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_fields, renamed_names
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
 from ..hip.rim import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
-from ..hip.uncertainty import population
 from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
+from ..hip.wear_uncertainty import population
 from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 
 
-@renamed_fields(what="description", off="half_width")
 @dataclass(frozen=True, kw_only=True)
 class Published:
     """Published wear or penetration.
@@ -178,7 +176,6 @@ class Predicted:
     high: float
 
 
-@renamed_fields(one="numerator", other="denominator")
 @dataclass(frozen=True, kw_only=True)
 class Ratio:
     """Ratio of two measured wear rates, as the laws predict it independently of their coefficients.
@@ -298,6 +295,3 @@ def _band(name: str, values: Numbers) -> Predicted:
     tail = (1 - DEFAULT_LEVEL) / 2
     low, median, high = (float(value) for value in numpy.nanquantile(values, [tail, 0.5, 1 - tail]))
     return Predicted(name=name, low=low, median=median, high=high)
-
-
-__getattr__ = renamed_names(__name__, {"in_use": "make_hip"})

@@ -13,7 +13,6 @@ import numpy
 from ..contact import Contact
 from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, error_bar
 from ..core.arrays import Numbers, to_numpy
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.validity import Status
@@ -216,7 +215,6 @@ def worst_rows(rows: Sequence[Row]) -> dict[str, Row]:
     return worst
 
 
-@renamed_fields(near="marginal")
 @dataclass(frozen=True)
 class LimitCheck:
     """Result of the check of a limit over the matrix.
@@ -368,8 +366,3 @@ def input_title(name: str) -> str:
         return f"{LIMITED[inside].title} of layer {index} behind the liner"
     part, _, strength = name.partition("_")
     return LIMITED[name].title if name in LIMITED else f"{LIMITED[strength].title} of the {part}"
-
-
-__getattr__ = renamed_names(
-    __name__, {"Kept": "LimitCheck", "cases": "list_cases", "rows": "compute_rows", "kept": "check_limit"}
-)

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from ..contact.strength import unchecked_strength_reason
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Results, fingerprint
@@ -37,7 +36,6 @@ def ignore_progress(name: str) -> None:
     """Ignore the name of a completed piece."""
 
 
-@renamed_arguments(listen="progress")
 def gather_evidence(
     question: Question, folder: Path, progress: Listener = ignore_progress, engine: Engine = _SERIAL
 ) -> dict[str, Any]:
@@ -225,8 +223,3 @@ def made_with() -> dict[str, str]:
     drawing = {"freetype": __freetype_version__, "zlib": str(features.version("zlib"))}
     machine = f"{sys.platform} {platform.machine()}"
     return {"python": platform.python_version(), "system": machine, **versions, **drawing}
-
-
-__getattr__ = renamed_names(
-    __name__, {"gathered": "gather_evidence", "inputs": "list_inputs", "silent": "ignore_progress"}
-)

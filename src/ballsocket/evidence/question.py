@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 from unicodedata import category
 
-from ..catalogue import off_axis, reference
 from ..contact import Model
 from ..core.checks import check_filled, check_names, check_text, number_of_percent, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
@@ -33,6 +32,7 @@ from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
+from ..model_catalogue import off_axis, reference
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit

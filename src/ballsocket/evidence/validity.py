@@ -13,12 +13,11 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import to_list
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
+from ..model_catalogue import catalogue
 from ..problem import Joint, Material
 
 SHARE, EXCESS = 0.99, 1.3
@@ -30,7 +29,6 @@ TRUTH = Tabulated()
 Numbers = numpy.ndarray
 
 
-@renamed_fields(asked="contacts", kept="kept_share")
 @dataclass(frozen=True, kw_only=True)
 class MeasuredValidity:
     """Measured errors of a model within its range.
@@ -150,6 +148,3 @@ def _select(number: Any, indices: Any) -> Numbers:
     """Return the numbers of some contacts; a single number belongs to all of them."""
     values = numpy.atleast_1d(numpy.asarray(number, dtype=float))
     return values if values.size == 1 else values[indices]
-
-
-__getattr__ = renamed_names(__name__, {"promising": "models_with_promise"})

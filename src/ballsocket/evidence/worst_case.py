@@ -13,10 +13,8 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
-from ..core.deprecation import renamed_names
 from ..core.quantities import CONTACT, QUANTITIES
 from ..core.validity import OutsideDomainError
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -24,13 +22,14 @@ from ..elasticity.finite_elements.model import FiniteElement
 from ..elasticity.off_axis.model import Sphere
 from ..hip.config import HipFile, read_hip
 from ..hip.simulation import HipSimulation
-from ..hip.uncertainty import uncertainty
+from ..hip.wear_uncertainty import uncertainty
+from ..model_catalogue import reference
 from ..problem import Joint
 from ..studies.axes import Method
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
 from ..studies.run import default_model
-from ..studies.sensitivity import sensitivity
+from ..studies.variance_shares import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
 
@@ -304,14 +303,3 @@ def wear_history(question: Question, case: Case) -> dict[str, Any]:
         variability = replace(file.uncertain.variability, use=hip)
         result |= uncertainty(variability, history, count=file.uncertain.count, seed=file.uncertain.seed).summary()
     return result
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "beside": "compare_methods",
-        "scattered": "propagate_tolerances",
-        "rates": "wear_rates",
-        "worn": "wear_history",
-    },
-)

@@ -11,9 +11,7 @@ from typing import Any
 
 import msgspec
 
-from ..catalogue import catalogue
 from ..core.checks import number_of_percent, require, shown
-from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
@@ -21,6 +19,7 @@ from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant, Stribeck
+from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
@@ -54,7 +53,8 @@ class HipFile:
         Number of cycles.
     report_at : tuple of float
         Cycle counts of the reports.
-    lubricant : Lubricant
+    lubricant : Lubricant, optional
+        Lubricant of the film; None if neither [film] nor a limit of the film ratio asks for one.
     uncertain : optional
         Distributions of quantities that differ between patients; None without a table [uncertainty].
     data : tuple of MeasuredWear
@@ -68,7 +68,7 @@ class HipFile:
     use: HipSimulation
     cycles: float
     report_at: tuple[float, ...]
-    lubricant: Lubricant
+    lubricant: Lubricant | None
     uncertain: UncertaintySettings | None = None
     data: tuple[MeasuredWear, ...] = ()
     name: str = ""
@@ -125,7 +125,8 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     joint_file = _parse_joint(tables, folder)
     cycle, law_numbers = cycle_of(tables, folder), content.get("wear", {})
     seconds = None if tables.creep is None else tables.creep.seconds_per_cycle
-    lubricant, limit = _lubricant(tables.film), tables.wear.film_limit
+    limit = tables.wear.film_limit
+    lubricant = None if tables.film is None and limit is None else _lubricant(tables.film or FilmTable())
     use = HipSimulation(
         joint=joint_file.joint,
         cup=joint_file.cup,
@@ -135,7 +136,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         surface=socket_surface(tables.wear.contact, tables.wear.model),
         creep=parse_creep(content, float(joint_file.joint.liner.poisson)),
         seconds_per_cycle=None if seconds is None else float(seconds),
-        film_limit=None if limit is None else FilmLimit(ratio=float(limit), lubricant=lubricant),
+        film_limit=None if limit is None or lubricant is None else FilmLimit(ratio=float(limit), lubricant=lubricant),
         **quantities_of(tables.wear, "ring_width"),
     )
     cycles, report_at = _length(tables, cycle.per_year)
@@ -364,8 +365,6 @@ class UncertaintySettings:
     variability: PatientVariability
     count: int
     seed: int
-
-    scatter = RenamedAttribute("variability")
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..contact.verdict import Verdict
-from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
 from ..studies.limits import (
     Limit,
@@ -247,7 +246,6 @@ _INDEX_STYLES = {
 """Label, colour and hatch of the bars for each kind of index."""
 
 
-@renamed_arguments(found="indices")
 def sensitivity_figure(indices: xarray.Dataset) -> Figure:
     """Draw first and total indices, and Shapley effects, of every quantity with their intervals."""
     from .notebook_figure import NotebookFigure

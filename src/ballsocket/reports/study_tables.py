@@ -19,7 +19,7 @@ from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..studies.export import dimension_names, iterate_chunks
+from ..studies.file_formats import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS

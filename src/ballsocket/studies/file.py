@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
-from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
@@ -32,6 +30,7 @@ from ..files.schema import (
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import as_given, parse
+from ..model_catalogue import named_models
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Span
@@ -295,8 +294,3 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
-
-
-__getattr__ = renamed_names(
-    __name__, {"models": "ballsocket.catalogue.named_models", "named_model": "ballsocket.catalogue.named_model"}
-)

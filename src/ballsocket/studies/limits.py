@@ -12,7 +12,6 @@ import numpy
 
 from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, JOINT
 from ..core.validity import Status
@@ -25,15 +24,6 @@ from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
 if TYPE_CHECKING:
     import xarray
 
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "NAMES": "LIMITED_NAMES",
-        "dimension": "joint_dimension",
-        "margin_on_plane": "margin_on_plane",
-        "refusal": "refusal_reason",
-    },
-)
 
 _ANGLES = tuple(name for name, quantity in {**PARAMETERS, **CONTACT}.items() if quantity.kind is Kind.ANGLE)
 
@@ -88,8 +78,6 @@ class Limit:
         if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
             return self.cup.edge_distance(joint_dimension(study, "socket_radius"), study.half_angle, self.direction)
         return study[self.name] if self.name in study.data_vars else joint_dimension(study, self.name)
-
-    of = RenamedAttribute("evaluate")
 
     def bar(self, study: xarray.Dataset) -> Bounded:
         """Return the limited quantity with its error bar at every point; without width if the study has no bounds."""
