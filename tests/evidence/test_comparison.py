@@ -138,7 +138,8 @@ def test_a_pipe_is_reported_and_not_opened(out):
         (SUMS, None, "holds no pack of evidence: checksums.txt is missing"),
         (QUESTION, None, "holds no pack of evidence: question.toml is missing"),
         (RECORD, None, "holds no pack of evidence: evidence.json is missing"),
-        (RECORD, b"{", "evidence.json cannot be read as JSON"),
+        (RECORD, b"{", "evidence.json cannot be read: 'Expecting property name"),
+        (RECORD, b'{"limit": {"verdict": "kept", "verdict": "exceeded"}}', "key 'verdict' is there 2 times"),
         (RECORD, b"[]", "evidence.json holds no record of a pack"),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import date, timedelta
@@ -101,9 +102,9 @@ def compare(folder: Path, progress: Listener = lambda name: None, engine: Engine
             raise ValueError(f"{folder} holds no pack of evidence: {name} is missing")
     checksums = (folder / SUMS).read_bytes()
     try:
-        record = json.loads((folder / RECORD).read_bytes())
+        record = json.loads((folder / RECORD).read_bytes(), object_pairs_hook=_unique_keys)
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{folder / RECORD} cannot be read as JSON: {shown(str(error))}") from error
+        raise ValueError(f"{folder / RECORD} cannot be read: {shown(str(error))}") from error
     if not isinstance(record, dict):
         raise ValueError(f"{folder / RECORD} holds no record of a pack")
     question = read_question(folder / QUESTION)
@@ -126,6 +127,13 @@ def compare(folder: Path, progress: Listener = lambda name: None, engine: Engine
         digest=digest(checksums),
         record=record,
     )
+
+
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    ((name, count),) = Counter(name for name, _ in pairs).most_common(1) or [("", 1)]
+    if count > 1:
+        raise ValueError(f"the key {shown(name)} is there {count} times")
+    return dict(pairs)
 
 
 def _compare_files(folder: Path, names: Sequence[str], checksums: str) -> Iterator[Difference]:
