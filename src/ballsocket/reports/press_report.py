@@ -31,7 +31,7 @@ from .section_plots import joint_section
 from .unit_systems import Units
 
 _TEMPLATE = "press.html"
-_ROUNDING = 1e-9
+_ROUNDING = 1e-7
 """Relative size of a component of a force that is the rounding error of zero."""
 
 _VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.EXCEEDED: "fails"}
@@ -355,7 +355,8 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
         angle = degrees(float(polar_angle(contact.max_pressure_at)))
         yield "largest pressure from the cup's axis", f"{angle:.3g}°", "angle at the centre of the bore"
     vector = contact.force_vector + 0.0
-    vector[abs(vector) < _ROUNDING * abs(vector).max()] = 0.0
+    scale = max(*abs(vector), contact.max_pressure * contact.area)  # the pressures of a preload balance
+    vector[abs(vector) < _ROUNDING * scale] = 0.0
     force = (units.text_of(CONTACT["force"], float(part)) for part in vector)
     yield "force of the ball on the cup", ", ".join(force), "components towards the rim, across, towards the dome"
 
