@@ -14,7 +14,7 @@ from ballsocket.hip.config import read_hip, read_wear_test
 from ballsocket.hip.creep_law import constrained_share
 from ballsocket.hip.cycle import check_step_count
 from ballsocket.hip.cycle_file import TableOptions
-from ballsocket.hip.in_vivo import check_body_weight
+from ballsocket.hip.in_vivo_cycles import check_body_weight
 from ballsocket.hip.wear_law import wear_factor, with_coefficient
 from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
@@ -282,7 +282,7 @@ UNCERTAIN = [
 VALUES = 'values = "38 mm^3/Mc"\n'
 STATION_TABLES = {
     "cycles,A\n1,2\n": r"the column 'A' has no unit: write 'A \[mg\]'",
-    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "row 2 has 'x' under 'A ",
+    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "line 3 has 'x' under 'A ",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
 MEASURED = [

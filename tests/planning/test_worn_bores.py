@@ -59,12 +59,15 @@ TEXTS = {
     "a.csv": "id,z [mm],y [mm],x [mm]\n" + "\n".join(",".join(["1", *row[::-1]]) for row in ROWS),
     "a.txt": "X;Y;Z\n" + PLAIN.replace(" ", ";").replace(".", ","),
     "a.asc": "// scan\n" + PLAIN.replace(" ", "\t").replace(".", ","),
+    "b.csv": '"Prüfling","x","y","z"\n"","mm","mm","mm"\n' + "\n".join(f'"µ1",{",".join(row)}' for row in ROWS),
+    "b.txt": PLAIN.replace(".", ","),
+    "b.xyz": f"% µm\n{PLAIN}".replace(" ", ", "),
 }
 
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_points_are_read_as_machines_write_them(tmp_path, name):
-    (tmp_path / name).write_text(TEXTS[name], encoding="utf-8")
+    (tmp_path / name).write_text(TEXTS[name], encoding="cp1252")
     cloud = read_points(tmp_path / name)
     np.testing.assert_allclose(cloud.points, np.unique(POINTS.round(4), axis=0), atol=1e-9)
     assert bool(cloud.notes) == (name == "a.pts")
@@ -77,12 +80,14 @@ def text(points, head=""):
 HEAD = POINTS - scans.CENTRE
 HEAD = HEAD * (32.0 / np.linalg.norm(HEAD, axis=1) - 1.0)[:, None]
 REFUSED = {
-    "two columns": (text(POINTS[:, :2]), "has 2 columns in .*: a point has three, x y z"),
+    "two columns": (text(POINTS[:, :2]), "line 1 has .*: that is no point, three numbers x y z"),
     "metres": (text(POINTS / 1000.0), r"0\.03\d* mm large: .* its unit may be m \(3\d(\.\d)? mm\)"),
     "metres in heads": (text(POINTS, "x_m y_m z_m\n"), "states the unit 'm' .* state --stl-units m"),
     "mixed units": (text(POINTS, "x_mm y_mm z_m\n"), "columns in different units, m and mm"),
     "other heads": (text(POINTS, "a b c\n"), "has the columns 'a', 'b', 'c': name three of them x, y and z"),
-    "a word": (text(POINTS) + "\n1 2 x", "'1 2 x' is no point"),
+    "a word": (text(POINTS) + "\n1 2 x", "line 1001 has '1 2 x': that is no point"),
+    "decimal commas between commas": (PLAIN.replace(".", ",").replace(" ", ","), "may separate numbers or decimals"),
+    "two decimal marks": (PLAIN.replace(" ", ";") + "\n1,5;2;3", "it has decimal points and decimal commas"),
     "few": (text(POINTS[:50]), "at least 200 points"),
     "plane": (text(POINTS * [1.0, 1.0, 0.0]), "is not a bore"),
     "head": (text(HEAD), "% of its points lie inside the sphere"),

@@ -14,7 +14,7 @@ from ballsocket.files.joint_toml import toml_of
 from ballsocket.studies.distributions import Rectangular
 from ballsocket.studies.limits import joint_dimension
 from ballsocket.studies.optimisation import optimise
-from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies.variance_shares import sensitivity
 from tests.cli.command import run
 
 SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)

@@ -13,8 +13,8 @@ import pytest
 import xarray
 
 import ballsocket as bs
-from ballsocket.catalogue import named_model
 from ballsocket.core.kinds import Unit
+from ballsocket.model_catalogue import named_model
 from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives, off_axis_uncertainty
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
@@ -22,10 +22,10 @@ from ballsocket.studies.expressions import parse_distribution, parse_limit, pars
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, joint_dimension, limited_quantities, margin_on_plane, verdicts
 from ballsocket.studies.optimisation import optimise
-from ballsocket.studies.pareto import pareto
+from ballsocket.studies.pareto_front import pareto
 from ballsocket.studies.run import default_model
-from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.task import OUTCOMES
+from ballsocket.studies.variance_shares import sensitivity
 
 from ..cli.command import answer, run
 from ..extent import either, some

@@ -9,8 +9,8 @@ from ballsocket.studies.derivatives import finite_differences, off_axis_uncertai
 from ballsocket.studies.design import Method, Span, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, copula_matrix, tolerance
 from ballsocket.studies.limits import Limit
-from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.variance_indices import shapley_effects
+from ballsocket.studies.variance_shares import sensitivity
 
 HIP = bs.joints["hess-forsbach"]
 RIGID = HIP.replace(ball=None)

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
@@ -81,8 +80,6 @@ class ExportJob:
             "tunables": ", ".join(parameter.name for parameter in TUNABLES),
             "failed": str(ContactState.THROUGH_WALL.value),
         }
-
-    words = RenamedAttribute("template_context")
 
     def program_texts(self) -> dict[str, str]:
         """Return the texts of the C header and source, by file name."""

@@ -236,7 +236,6 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
 
 
 def _details_of(table: ReportTable) -> ReportDetails:
-    """Return the head of a report."""
     return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
 
 
@@ -404,7 +403,6 @@ def _shell(
 
 
 def _layer(name: str, table: LayerTable) -> Layer:
-    """Create a layer behind the liner."""
     material = _material(name, table)
     with as_given(written_in(table), f"{name}."):
         return Layer(thickness=float(table.thickness), material=material)

@@ -187,6 +187,10 @@ def _table_hint(location: _Location, root: _Location) -> str:
     return f"; did you mean {heads[similar[0]]}?" if similar else ""
 
 
+_NAMING_KEYS = ("material", "name", "law", "file")
+"""Keys of tables that a user writes in place of the table."""
+
+
 def _expected(location: _Location) -> str:
     """Describe what a value must be."""
     parts = list(parts_of(location.type))
@@ -209,8 +213,11 @@ def _array(location: _Location, kind: inspect.ListType) -> str:
 
 
 def _table(location: _Location, kind: inspect.StructType) -> str:
-    """Describe a table."""
-    return f"a table: [[{location.key.partition('[')[0]}]]" if "[" in location.key else f"a table: [{location.key}]"
+    """Describe a table; the name of a material, a cycle or a file in its place is moved into it."""
+    if "[" in location.key:
+        return f"a table: [[{location.key.partition('[')[0]}]]"
+    key = next((field.encode_name for field in kind.fields if field.encode_name in _NAMING_KEYS), "")
+    return f"a table: [{location.key}]" + (f", and below it {key} = ..." if key and location.value else "")
 
 
 _EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Location, Any], str]]] = (

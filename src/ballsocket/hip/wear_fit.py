@@ -82,6 +82,8 @@ class MeasuredWear:
         Density in mg/mm³ by which a measured mass is the volume of the values; it is printed as the mass.
     name : str
         Name in messages.
+    remark : str
+        Sentence on lines of its file that are left out; empty without any.
 
     Raises
     ------
@@ -105,6 +107,7 @@ class MeasuredWear:
     station: str | Sequence[str] | None = None
     density: float | None = None
     name: str = ""
+    remark: str = ""
 
     def __post_init__(self) -> None:
         """Check all fields, and convert numbers to arrays."""
@@ -315,7 +318,8 @@ class WearFit:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on rates, uncertainties, scatter and the simulation."""
-        return (*self._fit_notes(), *self.simulation.notes)
+        remarks = dict.fromkeys(measured.remark for measured in self.data if measured.remark)
+        return (*remarks, *self._fit_notes(), *self.simulation.notes)
 
     def _fit_notes(self) -> Iterator[str]:
         """Yield sentences on rates, uncertainties and scatter."""

@@ -312,7 +312,6 @@ def _polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _unit(vector: Numbers) -> Numbers:
-    """Return a unit vector (3,)."""
     return vector / max(float(numpy.linalg.norm(vector)), 1e-12)
 
 
@@ -481,7 +480,6 @@ def _grown(points: Numbers, sphere: _Unworn, smoothed: Numbers, margin: float) -
 
 
 def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: str) -> None:
-    """Raise ValueError for points that are no bore."""
     low, high = RADII
     depth = _polar(points, sphere.centre)[1] - sphere.radius
     smoothed = local.smooth(depth)

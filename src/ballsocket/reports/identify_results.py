@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.table import Table
 
-from ..core.deprecation import renamed_arguments
 from ..core.kinds import Unit
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..identify.experiment import Experiment
-from ..identify.information import QUANTILE_95
-from ..identify.measured import MEASURED, Measured
-from ..identify.posterior import CONVERGED, Posterior
-from ..identify.result import IdentificationResult
-from ..identify.sensitivity import Sensitivity
+from ..identification.experiment import Experiment
+from ..identification.information import QUANTILE_95
+from ..identification.measured import MEASURED, Measured
+from ..identification.posterior import CONVERGED, Posterior
+from ..identification.result import IdentificationResult
+from ..identification.sensitivity import Sensitivity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 from .terminal import console, print_columns, print_folded
 
@@ -34,7 +33,6 @@ _CONTENTS = (0.5, 0.95)
 """Shares of the samples within the drawn regions."""
 
 
-@renamed_arguments(found="result")
 def fit_figure(result: IdentificationResult) -> Figure:
     """Draw measured values with the fitted model above, and residuals in units of the uncertainty below."""
     from .notebook_figure import NotebookFigure
@@ -95,7 +93,6 @@ def _horizontal_values(data: Measured) -> tuple[Numbers, str]:
     return load.shown.factor * data.loads, load.label()
 
 
-@renamed_arguments(found="result", drawn="posterior")
 def corner_figure(result: IdentificationResult, posterior: Posterior | None = None) -> Figure:
     """Draw samples of the posterior: each unknown alone, and each pair of unknowns, with the printed 95 % bands.
 

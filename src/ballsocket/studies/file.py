@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
-from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
@@ -32,7 +30,9 @@ from ..files.schema import (
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import as_given, parse
+from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
+from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
 from .design import Design, check_values, grid, sample, table
@@ -103,6 +103,22 @@ class ModelName(Word):
     """Name of a model."""
 
     noun, choices = "model", tuple(named_models)
+
+
+class GapName(Word):
+    """Name of a gap."""
+
+    noun, choices = "gap", tuple(GAP_KINDS)
+
+
+ModelGap = Annotated[
+    GapName | None,
+    meaning(
+        "gap of exact, fem and sphere: linear, Eq. (6), or circular, Eq. (5); linear up to a clearance of 0.01 R2, "
+        "else circular by default"
+    ),
+]
+"""Gap of the model of a file."""
 
 
 class AxisValues(Parsed):
@@ -204,6 +220,7 @@ class StudyTable(JointTables, frozen=True, kw_only=True):
     """Study file."""
 
     model: Annotated[ModelName, meaning("name of the model")] = ModelName("hess-forsbach")
+    gap: ModelGap = None
     axes: AxesTable | None = None
     samples: SamplesTable | None = None
     table: RowsTable | None = None
@@ -246,7 +263,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     """Create the study of a file in a folder."""
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
-    model = named_models[tables.model].in_cup(file.cup)
+    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup)
     everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
         model=model,
@@ -310,8 +327,3 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
-
-
-__getattr__ = renamed_names(
-    __name__, {"models": "ballsocket.catalogue.named_models", "named_model": "ballsocket.catalogue.named_model"}
-)

@@ -10,22 +10,10 @@ from typing import Any
 from ..contact import Model
 from ..core import quantities
 from ..core.arrays import Array, all_true, where
-from ..core.deprecation import renamed_names
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
 from ..problem.dimensions import STORED_LENGTHS, canonical, check_unique_lengths, derive_lengths, held_lengths
 from ..problem.material import make_unchecked
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "PARTS_OF": "MATERIAL_PARTS",
-        "varied": "vary_joint",
-        "nominal": "nominal_value",
-        "pressable": "press_arguments",
-        "contradiction": "check_contradictions",
-    },
-)
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
     {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}
