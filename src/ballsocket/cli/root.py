@@ -261,8 +261,9 @@ def _usage_message(error: Any) -> str:
     example = re.search(r"'([^']+)'", getattr(getattr(error, "param", None), "help", None) or "")
     if message.startswith("Missing"):
         name = error.param.opts[0]
-        has_example = name.startswith("-") and example
-        return f"{name} is missing: " + (f"{name} '{example[1]}', for example" if has_example else error.param.help)
+        if name.startswith("-") and example:
+            return f"{name} is missing: {name} '{example[1]}', for example"
+        return f"{name} is missing: {error.param.help}"
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"
