@@ -57,7 +57,7 @@ evidence --check . => holds no pack of evidence: checksums.txt is missing
 press {hip} --units inch => 'inch' is not one of 'si', 'imperial'
 press 'C:\\Users\\me\\hip.toml' => ballsocket: 'C:\\Users\\me\\hip.toml'
 pres => No such command 'pres'.
-study => Missing argument
+study => file is missing: Study file
 optimise {hip} => --vary is missing: --vary 'clearance=50..200 um', for example
 study {hip} => this is a joint file: ballsocket press
 press {wear_test} --force 1 => this is a wear test file: ballsocket identify wear_test.toml

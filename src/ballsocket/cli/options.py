@@ -296,7 +296,7 @@ def read_load_option(options: dict[str, str | None], file: JointFile) -> dict[st
     load = read_load(drop_missing(options)) or file.load
     if not load:
         names = [f"--{name.replace('_', '-')}" for name in options]
-        raise ValueError(f"a load is needed: {', '.join(names[:-1])} or {names[-1]}")
+        raise ValueError(f"a load is needed: {', '.join(names[:-1])} or {names[-1]}, such as --force '3 kN'")
     return load
 
 

@@ -259,8 +259,11 @@ def _usage_message(error: Any) -> str:
         return f"{error.param.opts[0]} must be {_allowed_text(checks[0])}, got {shown(checks[0]['input'])}"
     message: str = error.format_message()
     example = re.search(r"'([^']+)'", getattr(getattr(error, "param", None), "help", None) or "")
-    if message.startswith("Missing option") and example:
-        return f"{error.param.opts[0]} is missing: {error.param.opts[0]} '{example[1]}', for example"
+    if message.startswith("Missing"):
+        name = error.param.opts[0]
+        if name.startswith("-") and example:
+            return f"{name} is missing: {name} '{example[1]}', for example"
+        return f"{name} is missing: {error.param.help}"
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"

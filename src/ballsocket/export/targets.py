@@ -209,11 +209,6 @@ def _compile_plugin(job: ExportJob, folder: Path) -> str:
     return ""
 
 
-def _drake_texts(job: ExportJob) -> Texts:
-    """Return the texts of the Python module and the Drake system, by file name."""
-    return {**_python_module_texts(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
-
-
 def _exudyn_texts(job: ExportJob) -> Texts:
     """Return the texts of the Python module and the Exudyn module with its power law, by file name."""
     power, constants = job.fitted_power_law, job.element.constants
@@ -346,7 +341,15 @@ TARGETS: Mapping[str, Target] = {
             central=True,
         ),
         Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco_texts, compiled=_compile_plugin),
-        Target(name="drake", title="a LeafSystem", texts=_drake_texts, compiled=_compile_library),
+        Target(
+            name="drake",
+            title="a LeafSystem",
+            texts=lambda job: {
+                **_python_module_texts(job),
+                f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context),
+            },
+            compiled=_compile_library,
+        ),
         Target(
             name="exudyn",
             title="a user function and its hollow sphere",

@@ -229,21 +229,10 @@ def parse_joint(raw: bytes, title: str) -> JointFile:
 
 def joint_of(content: Mapping[str, Any]) -> JointFile:
     """Convert the tables of a joint file, or of the command line; see `read_joint`."""
-    _refuse_session(content)
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
     load = tables.load or LoadTable()
     return replace(file, load=_load_of(load), aim=_aim_of(load), report=_details_of(tables.report or ReportTable()))
-
-
-def _refuse_session(content: Mapping[str, Any]) -> None:
-    """Raise ValueError for the tables of a session file of the explorer, which holds several designs."""
-    designs = content.get("design")
-    if isinstance(designs, list):
-        raise ValueError(
-            f"one joint is needed, and this is a session file with {len(designs)} of the explorer's designs: "
-            "open it in `ballsocket app` and save one design as TOML"
-        )
 
 
 def _details_of(table: ReportTable) -> ReportDetails:

@@ -72,9 +72,23 @@ _KINDS = (
 )
 """Tables by which a file is known, its kind, and the command that reads it."""
 
+_TABLE_ENDINGS = (".csv", ".tsv", ".xlsx")
+_TABLE_KEYS = {
+    "study": "[table] path",
+    "hip": "[cycle] file",
+    **dict.fromkeys(("measurement", "wear test"), "[[data]] file"),
+}
+"""Table and key that name a table of numbers, by the kind of the file."""
+
 
 def _other_kind(content: Mapping[str, Any], kind: str, title: str) -> str:
     """Name the command for a file of another kind; empty if it looks like the expected kind."""
+    designs = content.get("design")
+    if isinstance(designs, list) and "session" not in kind:
+        return (
+            f"; this is a session file with {len(designs)} of the explorer's designs: start `ballsocket app`, open the "
+            "file on its page, and save one design as TOML"
+        )
     for tables, found, command in _KINDS:
         if any(table in content for table in tables):
             if found == "hip" and "data" in content:
@@ -89,6 +103,9 @@ def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     """Parse TOML; ValueError if it is too large, not TOML, or empty."""
     if len(raw) > MAX_FILE_SIZE:
         raise ValueError(f"{title} is larger than {MAX_FILE_SIZE} bytes; a {kind} file is a few lines")
+    if title.lower().endswith(_TABLE_ENDINGS):
+        hint = f": name the table in it, {_TABLE_KEYS[kind]} = {title!r}" if kind in _TABLE_KEYS else ""
+        raise ValueError(f"{title} is a table of numbers, and a {kind} file is TOML{hint}")
     try:
         text = raw.decode("utf-8-sig")  # as editors on Windows write it
         if _LONG_KEY.search(text):

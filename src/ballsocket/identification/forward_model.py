@@ -96,7 +96,11 @@ class ForwardModel:
         results_by_index: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
             indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
-            shared_indices = [index for index in indices if not _is_load_read_by_machine(self.data[index])]
+            shared_indices = [
+                index
+                for index in indices
+                if self.data[index].load != "indentation" or not self.data[index].machine.name
+            ]
             if not kind:
                 results_by_index |= {
                     index: _read_joint_number(joints_at_points.joint, self.data[index]) for index in indices
@@ -204,11 +208,6 @@ class _JointsAtPoints:
             for name, error in MACHINE_ERRORS.items()
             if error.slope is not None
         )
-
-
-def _is_load_read_by_machine(measured: Measured) -> bool:
-    """Check if the loads of a data set are indentations that a machine with errors has read."""
-    return measured.load == "indentation" and bool(measured.machine.name)
 
 
 def _clip_negative_indentation(indentation: Array) -> Array:

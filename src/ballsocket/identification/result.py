@@ -143,14 +143,14 @@ def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
     mixed = {name for product in products for name in product.exponents}
     separate = [name for name in result.transform.names if name in {*unidentifiable, *mixed}]
     if products:
-        names, verb = _join_with_and([product.name for product in products]), "is" if len(products) == 1 else "are"
-        note = f"only {names} {verb} identifiable from these data, {_join_with_and(separate)} separately are not"
+        names, verb = _join_names([product.name for product in products]), "is" if len(products) == 1 else "are"
+        note = f"only {names} {verb} identifiable from these data, {_join_names(separate)} separately are not"
     else:
-        note = f"{_join_with_and(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
+        note = f"{_join_names(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
     measured = {row.quantity for row in result.data}
     sufficient = [_quantity_title(name) for name in result.next.sufficient_quantities if name not in measured]
     if sufficient:
-        yield f"{note}: measure {_join_with_or(sufficient)}"
+        yield f"{note}: measure {_join_names(sufficient, 'or')}"
     elif result.next.gains:
         best = _quantity_title(result.next.best.candidate.quantity)
         yield f"{note}; of the usual measurements {best} would add most, though not enough"
@@ -167,12 +167,12 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
         pairs = ((estimate.low, unknown.low), (estimate.high, unknown.high))
         ends = [f"{end:g}" for end, range_end in pairs if end == range_end]
         if ends:
-            yield f"the band of {name} ends at {_join_with_and(ends)}, the end of its range"
+            yield f"the band of {name} ends at {_join_names(ends)}, the end of its range"
         else:
             yield f"the band of {name} ends where {result.model.name} has no result for all the data"
     for name, estimate in result.estimates.items():
         if estimate.limited_by and name not in estimate.limited_by:
-            yield f"the band of {name} ends where the range of {_join_with_and(estimate.limited_by)} ends"
+            yield f"the band of {name} ends where the range of {_join_names(estimate.limited_by)} ends"
 
 
 def _quantity_title(quantity: str) -> str:
@@ -180,14 +180,9 @@ def _quantity_title(quantity: str) -> str:
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
-def _join_with_or(names: Sequence[str]) -> str:
-    """Join names by commas and a final "or"."""
-    return " or ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
-
-
-def _join_with_and(names: Sequence[str]) -> str:
-    """Join names by commas and a final "and"."""
-    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+def _join_names(names: Sequence[str], last_word: str = "and") -> str:
+    """Join names by commas and a final word."""
+    return f"{', '.join(names[:-1])} {last_word} {names[-1]}" if len(names) > 1 else names[0]
 
 
 def _convergence_notes(result: IdentificationResult) -> Iterator[str]:

@@ -143,11 +143,8 @@ def _draw_body(axes: Axes, contact: OffAxisContact, reach: float) -> None:
         if length > _SEEN:
             position = outside * right / length, outside * up / length
             alignment: Any = (
-                {"ha": "center", "va": "bottom"} if up / length > 0.7 else {"ha": _side(right), "va": "center"}
+                {"ha": "center", "va": "bottom"}
+                if up / length > 0.7
+                else {"ha": "left" if right >= 0 else "right", "va": "center"}
             )
             axes.text(*position, name, fontsize=8, color="0.3", **alignment)
-
-
-def _side(right: float) -> str:
-    """Return the horizontal alignment of a text outside the rim."""
-    return "left" if right >= 0 else "right"

@@ -188,22 +188,17 @@ def _verification(record: Record) -> dict[str, Any]:
     deviating = any(piece["deviation"] for piece in record["calculation"])
     return {
         "checks": [
-            (check["what"], number(check["observed"]), _allowed_text(check), _check_text(check))
+            (
+                check["what"],
+                number(check["observed"]),
+                f"at least {check['low']:g}" if check["high"] is None else f"at most {check['high']:g}",
+                _CHECK_RESULTS[check["passed"]] + (f": {check['why']}" if check["why"] else ""),
+            )
             for check in record["code_verification"]
         ],
         "calculations": [_methods(piece) for piece in record["calculation"]],
         "methods_figure": svg_address(figures.methods_figure(record)) if deviating else None,
     }
-
-
-def _allowed_text(check: Record) -> str:
-    """Describe the range that a check allows."""
-    return f"at least {check['low']:g}" if check["high"] is None else f"at most {check['high']:g}"
-
-
-def _check_text(check: Record) -> str:
-    """Describe the result of a check, with its reason if it has one."""
-    return _CHECK_RESULTS[check["passed"]] + (f": {check['why']}" if check["why"] else "")
 
 
 def _methods(piece: Record) -> dict[str, Any]:

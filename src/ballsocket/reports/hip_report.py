@@ -221,12 +221,8 @@ def _rim_approach(history: History) -> str:
         if worst is not None
     )
     distances = "; ".join(sentences)
-    return f"{distances}. {_sentence(radiograph_line(history))}" if distances else "nothing is pressed"
-
-
-def _sentence(line: str) -> str:
-    """Return a line with a capital letter at its beginning."""
-    return line[:1].upper() + line[1:]
+    line = radiograph_line(history)
+    return f"{distances}. {line[:1].upper()}{line[1:]}" if distances else "nothing is pressed"
 
 
 def _distance_words(worst: ClosestApproach) -> str:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.table import Table
 
-from ..core.kinds import Unit
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identification.experiment import Experiment
 from ..identification.information import QUANTILE_95
@@ -247,7 +246,8 @@ def _table(result: IdentificationResult, posterior: Posterior | None) -> Table:
         unit = unknown.quantity.shown
         best = _number_text(unit.factor, estimate.value) if estimate.identifiable else "not identifiable"
         band = _band_text(unit.factor, estimate.low, estimate.high)
-        table.add_row(estimate.name, best, band, unit.text, *_posterior_band(posterior, estimate.name, unit))
+        sampled = () if posterior is None else (_band_text(unit.factor, *posterior.band(estimate.name)),)
+        table.add_row(estimate.name, best, band, unit.text, *sampled)
     for product in result.information.products:
         table.add_row(
             product.name, _number_text(1.0, product.value), _band_text(1.0, product.low, product.high), product.unit
@@ -261,11 +261,6 @@ def _plain_table(*heads: str) -> Table:
     for index, head in enumerate(heads):
         table.add_column(head, justify="left" if index == 0 or head == "unit" else "right", no_wrap=index == 0)
     return table
-
-
-def _posterior_band(posterior: Posterior | None, name: str, unit: Unit) -> tuple[str, ...]:
-    """Return the posterior band of an unknown in a tuple; empty without posterior."""
-    return () if posterior is None else (_band_text(unit.factor, *posterior.band(name)),)
 
 
 def _band_text(factor: float, low: float, high: float) -> str:

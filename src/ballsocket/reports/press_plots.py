@@ -81,7 +81,10 @@ def press_figure(
         style = in_matplotlib(line, THICK if contact.valid else THIN)
         angle = _angles(contact)
         pressure_axes.plot(
-            numpy.degrees(angle), contact.pressure(angle) * pressure.factor, label=_legend_name(name), **style
+            numpy.degrees(angle),
+            contact.pressure(angle) * pressure.factor,
+            label=f"\u200b{name}" if name.startswith("_") else name,
+            **style,
         )
         force_panel.plot(*(arrays.to_numpy(axis.values_of(curves[name])) for axis in axes), **style)
         force_panel.plot(*(axis.values_of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
@@ -100,11 +103,6 @@ def press_figure(
         text.set_parse_math(False)
     figure.suptitle(title or _title(next(iter(contacts.values())), units), fontsize=10, parse_math=False)
     return figure
-
-
-def _legend_name(name: str) -> str:
-    """Return a name that a legend shows: matplotlib omits names that begin with an underscore."""
-    return f"\u200b{name}" if name.startswith("_") else name
 
 
 def _angles(contact: Contact) -> numpy.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
@@ -31,7 +31,7 @@ from .section_plots import joint_section
 from .unit_systems import Units
 
 _TEMPLATE = "press.html"
-_ROUNDING = 1e-9
+_ROUNDING = 1e-7
 """Relative size of a component of a force that is the rounding error of zero."""
 
 _VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.EXCEEDED: "fails"}
@@ -140,7 +140,12 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
     sections: TitledHtml = {"comparison": ("Comparison", _comparison(designs, units))}
     for number, design in enumerate(designs, 1):
         parts = [(title, html) for title, html in _design_sections(design, units).values()]
-        html = render_part(_TEMPLATE, "design", trusted_html(_lede(design, units)), _trusted(parts))
+        html = render_part(
+            _TEMPLATE,
+            "design",
+            trusted_html(_lede(design, units)),
+            [(title, trusted_html(html)) for title, html in parts],
+        )
         sections[f"design-{number}"] = (design.title, html)
     return _page(f"{len(designs)} designs", sections, details, day)
 
@@ -170,11 +175,6 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
 def _lede(design: PressedDesign, units: Units) -> str:
     """Return the verdicts on a design as HTML."""
     return press_lede(design.contact, design.file.cup, units, design.uncertainty)
-
-
-def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Mark the HTML of titled parts as rendered."""
-    return [(title, trusted_html(html)) for title, html in parts]
 
 
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
@@ -355,7 +355,8 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
         angle = degrees(float(polar_angle(contact.max_pressure_at)))
         yield "largest pressure from the cup's axis", f"{angle:.3g}°", "angle at the centre of the bore"
     vector = contact.force_vector + 0.0
-    vector[abs(vector) < _ROUNDING * abs(vector).max()] = 0.0
+    scale = max(*abs(vector), contact.max_pressure * contact.area)  # the pressures of a preload balance
+    vector[abs(vector) < _ROUNDING * scale] = 0.0
     force = (units.text_of(CONTACT["force"], float(part)) for part in vector)
     yield "force of the ball on the cup", ", ".join(force), "components towards the rim, across, towards the dome"
 
@@ -408,7 +409,7 @@ def press_sections(
     return {
         "answers": ("Results", _results(comparison, units, remarks)),
         "tolerances": ("Sensitivity and tolerances", _tolerances(surroundings, units)),
-        "sources": ("Sources", _sources(comparison)),
+        "sources": ("Sources", render_part(_TEMPLATE, "sources", map(_source_text, comparison.sources))),
     }
 
 
@@ -459,22 +460,16 @@ def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
     heads = ("change in % if 1 % is added to the", *(PARAMETERS[name].title for name in names))
     quantities = {**CONTACT, **DERIVED}
     ends = [
-        (quantities[name].title, *(_end(name, end, units) for end in band)) for name, band in surroundings.band.items()
+        (
+            quantities[name].title,
+            *(units.short_length(end) if name in DERIVED else units.text_of(CONTACT[name], end) for end in band),
+        )
+        for name, band in surroundings.band.items()
     ]
     method = f"From {surroundings.presses} presses by {surroundings.model}: a quadratic of each tolerance."
     return render_part(
         _TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends, method if surroundings.presses else ""
     )
-
-
-def _end(name: str, value: float, units: Units) -> str:
-    """Write the end of a band."""
-    return units.short_length(value) if name in DERIVED else units.text_of(CONTACT[name], value)
-
-
-def _sources(comparison: Comparison) -> str:
-    """Return the list of sources as HTML."""
-    return render_part(_TEMPLATE, "sources", map(_source_text, comparison.sources))
 
 
 def _source_text(source: Source) -> str:

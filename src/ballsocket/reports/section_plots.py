@@ -207,7 +207,11 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     for kind, colours in _SCALES.items():
         parts = [part for part in section.parts if part.name.startswith(kind)]
         if parts:
-            highest = section.peak_stress.von_mises if kind == "liner" else max(map(_largest_stress, parts))
+            highest = (
+                section.peak_stress.von_mises
+                if kind == "liner"
+                else max(float(numpy.percentile(part.stress.von_mises, 99.5)) for part in parts)
+            )
             filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
             bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
             bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
@@ -230,11 +234,6 @@ def _draw_mesh(axes: Axes, part: Part) -> None:
     outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
     colour = "0.45" if part.name == "ball" else BLUE
     axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
-
-
-def _largest_stress(part: Part) -> float:
-    """Return the largest stress (MPa) of a part without the sharpest corners."""
-    return float(numpy.percentile(part.stress.von_mises, 99.5))
 
 
 def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:

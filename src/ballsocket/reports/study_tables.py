@@ -363,7 +363,7 @@ def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
     """Print evenly chosen designs of a Pareto front."""
     chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, max_rows).round().astype(int)))
     names = [*(str(name) for name in front.coords if front[name].dims), *result_names(front)]
-    table = _table(*(_head(name) for name in names))
+    table = _table(*(QUANTITIES[name].head() if name in QUANTITIES else name for name in names))
     for index in range(chosen.sizes["point"]):
         table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
     print_columns(Console(), table)
@@ -444,17 +444,10 @@ def _point_text(study: xarray.Dataset, flat: int, units: Units) -> str:
 
 def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
     """Write parameters with symbol and value."""
-    return ", ".join(f"{_symbol(name)} {_value_text(name, value, units)}" for name, value in at.items())
-
-
-def _symbol(name: str) -> str:
-    """Return the symbol of a quantity."""
-    return QUANTITIES[name].symbol if name in QUANTITIES else name
-
-
-def _head(name: str) -> str:
-    """Return the head of a column with its unit."""
-    return QUANTITIES[name].head() if name in QUANTITIES else name
+    return ", ".join(
+        f"{QUANTITIES[name].symbol if name in QUANTITIES else name} {_value_text(name, value, units)}"
+        for name, value in at.items()
+    )
 
 
 def _unit(name: str, units: Units = Units.SI) -> str:

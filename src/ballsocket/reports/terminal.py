@@ -275,7 +275,10 @@ def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequ
 def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
     """Draw the pressure of every model from the pole to the end of the profile as a row of bars, to one scale."""
     angle = numpy.linspace(0.0, _profile_end(comparison), 12)
-    pressures = {name: _pressure(contact, angle) for name, contact in comparison.items()}
+    pressures = {
+        name: 0 * angle if contact.status.failed else numpy.nan_to_num(contact.pressure(angle), posinf=0.0)
+        for name, contact in comparison.items()
+    }
     highest = max((pressure.max() for pressure in pressures.values()), default=0.0)
     return {name: _bars(pressure / highest if highest > 0 else 0 * angle, bars) for name, pressure in pressures.items()}
 
@@ -286,11 +289,6 @@ def _profile_end(comparison: Comparison) -> float:
         return pi / 2
     cups = (contact.model.cup for contact in comparison.values() if hasattr(contact.model, "cup"))
     return max((float(cup.arc_of_cover) / 2 for cup in cups), default=pi / 2)
-
-
-def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:
-    """Return the pressure (MPa) at angles (rad); zero for a failed contact."""
-    return 0 * angle if contact.status.failed else numpy.nan_to_num(contact.pressure(angle), posinf=0.0)
 
 
 def _bars(share: numpy.ndarray, bars: str) -> str:

@@ -101,7 +101,7 @@ class Blocks:
         remaining = max(1, max_points)
         for length in reversed(shape):
             size = max(1, min(length, remaining))
-            sizes.append(_even_size(length, size))
+            sizes.append(ceil(length / ceil(length / size)) if length else 1)
             remaining //= size
         return cls(shape, tuple(reversed(sizes)))
 
@@ -139,11 +139,6 @@ def divide_study(shape: tuple[int, ...], n_points: int) -> Blocks:
         n_points *= 2
         blocks = Blocks.divide(shape, n_points)
     return blocks
-
-
-def _even_size(length: int, max_size: int) -> int:
-    """Return the block length, at most `max_size`, that divides a length most evenly."""
-    return ceil(length / ceil(length / max_size)) if length else 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -205,15 +205,10 @@ class Standard:
         return self.version[0]
 
 
-def _fmi2_folder_name(platform: Platform) -> str:
-    """Return the folder name of the binaries of a platform in FMI 2.0, such as "linux64"."""
-    return f"{ {'windows': 'win'}.get(platform.system, platform.system) }{platform.bits}"
-
-
 STANDARDS: Mapping[int, Standard] = {
     2: Standard(
         version="2.0",
-        folder=_fmi2_folder_name,
+        folder=lambda platform: f"{ {'windows': 'win'}.get(platform.system, platform.system) }{platform.bits}",
         describe=fmi2_description,
         words={
             "handle": "Component",
