@@ -130,8 +130,8 @@ def _complete_rows(table: NumberTable, columns: dict[str, Numbers], gaps: Gaps) 
         numbers = ", ".join(str(table.lines[row]) for row in numpy.flatnonzero(rows)[:_MAX_ROWS])
         names = ", ".join(name for name, absent in zip(columns, missing, strict=True) if absent.any())
         raise ValueError(
-            f"{table.title}: no number for {names} in line {numbers}{' ...' if rows.sum() > _MAX_ROWS else ''}; add it, or "
-            'omit such lines with gaps = "leave-out"'
+            f"{table.title}: no number for {names} in line {numbers}{' ...' if rows.sum() > _MAX_ROWS else ''}; add it, "
+            'or omit such lines with gaps = "leave-out"'
         )
     if rows.all():
         raise ValueError(f"{table.title} has no row without a gap")
