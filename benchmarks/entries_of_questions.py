@@ -24,7 +24,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket import studies as design
-from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
+from ballsocket.identification import HeavyTailed, Machine, Measured, oscillation
 
 from .entries_of_contact import EXAMPLES, SEED
 

@@ -15,7 +15,7 @@ import ballsocket as bs
 from ballsocket import dynamics as motion
 from ballsocket import hip as wear
 from ballsocket import studies as design
-from ballsocket.identify import Machine, Measured, oscillation
+from ballsocket.identification import Machine, Measured, oscillation
 
 from .entries_in_use import JOINT, WALK, elements, in_use
 from .entries_of_contact import HIP

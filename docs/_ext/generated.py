@@ -9,7 +9,6 @@ from os import environ
 from pathlib import Path
 
 import ballsocket as bs
-from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import CONTACT, QUANTITIES
 from ballsocket.core.sources import Source, bibliography
 from ballsocket.core.storage.pieces import fingerprint
@@ -17,6 +16,7 @@ from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
 from ballsocket.mcp.tools import FILE_TABLES, file_table
+from ballsocket.model_catalogue import listed_models
 from ballsocket.paper.claims import SCALE
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_results import markdown

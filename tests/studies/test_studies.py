@@ -20,8 +20,8 @@ from ballsocket.core.executors import Processes, Serial
 from ballsocket.reports.study_tables import study_summary
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
-from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
+from ballsocket.studies.file_formats import export
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.parameters import vary_joint
 from ballsocket.studies.task import Blocks
@@ -136,7 +136,7 @@ def rows_of(path):
 
 
 def test_materials_are_an_axis_or_fixed(tmp_path, monkeypatch):
-    monkeypatch.setattr(import_module("ballsocket.studies.export"), "_MAX_CHUNK_POINTS", 2)
+    monkeypatch.setattr(import_module("ballsocket.studies.file_formats"), "_MAX_CHUNK_POINTS", 2)
     for store in (None, tmp_path / "kept"):
         found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=store)
         assert found.max_pressure.dims == ("force", "liner")

@@ -11,7 +11,6 @@ from typing import Any
 
 import msgspec
 
-from ..catalogue import catalogue
 from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
@@ -21,6 +20,7 @@ from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant, Stribeck
+from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
@@ -183,11 +183,12 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     if per_year is None and tables.cycles_per_year is not None:
         per_year = float(tables.cycles_per_year)
     unit, density = _WEAR_UNITS.get(quantity, "mm"), _density(table, quantity)
+    factor = 1.0 if density is None else density
 
     def parse_all(name: str, numbers: Any) -> list[float]:
         """Convert a number or a list of numbers with units to mm³ or mm."""
         listed = numbers if isinstance(numbers, list) else [numbers]
-        return [_parse_wear(name, number, unit, table.rate is not None, per_year) / density for number in listed]
+        return [_parse_wear(name, number, unit, table.rate is not None, per_year) / factor for number in listed]
 
     text = None if table.uncertainty is None else table.uncertainty.value
     percent = number_of_percent(text)
@@ -202,6 +203,7 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
         uncertainty=None if text is None or percent is not None else parse_all("uncertainty", text),
         relative_uncertainty=None if percent is None else parse("uncertainty", percent, Kind.NUMBER) / 100,
         station=station,
+        density=density,
         name=str(table.name or ""),
         remark=remark,
     )
@@ -225,8 +227,8 @@ def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple
     return list(readings.values), list(readings.cycles) or None, readings.stations, readings.remark
 
 
-def _density(table: WearDataTable, quantity: str) -> float:
-    """Return the density in mg/mm³ by which a mass is a volume; 1 for other quantities."""
+def _density(table: WearDataTable, quantity: str) -> float | None:
+    """Return the density in mg/mm³ by which a mass is a volume; None for other quantities."""
     if (table.density is None) == (quantity == "mass"):
         raise ValueError(
             "a mass needs the density of the worn material, such as density = '0.94 g/cm^3'"
@@ -234,7 +236,7 @@ def _density(table: WearDataTable, quantity: str) -> float:
             else f"density belongs to quantity = 'mass', and the quantity is {quantity}"
         )
     if table.density is None:
-        return 1.0
+        return None
     value = table.density.value
     try:
         number, text = split_quantity(str(value))

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..core.checks import known_name
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition
-from .in_vivo import IN_VIVO_CYCLES
+from .in_vivo_cycles import IN_VIVO_CYCLES
 from .simulator_cycles import SIMULATOR_CYCLES
 
 _DEFINITIONS = (

@@ -306,6 +306,7 @@ def _worn_summary(worn: WornBore) -> dict[str, Any]:
         "reach_deg": degrees(worn.reach),
         "cover": worn.cover,
         "ambiguous": worn.ambiguous,
+        "hidden_shift": worn.hidden_shift,
     }
 
 

@@ -19,7 +19,7 @@ from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..studies.export import dimension_names, iterate_chunks
+from ..studies.file_formats import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
@@ -268,9 +268,10 @@ def varying_parameters(study: xarray.Dataset) -> list[str]:
 
 def held_text(held: Mapping[str, float], units: Units = Units.SI) -> str:
     """List lengths that are held while others vary, with titles and units."""
+    named = {"interference" if name == "clearance" and value < 0 else name: abs(value) for name, value in held.items()}
     return ", ".join(
         f"{QUANTITIES[name].title} {_value_text(name, value, units)} {_unit(name, units)}"
-        for name, value in held.items()
+        for name, value in named.items()
     )
 
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..catalogue import catalogue, reference
 from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core import arrays
@@ -22,6 +21,7 @@ from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
+from ..model_catalogue import catalogue, reference
 from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis

@@ -9,12 +9,12 @@ from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
 
-from ...catalogue import catalogue, reference
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind
 from ...core.quantities import QUANTITIES
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
+from ...model_catalogue import catalogue, reference
 from ...problem.presets import joints
 from ...reports.unit_systems import Units
 from ...studies.expressions import parse_limit, parse_range

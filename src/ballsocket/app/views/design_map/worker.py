@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy
 
-from ....catalogue import catalogue
-from ....compare import THIN_LINER_RATIO
+from ....comparison import THIN_LINER_RATIO
 from ....contact import Model
 from ....core.kinds import Kind
 from ....core.quantities import JOINT, QUANTITIES
 from ....core.validity import OutsideDomainError, check_domain
 from ....files.joint_file import JointFile
+from ....model_catalogue import catalogue
 from ....problem import Joint
 from ....problem.dimensions import DIAMETERS, give
 from ....studies.design import Span, grid

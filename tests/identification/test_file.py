@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Machine, NormalScatter
-from ballsocket.identify.columns import Gaps, read_measured
-from ballsocket.identify.file import read_identify
+from ballsocket.identification import HeavyTailed, Machine, NormalScatter
+from ballsocket.identification.columns import Gaps, read_measured
+from ballsocket.identification.file import read_identify
 from ballsocket.studies import Normal
 
 HIP = bs.joints["hess-forsbach"]

@@ -9,7 +9,6 @@ from typing import Annotated, Any, ClassVar
 
 import numpy
 
-from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
@@ -32,12 +31,13 @@ from ..files.schema import (
 from ..files.tables import parsed_values, quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
+from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
 from ..studies.expressions import parse_ends
-from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
+from ..studies.file import DISTRIBUTION_SCHEMA, ModelGap, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
-from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
+from .maximum_likelihood import identify
 from .measured import ALIASES, MEASURED, Measured
 from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS
@@ -188,6 +188,7 @@ class IdentifyTable(JointTables, frozen=True, kw_only=True):
     """Identification file."""
 
     model: Annotated[ModelName, meaning("name of the model")] = ModelName("tabulated")
+    gap: ModelGap = None
     scatter: Annotated[ScatterName, meaning("scatter of the data; heavy-tailed for outliers")] = ScatterName("normal")
     free: FreeTable | None = None
     machine: dict[str, MachineTable] | None = None
@@ -248,7 +249,7 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
         for name, table in (tables.machine or {}).items()
     }
     return IdentifyFile(
-        model=named_models[tables.model].in_cup(joint_file.cup),
+        model=with_gap(named_models[tables.model], tables.gap).in_cup(joint_file.cup),
         joint=joint_file.joint,
         data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
         free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import CustomObservable, HeavyTailed, Machine, Measured, oscillation, sliding_torque
-from ballsocket.identify.misfit import by_tracing
-from ballsocket.identify.synthetic import trials
-from ballsocket.identify.unknowns import ParameterTransform, collect_unknowns, log_prior
+from ballsocket.identification import CustomObservable, HeavyTailed, Machine, Measured, oscillation, sliding_torque
+from ballsocket.identification.misfit import by_tracing
+from ballsocket.identification.synthetic import trials
+from ballsocket.identification.unknowns import ParameterTransform, collect_unknowns, log_prior
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from .rigid import JOINT, MODEL

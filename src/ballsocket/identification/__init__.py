@@ -1,12 +1,12 @@
 """Identification of a joint from measurements, and calibration of a foundation modulus.
 
-`ballsocket.identify` itself is the function that fits measurements; this package has its data and results.
+`identify` fits measurements; the other names are its data and results.
 """
 
 from ..studies.calibration import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
-from .identification import identify
 from .information import Estimate, Information, Product
 from .machine import Machine
+from .maximum_likelihood import identify
 from .measured import MEASURED, Measured
 from .observables import CustomObservable, oscillation, sliding_torque
 from .registry import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS

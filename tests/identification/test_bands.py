@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import MACHINE_ERRORS, HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification import MACHINE_ERRORS, HeavyTailed, Machine, Measured, NormalScatter
 
 TRUTH = bs.Joint(ball_radius=15.3, clearance=0.12, liner_thickness=7.4, liner=bs.Material(young=780.0, poisson=0.42))
 VALUES = {"clearance": 0.12, "liner_young": 780.0}
@@ -17,7 +17,6 @@ MODEL = bs.HessForsbach()
 FORCE, PRESS = np.linspace(500.0, 3000.0, 6), np.linspace(250.0, 3000.0, 12)
 CONTACT, DEPTH = MODEL.press(TRUTH, force=FORCE), MODEL.press(TRUTH, force=PRESS).indentation
 AREAS = Measured(quantity="area", values=CONTACT.area, uncertainty=0.04 * CONTACT.area, force=FORCE)
-ERRORS = {"offset": 1.0, "compliance": PRESS, "drift": np.arange(12.0)}
 
 
 def identified(*data, free=FREE, **words):
@@ -162,10 +161,18 @@ def by_depth(depths):
 def test_the_sensitivity_is_the_shift_by_an_error_of_the_machine(part, read):
     fit = identified(read(DEPTH), *angles_and_pressures(3))
     (error,) = (error for error in fit.sensitivity if error.part == part)
-    moved_depths = DEPTH + 0.02 * MACHINE_ERRORS[part].assumed * ERRORS[part]
+    moved_depths = DEPTH + 0.02 * MACHINE_ERRORS[part].assumed * MACHINE_ERRORS[part].effect(PRESS, np.arange(12.0))
     moved = identified(read(moved_depths), *angles_and_pressures(3))
     for name in VALUES:
         assert moved[name].value - fit[name].value == pytest.approx(0.02 * error.shifts[name], rel=0.05)
+
+
+@pytest.mark.parametrize("part", MACHINE_ERRORS)
+def test_the_slope_of_an_error_is_its_derivative_by_the_force(part):
+    error, order, step = MACHINE_ERRORS[part], np.arange(12.0), 1e-3 * PRESS
+    change = (error.effect(PRESS + step, order) - error.effect(PRESS - step, order)) / (2 * step)
+    slope = 0.0 if error.slope is None else error.slope(PRESS, order)
+    assert slope + 0 * PRESS == pytest.approx(change + 0 * PRESS, rel=1e-5, abs=1e-12)
 
 
 @pytest.mark.parametrize("part", MACHINE_ERRORS)

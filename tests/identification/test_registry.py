@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import MACHINE_ERRORS, Machine, Measured, sliding_torque
-from ballsocket.identify.file import read_identify
-from ballsocket.identify.misfit import by_differences
+from ballsocket.identification import MACHINE_ERRORS, MODEL_NUMBERS, Machine, Measured, sliding_torque
+from ballsocket.identification.file import read_identify
+from ballsocket.identification.misfit import by_differences
 from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
 
@@ -53,6 +53,22 @@ def test_the_work_of_adhesion_is_identified_from_indentations_at_small_forces():
     inside = bs.identify(covered, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3)}).model
     assert inside.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
     assert inside.cup == covered.cup
+
+
+@pytest.mark.parametrize("name", MODEL_NUMBERS)
+def test_a_number_of_a_model_is_identified_from_presses_with_it(name):
+    number = MODEL_NUMBERS[name]
+    model = next(filter(number.belongs_to, bs.catalogue.values()))
+    usual = getattr(model, name, None) or getattr(model.press(HIP, force=20.0), name, 0.0) or 2e-4
+    low, truth = number.insert_into(model, np.array([[0.5], [1.3]]) * usual).press(HIP, force=FORCE).indentation
+    alone = number.insert_into(model, 1.3 * usual).press(HIP, force=FORCE).indentation
+    assert truth == pytest.approx(alone, rel=1e-9)
+    assert np.abs(low - truth).max() > 1e-5
+    reading = Measured(quantity="indentation", values=truth, uncertainty=1e-6, force=FORCE)
+    result = bs.identify(model, HIP, reading, {name: (0.5 * usual, 3.0 * usual)})
+    assert result.point == pytest.approx({name: 1.3 * usual}, rel=1e-3)
+    with pytest.raises(ValueError, match=re.escape(number.quantity.allowed.partition(" ")[0])):
+        bs.identify(model, HIP, reading, {name: (-2.0, -1.0)})
 
 
 def identified_file(folder, model, free, data):
@@ -109,7 +125,7 @@ def test_estimate_and_band_of_friction_are_those_of_weighted_linear_regression()
 
 def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
     pytest.importorskip("jax")
-    from ballsocket.identify.misfit import by_tracing
+    from ballsocket.identification.misfit import by_tracing
 
     misfit = identified(torques()).misfit
     arguments = misfit.forward, misfit.transform, misfit.transform.to_theta([0.06])
@@ -140,14 +156,14 @@ def test_a_machine_has_every_registered_error():
 
 PAGE = (CONTRIBUTING / "unknown.md").read_text("utf-8")
 FILES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-PATHS = re.findall(r"`src/ballsocket/identify/(\w+)\.py`", PAGE)[:2]
+PATHS = re.findall(r"`src/ballsocket/identification/(\w+)\.py`", PAGE)[:2]
 
 SCRIPT = """
 import json
 import numpy as np
 import ballsocket as bs
-from ballsocket.identify import Machine, Measured
-from ballsocket.identify.file import read_identify
+from ballsocket.identification import Machine, Measured
+from ballsocket.identification.file import read_identify
 
 hip, force = bs.joints["hess-forsbach"], np.linspace(50.0, 3000.0, 15)
 model = bs.RadialFoundation(modulus=bs.constant(300.0))
@@ -174,7 +190,7 @@ print(json.dumps([*points, *summary, known.notes]))
 @pytest.mark.long
 def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(tmp_path):
     """In a copy of the package with the two files of the page, by loads of both kinds, and from a file."""
-    room = tmp_path / "ballsocket" / "identify"
+    room = tmp_path / "ballsocket" / "identification"
     shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
     registry = (room / "registry.py").read_text("utf-8")
     for name, text, tuple_name in zip(PATHS, FILES, ("_MODEL_NUMBERS", "_MACHINE_ERRORS"), strict=True):

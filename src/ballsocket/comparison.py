@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from .catalogue import catalogue, reference
 from .contact import Contact, Model
 from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
@@ -19,6 +18,7 @@ from .core.display import html_table, load_plot
 from .core.quantities import HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError
+from .model_catalogue import catalogue, reference
 from .problem import Joint
 from .problem.cup import Cup
 from .version import __version__

@@ -62,7 +62,7 @@ def identify(
     scatter : ScatterModel
         `NormalScatter()`, or `HeavyTailed()` for data with outliers.
     slopes : callable
-        Derivatives: `by_differences`, or `by_tracing` with JAX (`ballsocket.identify.misfit`).
+        Derivatives: `by_differences`, or `by_tracing` with JAX (`ballsocket.identification.misfit`).
     seed : int
         Seed of the search for a start.
 
@@ -81,7 +81,7 @@ def identify(
     Examples
     --------
     >>> import ballsocket as bs
-    >>> from ballsocket.identify import Measured
+    >>> from ballsocket.identification import Measured
     >>> press = Measured(quantity="indentation", force=[500.0, 1500.0, 3000.0], values=[0.0130, 0.0261, 0.0408],
     ...     uncertainty=0.0002)
     >>> result = bs.identify(bs.HessForsbach(), bs.joints["hess-forsbach"], press, {"clearance": (0.02, 0.3)})

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Machine, Measured, NormalScatter
-from ballsocket.identify.misfit import by_tracing
-from ballsocket.identify.synthetic import trials
+from ballsocket.identification import HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification.misfit import by_tracing
+from ballsocket.identification.synthetic import trials
 from ballsocket.studies import LogNormal, Normal
 
 from .rigid import JOINT, MODEL

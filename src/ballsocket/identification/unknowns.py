@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue
 from ..contact import Model
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Kind
 from ..core.quantities import Quantity
+from ..model_catalogue import catalogue
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from .machine import Machine
 from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS

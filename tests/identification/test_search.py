@@ -9,14 +9,21 @@ from scipy import stats
 
 import ballsocket as bs
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.identify import Machine, Measured, oscillation
-from ballsocket.identify.bands import compute_bands, profile_ends, scatter_ratio
-from ballsocket.identify.fit import find_best_fit, minimise_misfit
-from ballsocket.identify.forward_model import ForwardModel
-from ballsocket.identify.information import MAX_WIDTH_RATIO, QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
-from ballsocket.identify.misfit import FitResult, Misfit, by_differences
-from ballsocket.identify.scatter import HeavyTailed, NormalScatter
-from ballsocket.identify.unknowns import ParameterTransform, Unknown, collect_unknowns, log_prior
+from ballsocket.identification import Machine, Measured, oscillation
+from ballsocket.identification.bands import compute_bands, profile_ends, scatter_ratio
+from ballsocket.identification.fit import find_best_fit, minimise_misfit
+from ballsocket.identification.forward_model import ForwardModel
+from ballsocket.identification.information import (
+    MAX_WIDTH_RATIO,
+    QUANTILE_95,
+    QUANTILE_99,
+    Information,
+    Interval,
+    ProfileEnd,
+)
+from ballsocket.identification.misfit import FitResult, Misfit, by_differences
+from ballsocket.identification.scatter import HeavyTailed, NormalScatter
+from ballsocket.identification.unknowns import ParameterTransform, Unknown, collect_unknowns, log_prior
 from ballsocket.studies import Normal, Rectangular
 
 from .rigid import JOINT, MODEL

@@ -31,7 +31,7 @@ class Candidate:
     Attributes
     ----------
     quantity : str
-        One of `ballsocket.identify.MEASURED`.
+        One of `ballsocket.identification.MEASURED`.
     uncertainty : float
         Standard uncertainty in the unit of the quantity.
     force : float or None

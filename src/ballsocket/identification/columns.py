@@ -47,7 +47,7 @@ def read_measured(
 ) -> tuple[Measured, ...]:
     """Read measurements from a table in a file, one data set for each measured quantity.
 
-    Heads are names of `ballsocket.identify.MEASURED` with units: "force_N", "indentation [um]", "half_angle_deg",
+    Heads are names of `ballsocket.identification.MEASURED` with units: "force_N", "indentation [um]", "half_angle_deg",
     "area_mm2", "max_pressure_MPa". A column "pressure_MPa" needs a column "angle_deg". Columns of uncertainties (k = 1)
     have heads such as "indentation_uncertainty_um". The forms of tables are those of `ballsocket.files.columns`.
 
@@ -129,9 +129,10 @@ def _complete_rows(table: NumberTable, columns: dict[str, Numbers], gaps: Gaps) 
     if rows.any() and gaps is Gaps.REFUSE:
         numbers = ", ".join(str(table.lines[row]) for row in numpy.flatnonzero(rows)[:_MAX_ROWS])
         names = ", ".join(name for name, absent in zip(columns, missing, strict=True) if absent.any())
+        more = " ..." if rows.sum() > _MAX_ROWS else ""
         raise ValueError(
-            f"{table.title}: no number for {names} in line {numbers}{' ...' if rows.sum() > _MAX_ROWS else ''}; add it, "
-            'or omit such lines with gaps = "leave-out"'
+            f"{table.title}: no number for {names} in line {numbers}{more}; add it, or omit such lines with "
+            'gaps = "leave-out"'
         )
     if rows.all():
         raise ValueError(f"{table.title} has no row without a gap")

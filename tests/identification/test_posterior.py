@@ -8,8 +8,8 @@ from scipy import stats
 from scipy.integrate import quad
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Measured, NormalScatter
-from ballsocket.identify.posterior import CONVERGED, Posterior, _autocorrelation_time, _r_hat, _StudentProposal
+from ballsocket.identification import HeavyTailed, Measured, NormalScatter
+from ballsocket.identification.posterior import CONVERGED, Posterior, _autocorrelation_time, _r_hat, _StudentProposal
 from ballsocket.studies import Normal
 
 
