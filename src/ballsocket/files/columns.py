@@ -525,10 +525,12 @@ class _Block:
         body, left_out = _select_rows(self.rows, self.start)
         width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
         for line, cells in body:
-            if any(cell != "" for cell in cells[max(width, len(texts)) :]):
+            if any(cell != "" for cell in cells[max(width, len(texts)) :]) or len(cells) < width * (
+                self.separator == " "
+            ):
                 raise ValueError(
-                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas need "
-                    "semicolons or tabs between the cells, or quotes"
+                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas and empty "
+                    "cells need semicolons or tabs between the cells, or quotes"
                 )
         filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
         heads = [
@@ -597,7 +599,7 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
     Raises
     ------
     ValueError
-        The other table has more rows of numbers.
+        The other table has more rows of numbers, or follows without a blank line.
     """
     body: list[NumberedRow] = []
     n_text = n_blank = n_pending = n_other = 0
@@ -607,8 +609,8 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
             body.append(rows[index])
             n_blank, n_pending = n_blank + n_pending, 0
         elif (n_words := count_words(cells)) > 1:
-            if sum(is_data(cells) for _, cells in rows[index:]) > len(body):
-                raise ValueError(f"line {rows[index][0]} has text, and more numbers are below it than above: cut one")
+            if sum(is_data(cells) for _, cells in rows[index:]) > (len(body) if n_pending else 0):
+                raise ValueError(f"line {rows[index][0]} has text between numbers: cut the lines above or below it")
             n_other = sum(bool(count_words(cells)) for _, cells in rows[index:])
             break
         else:
