@@ -42,7 +42,7 @@ def test_a_liner_that_yields_is_not_valid_and_one_without_a_yield_stress_has_no_
     joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4))
     history = use_of(joint, iso_14242_1(12)).after(1e4)
     assert history.utilisation is history.summary()["contact"]["utilisation"] is None
-    assert "strength not checked: the liner has no yield stress" in history.notes
+    assert "strength not checked: the liner has no yield stress, give yield_stress in its table" in history.notes
 
 
 def test_springs_outside_their_range_are_not_valid():

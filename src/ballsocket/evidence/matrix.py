@@ -196,6 +196,8 @@ class LimitCheck:
         required accuracy.
     row : Row or None
         Row with the smallest margin.
+    missing : str
+        Reason why the limited number is not known; empty if it is.
     """
 
     limit: Limit
@@ -204,6 +206,7 @@ class LimitCheck:
     unknown: int
     marginal: int
     row: Row | None
+    missing: str = ""
 
     @property
     def verdict(self) -> Verdict:
@@ -214,7 +217,9 @@ class LimitCheck:
 
     @property
     def reason(self) -> str:
-        """Numbers of cases that do not keep the limit, in words; empty if it is kept."""
+        """Numbers of cases that do not keep the limit, in words, or the missing strength; empty if it is kept."""
+        if self.missing and not self.beyond:
+            return self.missing
         counts = {
             "beyond the limit": self.beyond,
             f"nearer than the error bar or the required accuracy of {100 * self.accuracy:.3g} %": self.marginal,
@@ -240,8 +245,8 @@ class LimitCheck:
         }
 
 
-def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitCheck:
-    """Check a limit over the matrix.
+def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float, missing: str = "") -> LimitCheck:
+    """Check a limit over the matrix; `missing` is the reason of an unknown number.
 
     A case is beyond the limit if the whole error bar of its number is. It keeps the limit if the bar does so, widened
     to the required relative accuracy, and if the result is valid.
@@ -270,6 +275,7 @@ def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitChec
         unknown=int((~exceeded & ~(known & valid)).sum()),
         marginal=int((known & valid & ~exceeded & ~kept).sum()),
         row=rows[int(order.argmin())] if known.any() else None,
+        missing=missing,
     )
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
+from ..contact.strength import unchecked_strength_reason
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Piece, Plan, Results, Summary, fingerprint
@@ -155,6 +156,7 @@ def _store_names(question: Question) -> tuple[str, str]:
 def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
     """Assemble the record from the results of all pieces, and assess it."""
     call = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
+    missing = {"utilisation": unchecked_strength_reason(question.file.joint)}
     record: dict[str, Any] = {
         "version": fingerprint(),
         "made_with": _made_with(),
@@ -170,7 +172,10 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         "matrix": [row.summary() for row in rows],
         "worst": {name: row.summary() for name, row in worst.items()},
         "drawn": _drawn_joint(question, worst),
-        "limits": [check_limit(limit, rows, question.accuracy).summary() for limit in question.limits],
+        "limits": [
+            check_limit(limit, rows, question.accuracy, missing.get(limit.name, "")).summary()
+            for limit in question.limits
+        ],
         "code_verification": results["code_verification"],
         "calculation": _calculations(worst, results),
         "claims": [dict(entry) for entry in results["claims"]],
