@@ -294,6 +294,7 @@ MEASURED = [
     ('quantity = "volume"\n', "", "needs its quantity"),
     (WEAR_DATA, "", "no measured wear: add "),
     (VALUES, 'unit = "mg"\n' + VALUES, "unit belongs to a file"),
+    (VALUES, 'skip = "T"\n' + VALUES, "columns and skip belong to a file"),
     (VALUES, 'station = ["A", "B"]\n' + VALUES, "station has 2 names for 1 values"),
     ('"volume"', '"mass"', "a mass needs the density of the worn material"),
     (VALUES, 'density = "0.94 g/cm^3"\n' + VALUES, "density belongs to quantity = 'mass'"),

@@ -80,7 +80,7 @@ def text(points, head=""):
 HEAD = POINTS - scans.CENTRE
 HEAD = HEAD * (32.0 / np.linalg.norm(HEAD, axis=1) - 1.0)[:, None]
 REFUSED = {
-    "two columns": (text(POINTS[:, :2]), "line 1 has .*: that is no point, three numbers x y z"),
+    "two columns": (text(POINTS[:, :2]), "line 1 has 2 cells, and there are 3 columns"),
     "metres": (text(POINTS / 1000.0), r"0\.03\d* mm large: .* its unit may be m \(3\d(\.\d)? mm\)"),
     "metres in heads": (text(POINTS, "x_m y_m z_m\n"), "states the unit 'm' .* state --stl-units m"),
     "mixed units": (text(POINTS, "x_mm y_mm z_m\n"), "columns in different units, m and mm"),

@@ -30,7 +30,6 @@ def _is_positive(x: Array) -> Array:
 
 
 def _is_positive_or_infinite(x: Array) -> Array:
-    """Return a mask of the elements that are positive, infinite ones included."""
     return x > _MIN_THICKNESS
 
 
@@ -39,17 +38,14 @@ def _is_not_negative(x: Array) -> Array:
 
 
 def _is_below_quarter_turn(x: Array) -> Array:
-    """Return a mask of the angles from 0 to below π/2."""
     return (x >= 0) & (x < pi / 2)
 
 
 def _is_within_half_turn(x: Array) -> Array:
-    """Return a mask of the angles from -π to π."""
     return abs(x) <= pi * (1 + 1e-6)  # single precision rounds pi up
 
 
 def _is_poisson_ratio(x: Array) -> Array:
-    """Return a mask of the possible Poisson's ratios, above -1 and up to 0.5."""
     return (x > -1) & (x <= 0.5)
 
 

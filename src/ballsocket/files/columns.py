@@ -406,15 +406,11 @@ class _HeadReader:
         return next((self.targets[text] for text in head.plain_texts if text in self.targets), "")
 
     def read(self, text: str, unit_below: str = "", column: int = 0) -> Head:
-        """Return the head of a column, whose unit may stand below it.
-
-        Raises
-        ------
-        ValueError
-            Two units.
-        """
-        head = split_head(text, self.names)
+        """Return the head of a column, whose unit may stand below it; raise ValueError for two units."""
+        head = replace(split_head(text, self.names), column=column)
         target = self.target(head)
+        if self.skips(head):
+            return head
         if name := known_head(plain_name(target or text), self.texts):
             return Head(text, name, column=column)
         wanted = split_head(target, self.names) if target else head
@@ -438,13 +434,7 @@ class _HeadReader:
         return known, known - len(heads) if known else min(len(heads), 2)
 
     def choose(self, heads: Sequence[Head]) -> tuple[Head, ...]:
-        """Return the heads that are used.
-
-        Raises
-        ------
-        ValueError
-            Two equal names, or a choice that matches no head.
-        """
+        """Return the heads that are used; raise ValueError for equal names, or a choice that matches no head."""
         present = {text for head in heads for text in head.plain_texts}
         for key, chosen in (("columns", self.choice.columns), ("skip", self.choice.skip)):
             for text in chosen:
@@ -507,13 +497,7 @@ class _Block:
         return self.score[0] + (self.start < len(self.rows)), min(n_cells, 2)
 
     def parse(self, title: str, reader: _HeadReader) -> CellTable:
-        """Return the cells below the heads.
-
-        Raises
-        ------
-        ValueError
-            No heads, heads that are not allowed, or several tables with the same heads.
-        """
+        """Return the cells below the heads; raise ValueError for wrong heads, or several tables with the same."""
         if self.score[0] < 0:
             raise ValueError("it has no line of column heads above lines of numbers")
         if self.repeats and self.score[0]:
@@ -525,10 +509,12 @@ class _Block:
         body, left_out = _select_rows(self.rows, self.start)
         width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
         for line, cells in body:
-            if any(cell != "" for cell in cells[max(width, len(texts)) :]):
+            if any(cell != "" for cell in cells[max(width, len(texts)) :]) or len(cells) < width * (
+                self.separator == " "
+            ):
                 raise ValueError(
-                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas need "
-                    "semicolons or tabs between the cells, or quotes"
+                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas and empty "
+                    "cells need semicolons or tabs between the cells, or quotes"
                 )
         filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
         heads = [
@@ -594,10 +580,7 @@ def _are_units(cells: Sequence[Cell], texts: Sequence[str]) -> bool:
 def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[NumberedRow], dict[str, int]]:
     """Return the rows of numbers up to the heads of another table, and the numbers of the other rows.
 
-    Raises
-    ------
-    ValueError
-        The other table has more rows of numbers.
+    The other table has fewer rows, and a blank line above it.
     """
     body: list[NumberedRow] = []
     n_text = n_blank = n_pending = n_other = 0
@@ -607,8 +590,8 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
             body.append(rows[index])
             n_blank, n_pending = n_blank + n_pending, 0
         elif (n_words := count_words(cells)) > 1:
-            if sum(is_data(cells) for _, cells in rows[index:]) > len(body):
-                raise ValueError(f"line {rows[index][0]} has text, and more numbers are below it than above: cut one")
+            if sum(is_data(cells) for _, cells in rows[index:]) > (len(body) if n_pending else 0):
+                raise ValueError(f"line {rows[index][0]} has text between numbers: cut the lines above or below it")
             n_other = sum(bool(count_words(cells)) for _, cells in rows[index:])
             break
         else:

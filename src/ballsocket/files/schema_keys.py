@@ -51,11 +51,13 @@ def keys_of(table: type[Table]) -> list[Key]:
 
 
 def _key(head: str, field: inspect.Field) -> Key:
+    default = _plain_default(field)
+    text = "" if default is None else str(default).lower() if isinstance(default, bool) else repr(default)
     return Key(
         table=head,
         name=field.encode_name,
         values=_values(field),
-        default="required" if field.required else _default(field),
+        default="required" if field.required else text,
         meaning=meaning_of(field.encode_name, field.type),
     )
 
@@ -72,12 +74,6 @@ def _values(field: inspect.Field) -> str:
         return customs[0].kind.example
     text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
     return text[:1].lower() + text[1:]
-
-
-def _default(field: inspect.Field) -> str:
-    """Return the default of a key as a file writes it; empty without a default."""
-    default = _plain_default(field)
-    return "" if default is None else str(default).lower() if isinstance(default, bool) else repr(default)
 
 
 def _plain_default(field: inspect.Field) -> Any:

@@ -163,7 +163,6 @@ def _key(name: str) -> str:
 
 
 def _value(value: Any) -> str:
-    """Write a text, a number, a truth value or a list."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):

@@ -150,7 +150,9 @@ def _read_points(lines: Sequence[str], table: CellTable, columns: Sequence[int])
 def _find_columns(table: CellTable, units: str) -> list[int]:
     """Return the columns of x, y and z; raise ValueError for heads without them, or with another unit."""
     heads = {head.name: head for head in table.heads}
-    if not table.rows or not set(_AXES) <= set(heads):
+    if not table.rows:
+        raise ValueError("it has no points")
+    if not set(_AXES) <= set(heads):
         names = ", ".join(shown(head.text) for head in table.heads)
         raise ValueError(f"it has the columns {names[:200]}: name three of them x, y and z")
     stated = {_MICRON.get(unit, unit) for axis in _AXES if (unit := heads[axis].unit.lower())}

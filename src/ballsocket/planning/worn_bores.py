@@ -243,7 +243,7 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
     points, name = cloud.points, cloud.name
     radial, distance = _polar(points, sphere.centre)
     depth = distance - sphere.radius
-    pole = _unit(_thinned_mean(radial))
+    pole = _unit(radial[_thin(radial)].mean(axis=0))  # dense parts count as much as sparse ones
     reach = float(numpy.arccos(numpy.clip(radial @ pole, -1.0, 1.0)).max())
     allowed = "a bore has points up to 25° (0.436 rad) from its middle"
     require(f"reach of {name} in rad", reach, reach >= _MIN_REACH, allowed)
@@ -324,12 +324,6 @@ def _boxes(radial: Numbers, size: float) -> Numbers:
 def _thin(radial: Numbers) -> Numbers:
     """Return the indices of points with about the same distance."""
     return numpy.unique(_boxes(radial, _THINNING), return_index=True)[1]
-
-
-def _thinned_mean(radial: Numbers) -> Numbers:
-    """Return the mean of the unit vectors (n, 3), where dense parts count as much as sparse ones."""
-    mean: Numbers = radial[_thin(radial)].mean(axis=0)
-    return mean
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import inf, nan
@@ -222,7 +222,9 @@ class TableAxis(Axis):
         return self.columns
 
 
-def parameter_values(name: str, values: Numbers, position: str = "[{}]") -> Numbers:
+def parameter_values(
+    name: str, values: Numbers, position: str = "[{}]", numbering: Sequence[int] | None = None
+) -> Numbers:
     """Convert the values of a parameter to float64, and check that they are finite or an allowed infinity.
 
     Parameters
@@ -231,7 +233,9 @@ def parameter_values(name: str, values: Numbers, position: str = "[{}]") -> Numb
         Name of the parameter.
     values : array of shape (length,)
     position : str
-        Text for the index of a value in a message.
+        Text for the number of a value in a message.
+    numbering : sequence of int, optional
+        Numbers of the values; indices by default.
 
     Raises
     ------
@@ -248,6 +252,7 @@ def parameter_values(name: str, values: Numbers, position: str = "[{}]") -> Numb
         bad &= numbers != inf
     if bad.any():
         first = int(numpy.argmax(bad))
+        number = first if numbering is None else numbering[first]
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        raise ValueError(f"{name}{position.format(first)} = {numbers[first]:g}{more} is not allowed: a finite number")
+        raise ValueError(f"{name}{position.format(number)} = {numbers[first]:g}{more} is not allowed: a finite number")
     return numbers

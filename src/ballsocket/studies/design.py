@@ -306,7 +306,7 @@ def table(path: str | Path, heads: HeadChoice = ALL_COLUMNS) -> Design:
         raise ValueError(f"{path.name} has no rows of numbers")
     kinds = {name: parameter.kind for name, parameter in PARAMETERS.items()}
     columns = {
-        name: parameter_values(name, values, position=f" in row {{}} of {path.name}")
+        name: parameter_values(name, values, f" in line {{}} of {path.name}", rows.lines)
         for name, values in rows.in_units(kinds, {name: kind.unit for name, kind in kinds.items()}).items()
     }
     return Design((TableAxis(columns, remark=rows.remark()),))

@@ -219,15 +219,10 @@ def exit_with_parent() -> None:
         signal.signal(signal.SIGIO, signal.SIG_DFL)
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
-        if _is_pipe_closed(pipe):
+        poll = select.poll()
+        poll.register(pipe, select.POLLHUP)
+        if any(events & select.POLLHUP for _, events in poll.poll(0)):
             os._exit(_PARENT_ENDED)  # the parent ended before the signal was set
-
-
-def _is_pipe_closed(pipe: int) -> bool:
-    """Check if the other end of a pipe is closed."""
-    poll = select.poll()
-    poll.register(pipe, select.POLLHUP)
-    return any(events & select.POLLHUP for _, events in poll.poll(0))
 
 
 def _watch_parent(parent: int) -> None:

@@ -170,7 +170,7 @@ class Plan:
         make_folder(folder)
         pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
         store = _ResultFiles(
-            paths=tuple(folder / f"{part}{_file_suffix(name)}.json" for part, name in pieces),
+            paths=tuple(folder / ("_".join([part, *re.findall(r"\w+", name)]) + ".json") for part, name in pieces),
             keys=tuple(f"ballsocket {fingerprint()}, {self.name}, {part} {name}" for part, name in pieces),
         )
         work = _PlanWork(tuple(self.parts[part][name] for part, name in pieces))
@@ -243,11 +243,6 @@ class _ResultFiles(PieceStore):
             return record["result"] if record["key"] == self.keys[number] else None
         except (OSError, ValueError, KeyError, TypeError):
             return None
-
-
-def _file_suffix(name: str) -> str:
-    """Convert the name of a piece to the end of a file name."""
-    return "".join(f"_{word}" for word in re.findall(r"\w+", name))
 
 
 @dataclass(frozen=True)
