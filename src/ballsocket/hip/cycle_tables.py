@@ -148,7 +148,7 @@ def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
-    return HipColumns(columns=columns, **_reaction_frame(reactions))
+    return _with_reaction_frame(columns, reactions)
 
 
 def _angle_factor(table: NumberTable) -> float:
@@ -158,16 +158,17 @@ def _angle_factor(table: NumberTable) -> float:
     return pi / 180 if table.in_degrees else 1.0
 
 
-def _reaction_frame(reactions: set[tuple[str, str]]) -> dict[str, str]:
-    """Return the loaded body and the frame of OpenSim's joint reaction."""
+def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
+    """Add the loaded body and the frame of OpenSim's joint reaction to columns."""
     if not reactions:
-        return {}
+        return HipColumns(columns=columns)
     if len(reactions) > 1:
         raise ValueError("the table has more than one joint reaction: on several bodies, or in several frames")
     body, frame = reactions.pop()
     if frame == "ground":
         raise ValueError("the joint reaction is in the ground frame: let OpenSim express it in pelvis or femur")
-    return {"force_on": "ball" if body == "femur" else "socket", "frame": "femur" if frame == "femur" else "body"}
+    loaded = "ball" if body == "femur" else "socket"
+    return HipColumns(columns=columns, force_on=loaded, frame="femur" if frame == "femur" else "body")
 
 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:

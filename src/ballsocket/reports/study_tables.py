@@ -268,9 +268,10 @@ def varying_parameters(study: xarray.Dataset) -> list[str]:
 
 def held_text(held: Mapping[str, float], units: Units = Units.SI) -> str:
     """List lengths that are held while others vary, with titles and units."""
+    named = {"interference" if name == "clearance" and value < 0 else name: abs(value) for name, value in held.items()}
     return ", ".join(
         f"{QUANTITIES[name].title} {_value_text(name, value, units)} {_unit(name, units)}"
-        for name, value in held.items()
+        for name, value in named.items()
     )
 
 
