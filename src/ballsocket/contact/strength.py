@@ -16,7 +16,7 @@ from ..core.validity import RIGID_BACKING, Range
 from ..problem import Joint, Material, elementwise_maximum
 from .bounded import Bounded
 from .coordinates import LIMIT
-from .stress_ratio import MAX_THICKNESS_RATIO, POISSON, liner_stress_ratio
+from .stress_ratio import MAX_THICKNESS_RATIO, POISSON
 
 MAX_ELASTIC_UTILISATION = 1.38
 """Largest utilisation for which a linear result is valid.
@@ -47,24 +47,6 @@ _SAFE_STRAIN = 5e-4
 """Largest elastic strain of a ball without a yield stress; above it a note appears (annealed aluminium)."""
 
 _BALL_UNCHECKED = "strength of the ball not checked: it has no yield stress, and its stress is above 0.05 % of its E"
-
-
-def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
-    """Compute the ratio of largest von Mises stress to largest pressure in a liner on a rigid backing.
-
-    It is interpolated in a table of the exact solution: ε up to 85°, ν of 0 to 0.4993, R2/L up to 20.5. The error is
-    below 0.5 % there. Beyond the table it is an estimate, see `von_mises_error`.
-
-    Parameters
-    ----------
-    half_angle : float or array
-        ε in rad.
-    poisson : float or array
-        Poisson's ratio of the liner.
-    thickness_ratio : float or array
-        R2/L.
-    """
-    return liner_stress_ratio(half_angle, poisson, thickness_ratio)
 
 
 def von_mises_error(contact: Any) -> Array:
