@@ -10,8 +10,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.contact import strength
-from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, TABLE_ERROR, von_mises_ratio
-from ballsocket.contact.stress_ratio import poisson_at, thickness_ratio_at
+from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, TABLE_ERROR
+from ballsocket.contact.stress_ratio import poisson_at, thickness_ratio_at, von_mises_ratio
 from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number, strength_uses
 from ballsocket.elasticity.exact import subsurface
 
@@ -70,9 +70,6 @@ def test_utilisation_of_a_contact_is_its_stress_over_yield_stress():
     ratio = von_mises_ratio(contact.half_angle, 0.4, HIP.thickness_ratio)
     np.testing.assert_allclose(contact.von_mises, ratio * contact.max_pressure)
     np.testing.assert_allclose(contact.utilisation_at(np.array([True, False])), contact.utilisation)
-    exact = bs.Exact().press(HIP, force=3000.0)
-    _, low, high = error_bar(exact, "utilisation")
-    assert low < exact.utilisation < high
 
 
 @EACH_PROMISING
@@ -146,8 +143,7 @@ def test_a_hip_at_8_kilonewtons_yields_by_all_accurate_models(model):
     within = 2 * TABLE_ERROR + (model.promise.within if model.promise else 0.0)
     assert contact.utilisation == pytest.approx(1.035, rel=within)
     _, low, high = error_bar(contact, "utilisation")
-    assert low <= 1.035 <= high
-    assert low > 1 or model.name in ("refined", "sphere")
+    assert 1 < low <= 1.035 <= high
 
 
 def test_bounds_of_the_stress_contain_the_exact_one_in_99_of_100_joints():
@@ -181,13 +177,6 @@ def test_stresses_of_a_soft_backed_socket_are_solved_only_near_yield(monkeypatch
     looks.clear()
     assert bs.Exact().press(strong, force=forces).valid.tolist() == [True, True, True, False, False]
     assert len(looks) == 1
-
-
-def test_utilisation_includes_a_weak_ball():
-    soft = replace(HIP, ball=replace(bs.COCR, yield_stress=5.0))
-    contact = bs.HessForsbach().press(soft, force=3000.0)
-    assert contact.utilisation == pytest.approx(0.62 * contact.max_pressure / 5.0, rel=0.01)
-    assert any("of the ball" in note for note in contact.notes)
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact(), bs.Sphere()], ids=lambda model: model.name)

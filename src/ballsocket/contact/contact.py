@@ -20,6 +20,7 @@ from ..core.validity import Range
 from . import describe, strength
 from .bounded import Bounded
 from .outcome import Outcome
+from .stress_ratio import von_mises_ratio
 
 if TYPE_CHECKING:
     import pandas
@@ -115,7 +116,7 @@ class Contact(Outcome):
     def von_mises(self) -> Array:
         """Largest von Mises stress in the liner in MPa.
 
-        A ratio of the largest pressure from a table of the exact solution, see `strength.von_mises_ratio`, with the
+        A ratio of the largest pressure from a table of the exact solution, see `stress_ratio`, with the
         `error["von_mises"]` of 0.5 % for liners on a rigid backing. Models that solve for the stresses compute it.
         """
         return self._mask_failed(self._compute_von_mises)
@@ -160,7 +161,7 @@ class Contact(Outcome):
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa from the tabulated ratio."""
         liner = self.joint.liner
-        return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
+        return von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:

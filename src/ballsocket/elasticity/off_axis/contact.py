@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
-from ...contact.strength import rim_errors, von_mises_ratio
+from ...contact.strength import rim_errors
+from ...contact.stress_ratio import von_mises_ratio
 from ...contact.verdict import Bounded
 from ...core import arrays
 from ...core.arrays import Array, Numbers
