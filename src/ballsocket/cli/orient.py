@@ -11,6 +11,7 @@ import numpy
 import typer
 from rich.console import Console
 
+from ..catalogue import with_gap
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
@@ -26,6 +27,7 @@ from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
 from .elasticity_options import CupOptions, DirectionOptions
 from .options import (
+    GapName,
     JointName,
     JointPartOptions,
     LoadOptions,
@@ -60,6 +62,7 @@ class OrientationOptions:
     points: Annotated[
         int | None, typer.Option(min=1, max=91, help="Number of equally spaced values of each angle. Not with --step.")
     ] = None
+    gap: GapName = None
     side: Annotated[
         str | None, typer.Option(help="Side of the body: 'right' or 'left'. Default: as in the file, or right.")
     ] = None
@@ -180,8 +183,8 @@ def orient(
     file = joint_options.read(joint)
     side = drop_missing({"side": orientation.side})
     rim = read_cup(side, cup.apply_to(file.cup))
-    sphere = replace(DirectionOptions(ring_width=orientation.ring_width).model(), cup=rim)
-    model = sphere.with_direction(**orientation.read_direction(file))
+    sphere = with_gap(DirectionOptions(ring_width=orientation.ring_width).model(), orientation.gap)
+    model = replace(sphere, cup=rim).with_direction(**orientation.read_direction(file))
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **load.read(file))

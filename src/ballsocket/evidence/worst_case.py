@@ -148,7 +148,7 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
     return [_run_calculix(f"CalculiX{_suffix(question)}", model, joint, _size(load))]
 
 
-def _run_calculix(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
+def _run_calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     """Run CalculiX on the input deck of a contact."""
     from ..elasticity.finite_elements.calculix import run
     from ..elasticity.finite_elements.deck import deck_of
