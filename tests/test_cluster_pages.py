@@ -22,7 +22,7 @@ def blocks(page, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
-SLURM_PROGRAM = blocks("slurm.md", "text")[0]
+SLURM_PROGRAM = blocks("clusters.md", "text")[0]
 
 
 PROGRAMS = {
@@ -33,7 +33,7 @@ PROGRAMS = {
 
 def encrypted(folder):
     """Return the program with the lines of the page that encrypt the ports, and certificates in a folder."""
-    page = (HOW_TO / "slurm.md").read_text("utf-8")
+    page = (HOW_TO / "clusters.md").read_text("utf-8")
     lines = re.search(r"^  ```text\n(.*?)^  ```$", page, flags=re.MULTILINE | re.DOTALL)[1]
     security, cluster, engine = (line.strip() for line in lines.splitlines())
     options = cluster.removeprefix("cluster = SLURMCluster(").removesuffix(", ...)").replace("/home/me", str(folder))
@@ -68,7 +68,7 @@ def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program,
 
 def test_the_manifest_of_kubernetes_is_complete(tmp_path):
     yaml = pytest.importorskip("yaml")
-    parts = list(yaml.safe_load_all(blocks("kubernetes.md", "yaml")[0]))
+    parts = list(yaml.safe_load_all(blocks("clusters.md", "yaml")[0]))
     kinds = {(part["kind"], part["metadata"]["name"]): part for part in parts}
     deployments = {("Deployment", "scheduler"), ("Deployment", "worker")}
     assert set(kinds) == {("PersistentVolumeClaim", "hips"), ("Service", "scheduler"), ("Job", "study"), *deployments}
@@ -83,7 +83,7 @@ def test_the_manifest_of_kubernetes_is_complete(tmp_path):
         mounts = {mount["name"]: mount["mountPath"] for mount in pods[name]["containers"][0]["volumeMounts"]}
         assert mounts["hips"] == "/hips"
     file = tmp_path / "study.toml"
-    file.write_text(blocks("kubernetes.md", "toml")[0], encoding="utf-8")
+    file.write_text(blocks("clusters.md", "toml")[0], encoding="utf-8")
     port = kinds["Service", "scheduler"]["spec"]["ports"][0]["port"]
     assert read_study(file).engine == Distributed(address=f"tcp://scheduler:{port}")
     assert f"tcp://scheduler:{port}" in pods["Deployment", "worker"]["containers"][0]["command"]
@@ -93,7 +93,7 @@ def test_the_manifest_of_kubernetes_is_complete(tmp_path):
 def test_dask_has_the_options_of_the_manifest(role):
     yaml = pytest.importorskip("yaml")
     module = pytest.importorskip(f"distributed.cli.dask_{role}")
-    parts = yaml.safe_load_all(blocks("kubernetes.md", "yaml")[0])
+    parts = yaml.safe_load_all(blocks("clusters.md", "yaml")[0])
     specs = [part["spec"]["template"]["spec"] for part in parts if part["kind"] == "Deployment"]
     command = next(words for spec in specs if (words := spec["containers"][0]["command"])[:2] == ["dask", role])
     options = {option for parameter in module.main.params for option in (*parameter.opts, *parameter.secondary_opts)}

@@ -13,10 +13,6 @@ from .hips import SHORT, UNCERTAINTY, write_edited_file
 @pytest.fixture
 def short_film(monkeypatch):
     """Compute films over 2 cycles instead of 300, where a test reads other results."""
-    shorten_film(monkeypatch)
-
-
-def shorten_film(monkeypatch):
     film = HipSetup.film
     monkeypatch.setattr(HipSetup, "film", lambda use, *words, **names: film(use, *words, **{"cycles": 2} | names))
 
@@ -30,8 +26,6 @@ def solved_file(tmp_path_factory):
     file.write_text(f"{file.read_text(encoding='utf-8')}\n{tables}", encoding="utf-8")
     (folder / "logo.svg").write_text("<svg/>", encoding="utf-8")
     files = ("--report", str(folder / "hip.html"), "--csv", str(folder / "hip.csv"), "--store", str(folder / "store"))
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        shorten_film(monkeypatch)
-        process = run("hip", str(file), "--json", *files)
+    process = run("hip", str(file), "--json", *files)
     assert process.returncode == 0, process.stderr
     return folder, json.loads(process.stdout)

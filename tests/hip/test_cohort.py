@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Distributed, Processes, Serial
+from ballsocket.core.executors import Processes, Serial
 from ballsocket.hip import population, read_hip
 from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, table_columns, write_csv
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
@@ -164,7 +164,7 @@ def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
     assert not any("full elasticity" in note for note in springs.notes)
 
 
-def test_the_command_stores_every_patient(tmp_path, short_film):
+def test_the_command_stores_every_patient(tmp_path):
     file = short_file(tmp_path, ("instants = 16", "instants = 40"))  # more than the coarse simulation of a patient
     done = run("hip", str(file), "--patients", "5", "--store", str(tmp_path / "store"), "--json")
     assert done.returncode == 0, done.stderr
@@ -178,7 +178,7 @@ def test_the_command_stores_every_patient(tmp_path, short_film):
     assert answer["valid"] is True
 
 
-def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path, short_film):
+def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path):
     """In 80 columns, with springs outside the range of their formula."""
     path = short_file(tmp_path, ('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
     words = "hip", str(path), "--patients", "4"
@@ -192,10 +192,9 @@ def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("engine", [Processes(workers=2), Distributed(workers=2)], ids=["processes", "dask"])
-def test_results_do_not_depend_on_the_executor(engine):
+def test_results_do_not_depend_on_the_executor():
     run = cohort_run(40)
-    np.testing.assert_array_equal(run.simulate().table, run.simulate(engine).table)
+    np.testing.assert_array_equal(run.simulate().table, run.simulate(Processes(workers=2)).table)
 
 
 @pytest.mark.long

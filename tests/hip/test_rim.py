@@ -130,7 +130,7 @@ def test_a_ball_leaves_its_bore_if_it_moves_to_the_rim_against_its_spring(mismat
     assert not spring_ball(mismatch).leaves_bore(forces).any()
 
 
-def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase(short_film):
+def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
     use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(8.0))
     apart = use.separation
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from ballsocket.evidence.question import read_question
-from ballsocket.identify.file import read_identify
+from ballsocket.identification.file import read_identify
 from ballsocket.problem.gaps import GAP_KINDS, CircularGap, LinearGap, check_gap
 from ballsocket.studies.file import read_study
 

@@ -11,7 +11,6 @@ import numpy
 import typer
 from rich.console import Console
 
-from ..catalogue import with_gap
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
@@ -21,6 +20,7 @@ from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import as_given, parse
+from ..model_catalogue import with_gap
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
 from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit

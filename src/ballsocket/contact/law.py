@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
 
 PolynomialPieces = Sequence[Sequence[float]]
@@ -172,6 +171,3 @@ def _chebyshev_to_power_matrix() -> Numbers:
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])
     return matrix
-
-
-__getattr__ = renamed_names(__name__, {"Law": "ForceLaw", "Pieces": "PolynomialPieces"})

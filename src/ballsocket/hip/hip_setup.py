@@ -13,7 +13,6 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
-from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..core.display import OneLine, html_list
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
@@ -55,33 +54,7 @@ _CYCLES_PER_MILLION = 1e6
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HipSetup(OneLine):
-    """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle.
-
-    Attributes
-    ----------
-    joint : Joint
-        Joint of single numbers.
-    cycle : Cycle or Mix
-        Loads and rotations in the body's frame, for the right side of the body.
-    wear : WearLaw
-        Wear law of the socket.
-    cup : Cup
-        Arc of cover and orientation of the cup.
-    surface : Springs, ClosedShell or RealCup
-        Foundation of the socket.
-    ring_width : float
-        Width of the rings of the wear map in rad.
-    ball_wear : WearLaw, optional
-        Wear law of the ball; None for a ball without wear.
-    creep : CreepLaw, optional
-        Creep law of the liner; None for a liner without creep.
-    seconds_per_cycle : float, optional
-        Time in s that a cycle stands for in the creep of the liner; None is the duration of the cycle.
-    tolerance : float
-        Allowed error of a block of cycles, relative to the largest depth so far.
-    film_limit : FilmLimit, optional
-        Film ratio below which the surfaces wear; None for wear at any film.
-    """
+    """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle; see `HipSimulation`."""
 
     joint: Joint
     cycle: Cycle | Mix
@@ -107,15 +80,6 @@ class HipSetup(OneLine):
     side_cycle = FromFrame[Cycle | Mix]()
     slide = FromFrame[float]()
     socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
-
-    carried = RenamedAttribute("socket_forces")
-    largest = RenamedAttribute("largest_load_index")
-    moved = RenamedAttribute("side_cycle")
-    tether = RenamedAttribute("lateral_stiffness")
-    turns = RenamedAttribute("rotation_increments")
-    bed = RenamedAttribute("foundation")
-    rest = RenamedAttribute("solve_equilibrium")
-    passed = RenamedAttribute("exposure")
 
     def __post_init__(self) -> None:
         """Check types and limits of the fields, and that no load pushes the ball over the rim."""
@@ -235,7 +199,6 @@ class HipSetup(OneLine):
             directions=self.foundation.directions,
         )
 
-    @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
         """Compute the distance of each contact from the rim (`RimDistance`), for a worn depth (cells,) in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
@@ -243,7 +206,6 @@ class HipSetup(OneLine):
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
         )
 
-    @renamed_arguments(rest="equilibrium")
     def edge_distance(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Compute the shortest arc in mm from each contact edge to the end of the bore: (loaded,).
 
@@ -278,7 +240,6 @@ class HipSetup(OneLine):
         ring_width = min(self.ring_width, MAX_RING_WIDTH)
         return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width, gap=LinearGap)
 
-    @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Tabulate the contact of largest pressure of each activity: (activities, columns `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
@@ -321,7 +282,6 @@ class HipSetup(OneLine):
         """Validity and strength of the worst contact of each activity in the first cycle."""
         return self.contact_checks(self.unworn_worst_contacts)
 
-    @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressure and sliding of the socket's cells over a cycle, as input of a wear law."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))

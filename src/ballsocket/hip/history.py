@@ -15,11 +15,11 @@ import numpy
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.display import OneLine, html_table, load_plot, plain_number
 from ..core.records import Record
 from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
+from .film import Film
 from .hip_setup import HipSetup
 from .law_fields import law_summary
 from .rim import ClosestApproach, RimDistance
@@ -86,9 +86,6 @@ class Report(Record, OneLine):
     ball_depth: float = 0.0
     worst_contacts: Numbers = field(default_factory=lambda: numpy.zeros((0, len(COLUMNS))))
     converged: bool = True
-    worn_in = RenamedAttribute("wear_displacement")
-    crept_in = RenamedAttribute("creep_displacement")
-    settled = RenamedAttribute("converged")
 
     @property
     def penetration(self) -> float:
@@ -155,15 +152,15 @@ class History(OneLine):
     error : NumericalError
     steps : int
         Number of blocks of cycles, each with one geometry.
-    lubricant : Lubricant
+    lubricant : Lubricant, optional
+        Lubricant of the film; None for a hip without film.
     """
 
     use: HipSetup
     reports: tuple[Report, ...]
     error: NumericalError
     steps: int
-    lubricant: Lubricant = Lubricant()  # noqa: RUF009 (frozen)
-    settled = RenamedAttribute("converged")
+    lubricant: Lubricant | None = None
 
     @property
     def last(self) -> Report:
@@ -356,17 +353,21 @@ class History(OneLine):
                 "creep": law_summary(self.use.creep),
                 "film_limit": None if limit is None else limit.summary(self.use.excluded_work_share),
             },
-            "film": self._film_summary(),
+            "film": None if self.film is None else self._film_summary(self.film),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
             "history": list(map(self._report_summary, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
 
-    def _film_summary(self) -> dict[str, Any]:
-        """Return the film by the wave for JSON, and that by Hamrock and Dowson's formula under `hamrock_dowson`."""
-        wave = self.use.film(self.lubricant).summary()
-        formula = self.use.film(self.lubricant, method="hamrock-dowson").summary()
+    @property
+    def film(self) -> Film | None:
+        """Film of the first cycle by the wave; None for a hip without film."""
+        return None if self.lubricant is None else self.use.film(self.lubricant)
+
+    def _film_summary(self, film: Film) -> dict[str, Any]:
+        """Return the film by the wave for JSON, and Hamrock and Dowson's formula under `hamrock_dowson`."""
+        wave, formula = film.summary(), self.use.film(film.lubricant, method="hamrock-dowson").summary()
         return {**wave, "hamrock_dowson": formula} if wave else {}
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
@@ -410,12 +411,3 @@ _NOT_CONVERGED = "a contact did not balance its load: the results of this run ar
 def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
     """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Error": "NumericalError",
-        "First": "ballsocket.hip.wear_law.FirstCycleResult",
-    },
-)

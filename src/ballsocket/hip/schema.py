@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar, Self
 
 import msgspec
 
-from ..catalogue import catalogue
 from ..core.checks import shown
 from ..files.columns import HeadKeys
 from ..files.joint_file import CupTable, JointTables, ReportTable
@@ -28,6 +27,7 @@ from ..files.schema import (
     meaning,
     with_keys,
 )
+from ..model_catalogue import catalogue
 from ..problem.cup import Side
 from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
@@ -265,7 +265,7 @@ class CreepTable(Table, frozen=True, kw_only=True):
 
 
 class FilmTable(Table, frozen=True, kw_only=True):
-    """Fluid film and friction."""
+    """Fluid film and friction; without this table no film is computed."""
 
     viscosity: Annotated[PlainNumber | None, meaning("dynamic viscosity in Pa s")] = None
     ball_roughness: Annotated[Length | None, meaning("roughness Ra of the ball")] = None
@@ -323,7 +323,7 @@ class CycleCounts(Value, list[float]):
         return cls(Counts.read(name, value if isinstance(value, list) else [value]))
 
 
-class WearDataTable(Table, frozen=True, kw_only=True):
+class WearDataTable(HeadKeys, frozen=True, kw_only=True):
     """Measured wear, from which `ballsocket identify` fits the wear coefficient."""
 
     quantity: Annotated[WearQuantity | None, meaning("measured quantity")] = None
@@ -363,7 +363,7 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     cup: HipCupTable | None = None
     wear: WearTable = WearTable()
     creep: CreepTable | None = None
-    film: FilmTable = FilmTable()
+    film: FilmTable | None = None
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
     report: ReportTable | None = None

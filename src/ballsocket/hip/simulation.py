@@ -14,7 +14,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.display import plain_number
 from ..core.storage.atomic_files import make_folder, read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
@@ -277,15 +276,12 @@ class HipSimulation(HipSetup):
     30.1
     """
 
-    halved = RenamedAttribute("discretization_error")
-
-    @renamed_arguments(listen="progress")
     def after(
         self,
         cycles: float,
         report_at: Sequence[float] = (),
         progress: Callable[[float], None] = lambda cycles: None,
-        lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+        lubricant: Lubricant | None = None,
         store: Path | None = None,
     ) -> History:
         """Simulate wear and creep up to a number of cycles.
@@ -297,8 +293,8 @@ class HipSimulation(HipSetup):
             Cycle counts of the reports; the last report is always at `cycles`.
         progress : function
             Called with the number of cycles so far after each block.
-        lubricant : Lubricant
-            Lubricant for the film in the summary.
+        lubricant : Lubricant, optional
+            Lubricant of the film in the summary; no film by default.
         store : Path, optional
             Folder that stores the run after each block: a stopped run resumes from there.
 
@@ -367,6 +363,3 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
             f"it lies between 0 and the {plain_number(cycles)} cycles of the run",
         )
     return sorted({float(count) for count in (*report_at, cycles)})
-
-
-__getattr__ = renamed_names(__name__, {"InUse": "HipSimulation"})

@@ -16,7 +16,6 @@ import numpy
 
 from ..core.arrays import Array, Numbers, cos, gauss_legendre, to_numpy, where
 from ..core.checks import shown
-from ..core.deprecation import RenamedAttribute
 from ..core.validity import Range
 
 
@@ -61,8 +60,6 @@ class LinearGap:
         """Compute the Abel transform A[∂u/∂d](t), the change of A[u] per unit of the indentation d."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
-    deepening = RenamedAttribute("indentation_derivative")
-
 
 @dataclass(frozen=True, kw_only=True)
 class CircularGap:
@@ -102,8 +99,6 @@ class CircularGap:
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform A[∂u/∂d](t), the change of A[u] per unit of the indentation d."""
         return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
-
-    deepening = RenamedAttribute("indentation_derivative")
 
     def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
         """Compute the displacement u in mm and its first two derivatives by w = 1 - cos φ; NaN beyond the ball."""

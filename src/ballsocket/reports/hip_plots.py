@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..core.arrays import Numbers
+    from ..hip.film import Film
     from ..hip.hip_setup import HipSetup
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
@@ -155,9 +156,8 @@ def _points(reach: float) -> Numbers:
     return numpy.stack([across * numpy.cos(azimuth), across * numpy.sin(azimuth), numpy.cos(polar)])
 
 
-def film_figure(history: History) -> Figure:
+def film_figure(use: HipSetup, film: Film) -> Figure:
     """Draw the film by the wave, its comparison and the friction moment over the first cycle."""
-    use, film = history.use, history.use.film(history.lubricant)
     figure, axes = _figure()
     curves = {
         "refreshed part, mean": (film.refreshed_mean, "-", _INK),

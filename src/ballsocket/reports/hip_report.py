@@ -50,11 +50,6 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             hip_plots.cross_shear_map,
             "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
         ),
-        "film": (
-            "Film and friction",
-            hip_plots.film_figure,
-            f"{WAVE_NOTE}. {CONFORMITY_NOTE}.",
-        ),
         "edge": (
             "Edge distance",
             hip_plots.edge_figure,
@@ -124,6 +119,9 @@ def hip_report(
         figures = _FIGURES if history.use.ball_wear is None else _FIGURES | _BALL_FIGURES
         for section, (title, draw, caption) in figures.items():
             sections[section] = (title, picture(figure_bytes(draw(history)), title, caption))
+        if history.film is not None:
+            title, curves = "Film and friction", figure_bytes(hip_plots.film_figure(history.use, history.film))
+            sections["film"] = (title, picture(curves, title, f"{WAVE_NOTE}. {CONFORMITY_NOTE}."))
     if bands is not None:
         sections |= _band_sections(history, bands)
     return render_page(

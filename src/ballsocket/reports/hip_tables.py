@@ -19,7 +19,7 @@ from ..hip.film import Film
 from ..hip.history import History
 from ..hip.variability import INFLUENCED_RESULTS
 from ..lubrication.friction import Stribeck
-from .terminal import console, print_columns, print_folded, print_joint
+from .terminal import Terminal, console, print_columns, print_folded, print_joint
 from .unit_systems import Units
 
 _WEAR_UNITS = {
@@ -199,13 +199,8 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
     print_folded(terminal, contact_line(history), "")
     if len(history.use.unworn_checks) > 1:
         print_columns(terminal, _contact_table(history))
-    film = history.use.film(history.lubricant)
-    if len(film.phases):
-        print_columns(terminal, film_table(film))
-    for line in _film_lines(film):
-        print_folded(terminal, line, "")
-    if history.use.joint.clearance > 0:
-        print_folded(terminal, lubricant_line(history), "dim")
+    if history.film is not None:
+        _print_film(terminal, history.film)
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
     print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes([note for note in history.notes if note != use.cycle.remark], units)
@@ -243,14 +238,6 @@ def radiograph_line(history: History) -> str:
     return f"penetration in a radiograph from the front, {share}: {penetration}"
 
 
-def lubricant_line(history: History) -> str:
-    """State the viscosity and the roughness of the surfaces that the film assumes."""
-    lubricant = history.lubricant
-    ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
-    viscosity = f"viscosity {1e3 * lubricant.viscosity:g} mPa s"
-    return f"assumed for the film: {viscosity}, roughness Ra {ball} (ball) and {cup} (cup)"
-
-
 def print_notes(notes: Iterable[str], units: Units = Units.SI) -> None:
     """Print notes, each on its own line."""
     terminal = console(units)
@@ -286,8 +273,19 @@ def _wear_table(history: History) -> Table:
     return table
 
 
-def film_table(film: Film) -> Table:
-    """Make the table of the film over the cycle, its thicknesses in nm."""
+def _print_film(terminal: Terminal, film: Film) -> None:
+    """Print the film over the cycle with thicknesses in nm, its regime and friction, and its lubricant."""
+    if len(film.phases):
+        print_columns(terminal, _film_table(film))
+    for line in _film_lines(film):
+        print_folded(terminal, line, "")
+    lubricant = film.lubricant
+    ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
+    viscosity = f"viscosity {1e3 * lubricant.viscosity:g} mPa s"
+    print_folded(terminal, f"assumed for the film: {viscosity}, roughness Ra {ball} (ball) and {cup} (cup)", "dim")
+
+
+def _film_table(film: Film) -> Table:
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     for head in ("film over the cycle", "least", "mean", "largest"):
         table.add_column(head, justify="left" if head.startswith("film") else "right", no_wrap=True)

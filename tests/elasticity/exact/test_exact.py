@@ -283,7 +283,7 @@ def test_energy_is_the_work_and_stiffness_the_slope(joint, gap, deepest):
 def test_the_bounds_of_the_stress_are_ten_percent_from_a_coarse_sum():
     soft = HIP.replace(backing=(bs.Layer(thickness=10.0, material=bs.CANCELLOUS_BONE),))
     contact = bs.Exact().press(soft, force=np.array([1e-6, 300.0, 3000.0]))
-    low, high = contact.von_mises_bounds
+    _, low, high = contact.quick_von_mises
     assert ((low < contact.von_mises) & (contact.von_mises < high)).all()
     np.testing.assert_allclose(high / low, 1.1 / 0.9, rtol=1e-12)
     np.testing.assert_allclose((low + high) / 2, contact.von_mises, rtol=0.02)

@@ -34,7 +34,8 @@ from ...core.display import ascii_text
 from ...core.storage.atomic_files import make_folder, write_text
 from ...problem.gaps import LinearGap, select_gap
 from ...version import __version__
-from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
+from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
+from .deck_lines import contact_lines, material_lines, node_set_lines, step_lines
 from .model import MeshedContact
 
 _NAME, _EXPECTED = "ballsocket", "expected.json"
@@ -120,10 +121,10 @@ class Deck:
     def text(self) -> str:
         """Return the deck as ASCII text."""
         bodies = self._bodies
-        lines = [*self._title_lines(), *mesh_lines(bodies), *material_lines(bodies)]
-        lines += [*contact_lines(bodies, self.contact_penalty), *support_lines(bodies)]
+        lines = [*self._title_lines(), *mesh_lines(bodies), *material_lines(bodies.materials)]
+        lines += [*contact_lines(*touching_faces(bodies), self.contact_penalty), *support_lines(bodies)]
         for depth in self._indentations:
-            lines += step_lines(-self.scale * depth)
+            lines += step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
         return "\n".join(lines) + "\n"
 
     def write(self, out: Path) -> Path:
@@ -229,6 +230,11 @@ class Deck:
 
 _INSIDE, _OUTSIDE = "S4", "S2"  # faces of elements
 
+_STEP_OUTPUT = (
+    *("*NODE PRINT, NSET=BORE, GLOBAL=YES", "U", "*NODE PRINT, NSET=ROUND, GLOBAL=YES", "U"),
+    *("*CONTACT FILE", "CDIS, CSTR"),
+)
+
 
 def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
     """Yield the lines of nodes and elements of both bodies, and of the sets of contact nodes."""
@@ -241,24 +247,11 @@ def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
     yield from node_set_lines("ROUND", bodies.ball.surface()["node"])
 
 
-def material_lines(bodies: DeckBodies) -> Iterator[str]:
-    """Yield the lines of a material for each set of elements."""
-    for name, (young, poisson) in bodies.materials.items():
-        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {poisson:.12g}")
-        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
-
-
-def contact_lines(bodies: DeckBodies, contact_penalty: float) -> Iterator[str]:
-    """Yield the lines of the contact surfaces and of the contact, whose penalty `contact_penalty` is in MPa/mm.
-
-    The surfaces extend to the last pressure node; the ball's is one element longer.
-    """
-    yield "*SURFACE, NAME=LINED, TYPE=ELEMENT"
-    yield from (f"{element}, {_INSIDE}" for element in bodies.socket.contact_elements(bodies.reach, strip=0))
-    yield "*SURFACE, NAME=PRESSED, TYPE=ELEMENT"
-    yield from (f"{element}, {_OUTSIDE}" for element in bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1))
-    yield from ("*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
-    yield from (f"{contact_penalty:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
+def touching_faces(bodies: DeckBodies) -> tuple[list[str], list[str]]:
+    """Return the faces of socket and ball up to the last pressure node; the ball's are one element longer."""
+    lined = bodies.socket.contact_elements(bodies.reach, strip=0)
+    pressed = bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1)
+    return [f"{element}, {_INSIDE}" for element in lined], [f"{element}, {_OUTSIDE}" for element in pressed]
 
 
 def support_lines(bodies: DeckBodies) -> Iterator[str]:
@@ -306,15 +299,3 @@ def _boundary_lines(name: str, directions: str, nodes: list[int]) -> Iterator[st
     if nodes:
         yield from node_set_lines(name, nodes)
         yield from ("*BOUNDARY", f"{name}, {directions}")
-
-
-def step_lines(height: float) -> Iterator[str]:
-    """Yield the lines of one load step, which moves the ball to a height in mm, and of its output requests.
-
-    A negative height is downwards.
-    """
-    yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY", f"PUSHED, 2, 2, {height:.13g}")
-    yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF")
-    for surface in ("BORE", "ROUND"):
-        yield from (f"*NODE PRINT, NSET={surface}, GLOBAL=YES", "U")
-    yield from ("*CONTACT FILE", "CDIS, CSTR", "*END STEP")

@@ -24,8 +24,6 @@ _ANGLE_TOLERANCE = 1e-9  # rad
 TYPES = {1: "CAX4", 2: "CAX8R"}
 """Names of bilinear and biquadratic elements in CalculiX and Abaqus."""
 
-_NUMBERS_PER_LINE = 16
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DeckBody:
@@ -187,13 +185,6 @@ class DeckBodies:
         }
         young, poisson = moduli["BALL"]
         return {**moduli, "BALL": (young * float(joint.socket_radius) / self.ball.radius, poisson)}
-
-
-def node_set_lines(name: str, nodes: list[int]) -> Iterator[str]:
-    """Yield the input-file lines of a named node set."""
-    yield f"*NSET, NSET={name}"
-    for start in range(0, len(nodes), _NUMBERS_PER_LINE):
-        yield ", ".join(map(str, nodes[start : start + _NUMBERS_PER_LINE]))
 
 
 def faceting_gap(pair: SurfacePair) -> float:

@@ -26,6 +26,7 @@ from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.calculix import last_output, read_printed, run_calculix
 from ..finite_elements.deck import deck_paths
+from ..finite_elements.deck_lines import contact_lines, material_lines, node_set_lines, step_lines
 from ..finite_elements.mesh import SocketShape, add_midpoints, graded_points, join_points, socket_shape
 from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
@@ -36,7 +37,7 @@ _CONTACT_STIFFNESS_FACTOR = 500.0
 
 _SKIN_THICKNESS = 0.1  # as a fraction of the ball's radius
 _INNER_FACE, _OUTER_FACE = "S1", "S2"
-_NODES_PER_LINE, _NUMBERS_PER_LINE = 16, 12
+_NUMBERS_PER_LINE = 12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -223,13 +224,14 @@ class TiltedDeck:
 
     def text(self) -> str:
         """Return the deck as ASCII text."""
-        lines = [
-            *self._title_lines(),
-            *self._mesh_lines(),
-            *self._material_lines(),
-            *self._contact_lines(),
-            *self._step_lines(),
-        ]
+        penalty = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
+        lined, pressed = (
+            [f"{number}, {face}" for number, _, (_, _, k), _ in body.elements() if k == 0]
+            for body, face in ((self.socket, _INNER_FACE), (self.ball, _OUTER_FACE))
+        )
+        x, _, z = self.scale * self.indentation * self._displacement_direction
+        lines = [*self._title_lines(), *self._mesh_lines(), *material_lines(self._materials)]
+        lines += [*contact_lines(lined, pressed, penalty), *self._support_lines(), *step_lines([(1, x), (3, z)])]
         return "\n".join(lines) + "\n"
 
     def write(self, out: Path) -> Path:
@@ -266,40 +268,23 @@ class TiltedDeck:
         yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
         yield from _element_lines(self.ball, lambda k: "SKIN")
 
-    def _material_lines(self) -> Iterator[str]:
-        """Yield the input-file lines of the materials and sections of all layers and of the ball's skin."""
+    @property
+    def _materials(self) -> dict[str, tuple[float, float]]:
+        """Young's modulus in MPa and Poisson's ratio of all layers and of the ball's skin, which is almost rigid."""
         liner = float(self.joint.liner.young)
-        materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
-        materials["SKIN"] = 1e3 * liner, 0.3  # almost rigid
-        for name, (young, nu) in materials.items():
-            yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {nu:.12g}")
-            yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
+        layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
+        return {**layers, "SKIN": (1e3 * liner, 0.3)}
 
-    def _contact_lines(self) -> Iterator[str]:
-        """Yield the lines of the contact pair, the symmetry plane and the fixed nodes."""
-        slope = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
-        for name, body, face in (("LINED", self.socket, _INNER_FACE), ("PRESSED", self.ball, _OUTER_FACE)):
-            yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
-            yield from (f"{number}, {face}" for number, _, (_, _, k), _ in body.elements() if k == 0)
-        yield from (
-            "*SURFACE INTERACTION, NAME=TOUCH",
-            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-            f"{slope:.6g}",
-        )
-        yield from ("*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
+    def _support_lines(self) -> Iterator[str]:
+        """Yield the lines of the symmetry plane, of the fixed nodes, and of the ball's skin, which is displaced."""
         number = self.socket.number
-        plane = numpy.concatenate([number[:, 0].ravel(), number[:, -1].ravel()])
-        yield from _node_set_lines("MIRROR", plane)
-        yield from _node_set_lines("OUTSIDE", number[:, :, -1].ravel())
-        yield from _node_set_lines("PUSHED", self.ball.number.ravel())
+        for name, nodes in (
+            ("MIRROR", number[:, [0, -1]]),
+            ("OUTSIDE", number[:, :, -1]),
+            ("PUSHED", self.ball.number),
+        ):
+            yield from node_set_lines(name, numpy.unique(nodes[nodes > 0]))
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
-
-    def _step_lines(self) -> Iterator[str]:
-        """Yield the lines of the load step that displaces the ball."""
-        x, _, z = self.scale * self.indentation * self._displacement_direction
-        yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY")
-        yield from (f"PUSHED, 1, 1, {x:.13g}", f"PUSHED, 3, 3, {z:.13g}")
-        yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF", "*END STEP")
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
@@ -317,14 +302,6 @@ def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iter
         for start in range(0, len(row), _NUMBERS_PER_LINE):
             end = start + _NUMBERS_PER_LINE
             yield ", ".join(map(str, row[start:end])) + ("," if end < len(row) else "")
-
-
-def _node_set_lines(name: str, nodes: Numbers) -> Iterator[str]:
-    """Yield the lines of a named set of nodes; the number 0 is omitted."""
-    yield f"*NSET, NSET={name}"
-    numbers = sorted({int(node) for node in nodes if node})
-    for start in range(0, len(numbers), _NODES_PER_LINE):
-        yield ", ".join(map(str, numbers[start : start + _NODES_PER_LINE]))
 
 
 def run(out: Path, *, threads: int = 1) -> Mapping[str, Any]:
