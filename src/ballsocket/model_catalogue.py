@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from .contact import Model
 from .contact.model import RimLimited
@@ -69,7 +69,10 @@ def named_model(name: Any) -> Model:
     return named_models[known_name("model", name, named_models)]
 
 
-def with_gap(model: Model, name: str | None) -> Model:
+SomeModel = TypeVar("SomeModel", bound=Model)
+
+
+def with_gap(model: SomeModel, name: str | None) -> SomeModel:
     """Return a model with the gap of a name, "linear" or "circular"; None leaves the model as it is.
 
     Raises

@@ -74,6 +74,7 @@ cite herz => model, material or joint 'herz' is not known; did you mean 'hertz'?
 cite titanium => no known publication is named in the source of titanium
 
 press {hip} --model exact --gap round => gap 'round' is not known; known: linear, circular
+orient {hip} --points 2 --gap round => gap 'round' is not known; known: linear, circular
 curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models with one: exact, fem, sphere
 
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem

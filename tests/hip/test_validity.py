@@ -93,16 +93,9 @@ def test_a_worn_bore_has_its_own_validity():
     assert worn.half_angle > unworn.half_angle
 
 
-@pytest.mark.parametrize(
-    ("surface", "joint"),
-    [
-        (bs.ClosedShell(), HIP),
-        (bs.ClosedShell(), HIP.replace(clearance=0.5)),
-        pytest.param(bs.RealCup(), HIP, marks=pytest.mark.long),
-    ],
-)
-def test_an_elastic_run_has_the_validity_of_the_sphere_with_a_linear_gap(surface, joint):
-    cycle = constant_load(8, force=40e3)
+@pytest.mark.parametrize("surface", [bs.ClosedShell(), pytest.param(bs.RealCup(), marks=pytest.mark.long)])
+def test_an_elastic_run_has_the_validity_of_the_sphere_with_a_linear_gap(surface):
+    joint, cycle = HIP.replace(clearance=0.5), constant_load(8, force=40e3)
     use = use_of(joint, cycle, surface=surface, ring_width=radians(4.0))
     model = bs.Sphere(cup=UPRIGHT, surface=surface, ring_width=radians(4.0), gap=bs.LinearGap)
     press = model.press(joint, force=40e3)

@@ -20,12 +20,14 @@ from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import as_given, parse
+from ..model_catalogue import with_gap
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
 from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
 from .elasticity_options import CupOptions, DirectionOptions
 from .options import (
+    GapName,
     JointName,
     JointPartOptions,
     LoadOptions,
@@ -60,6 +62,7 @@ class OrientationOptions:
     points: Annotated[
         int | None, typer.Option(min=1, max=91, help="Number of equally spaced values of each angle. Not with --step.")
     ] = None
+    gap: GapName = None
     side: Annotated[
         str | None, typer.Option(help="Side of the body: 'right' or 'left'. Default: as in the file, or right.")
     ] = None
@@ -180,8 +183,8 @@ def orient(
     file = joint_options.read(joint)
     side = drop_missing({"side": orientation.side})
     rim = read_cup(side, cup.apply_to(file.cup))
-    sphere = replace(DirectionOptions(ring_width=orientation.ring_width).model(), cup=rim)
-    model = sphere.with_direction(**orientation.read_direction(file))
+    sphere = with_gap(DirectionOptions(ring_width=orientation.ring_width).model(), orientation.gap)
+    model = replace(sphere, cup=rim).with_direction(**orientation.read_direction(file))
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **load.read(file))

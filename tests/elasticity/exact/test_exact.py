@@ -189,13 +189,11 @@ def test_stress_below_a_small_contact_is_hertz():
     assert peak.angle == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.parametrize(("thickness", "error"), some([(6.75, 1e-3), (0.9, 2e-3)], 1))
-def test_stress_of_a_narrow_contact_depends_on_the_thickness(thickness, error):
+def test_stress_of_a_narrow_contact_depends_on_the_thickness():
     """The table was solved without similarity; at 0.001° the contact is that of Hertz, 0.6200 pmax for ν 0.3."""
-    thin = RIGID.replace(liner=plastic(0.3), liner_thickness=thickness)
-    angle = np.radians([0.001, 0.99, 1.01])
-    solved, tabulated = (model.press(thin, half_angle=angle) for model in (bs.Exact(), bs.Tabulated()))
-    np.testing.assert_allclose(solved.von_mises, tabulated.von_mises, rtol=error)
+    thin = RIGID.replace(liner=plastic(0.3), liner_thickness=0.9)
+    solved, tabulated = (m.press(thin, half_angle=np.radians([0.001, 0.99])) for m in (bs.Exact(), bs.Tabulated()))
+    np.testing.assert_allclose(solved.von_mises, tabulated.von_mises, rtol=2e-3)
     assert solved.von_mises[0] / solved.max_pressure[0] == pytest.approx(0.6200, rel=1e-3)
 
 
@@ -254,35 +252,29 @@ def test_linear_gap_of_a_wide_clearance_is_judged_by_its_computed_error(clearanc
 
 
 LOOSE = RIGID.replace(ball_radius=17.0, clearance=1.0)
-EQUATOR = bs.Exact(gap=bs.CircularGap).law(LOOSE).deepest
-"""Indentation in mm of the widest contact of a circular ball, whose edge is a great circle."""
+WIDEST = curve_of(bs.Exact(), LOOSE).widest_angle
+EQUATOR = bs.Exact().press(LOOSE, half_angle=(1 - 1e-12) * WIDEST).indentation
+"""Half angle in rad and indentation in mm of the widest contact of a circular ball, whose edge is a great circle."""
 
 
 def test_a_circular_ball_ends_at_its_equator():
     """Contacts up to the widest one converge, and wider or deeper ones do not exist."""
-    model, d = bs.Exact(gap=bs.CircularGap), EQUATOR * np.append(np.geomspace(0.3, 1.0, 60), [1.001, 1.1, 2.0])
-    contact = model.press(LOOSE, indentation=d)
-    np.testing.assert_array_equal(contact.status, [bs.Status.OK] * 60 + [bs.Status.NOT_REACHED] * 3)
-    assert (np.diff(contact.half_angle[:60]) > 0).all()
-    springs = np.arccos(np.sqrt(1 - (17 / 18) ** 2))  # the widest contact of a circle on springs
-    assert contact.half_angle[59] == pytest.approx(springs, abs=np.radians(2.0))
-    wider = model.press(LOOSE, half_angle=contact.half_angle[59] + np.radians([-0.1, 0.1, 1.0, 10.0]))
-    np.testing.assert_array_equal(wider.status, [bs.Status.OK] + [bs.Status.NOT_REACHED] * 3)
-    assert np.isnan(wider.max_pressure[1:]).all()
+    d = EQUATOR * np.append(np.geomspace(0.3, 0.9999, 60), [1.001, 1.1, 2.0])
+    deep = bs.Exact().press(LOOSE, indentation=d)
+    np.testing.assert_array_equal(deep.status, [bs.Status.OK] * 60 + [bs.Status.NOT_REACHED] * 3)
+    assert pytest.approx(np.arcsin(17 / 18), abs=np.radians(2.0)) == WIDEST  # on springs
+    wide = bs.Exact().press(LOOSE, half_angle=WIDEST + np.radians([-0.1, 0.1, 10.0]))
+    np.testing.assert_array_equal(wide.status, [bs.Status.OK] + [bs.Status.NOT_REACHED] * 2)
+    assert np.isnan(wide.max_pressure[1:]).all()
 
 
 @pytest.mark.parametrize(
-    ("joint", "gap", "d"),
-    [
-        (HIP, bs.LinearGap, [0.005, 0.02, 0.04]),
-        (HIP, bs.CircularGap, [0.005, 0.02, 0.04]),
-        (LOOSE, bs.CircularGap, [0.5 * EQUATOR, 0.9 * EQUATOR]),
-    ],
+    ("joint", "gap", "deepest"),
+    [(HIP, bs.LinearGap, 0.04), (HIP, bs.CircularGap, 0.04), (LOOSE, bs.CircularGap, 0.9 * EQUATOR)],
 )
-def test_energy_is_the_work_and_stiffness_the_slope(joint, gap, d):
-    d = np.array(d)
+def test_energy_is_the_work_and_stiffness_the_slope(joint, gap, deepest):
+    d, model = deepest * np.array([0.125, 0.5, 1.0]), bs.Exact(gap=gap, tolerance=1e-9)
     step = 1e-4 * d
-    model = bs.Exact(gap=gap, tolerance=1e-9)
     above, here, below = (model.press(joint, indentation=x) for x in (d + step, d, d - step))
     np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
     np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import inf, radians
+from math import inf
 from typing import Protocol
 
 import numpy
 
+from ...contact.coordinates import LIMIT
 from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import AbelState
 from .grid import cached_grid
 from .kernel import CachedIntervals, Intervals, Kernel
-
-LIMIT = radians(85.0)
-"""Largest half angle in rad that is solved."""
 
 _GRIDS = (14, 20, 28, 40, 56, 80)  # numbers of points, increased until the error is small enough
 _COARSE_POINTS = 10

@@ -118,7 +118,9 @@ class Exact(Model):
         """Remarks on the gap."""
         return gap_remarks(self.gap)
 
-    reach: ClassVar[str] = "half angles up to 85°, or less if the ball fills its socket first"
+    reach: ClassVar[str] = (
+        "half angles up to 85°, or less if the ball fills its socket first, or touches it up to its own equator"
+    )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         """Solve the contacts of all joints and loads on the load curve of each joint."""
