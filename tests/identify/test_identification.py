@@ -119,14 +119,14 @@ def test_a_prior_distribution_makes_the_product_separable():
 
 @pytest.mark.long
 def test_coverage_and_bias_over_a_hundred_synthetic_sets():
-    """Within two standard deviations of 95 % and of 0: 2.2 % and a tenth of a deviation."""
+    """100 sets scatter by 2.2 % about 95 %, and their mean by a fortieth of a band."""
     contact = bs.Tabulated().press(JOINT, force=FORCE)
     depth, film = (measured(name, getattr(contact, name), share=0.01) for name in ("indentation", "max_pressure"))
     result = identified(depth, replace(film, saturation=8.0), model=bs.Tabulated())
     tried = trials(result, 100)
     for name in ("clearance", "liner_young"):
         assert 0.906 <= tried.coverage[name] <= 0.994
-        assert abs(tried.bias[name]) < 0.2
+        assert abs(tried.bias[name]) < 0.1
 
 
 @pytest.mark.long
