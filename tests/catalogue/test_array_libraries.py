@@ -188,7 +188,8 @@ def test_derivatives_are_finite_beside_a_point_without_load(model):
             contact = model.press(joint_of(17.9, clearance), force=jax.numpy.array([0.0, 3000.0]))
             return contact.max_pressure.sum() + contact.pressure(1.4).sum()
 
-        assert np.isfinite(float(jax.grad(total)(0.1)))
+        slope = jax.grad(total) if model.name == "plane-layer" else jax.jit(jax.grad(total))
+        assert np.isfinite(float(slope(0.1)))
 
 
 def test_a_massive_socket_has_derivatives():

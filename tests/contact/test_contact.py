@@ -172,7 +172,7 @@ def test_spin_torque_of_hertz_is_three_sixteenths_pi():
     assert contact.friction_torque(0.2, 0.0) == pytest.approx(3 * pi / 16 * 0.2 * 10.0 * radius, rel=2e-3)
 
 
-def test_friction_torque_has_the_shape_of_the_contact():
+def test_friction_torque_has_the_shape_of_the_contact_and_the_period_of_half_a_turn():
     contact = bs.HessForsbach().press(HIP, force=np.array([1000.0, 3000.0]))
     torque = contact.friction_torque(0.1)
     assert torque.shape == (2,)
@@ -182,9 +182,6 @@ def test_friction_torque_has_the_shape_of_the_contact():
     assert PRESSED.pressure(-0.3) == PRESSED.pressure(0.3)
     assert type(PRESSED.pressure(0.3)) is float
     PRESSED.pressure_at([0.0, 0.0, 1 + 1e-7])
-
-
-def test_friction_torque_is_the_same_after_half_and_full_turns_of_the_axis():
     torque = PRESSED.friction_torque(0.1, 0.7)
     for angle in (-0.7, pi - 0.7, pi + 0.7, 2 * pi - 0.7, 0.7 - 2 * pi):
         assert PRESSED.friction_torque(0.1, angle) == pytest.approx(torque, rel=1e-12)

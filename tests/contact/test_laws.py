@@ -14,7 +14,7 @@ from ..joints import HIP
 WIDE = bs.Joint(ball_radius=16.0, clearance=0.5, liner_thickness=3.0, liner=bs.Material(young=700.0, poisson=0.3))
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
 EACH_JOINT = pytest.mark.parametrize("joint", [HIP, WIDE], ids=["hip", "wide"])
-POINTS = either(quick=60, long=600)
+POINTS = either(quick=60, long=200)
 
 
 def end(model, joint):

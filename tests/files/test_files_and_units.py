@@ -351,10 +351,3 @@ def test_a_preset_whose_yield_stress_is_not_known_is_written_by_its_numbers():
     bare = replace(bs.joints["hip-28"], liner=replace(bs.UHMWPE, yield_stress=None))
     again = joint_of(tables_of(JointFile(bare, {}))).joint
     assert again.liner.yield_stress is None
-
-
-@pytest.mark.parametrize("degrees", [84.8, 40.7, 1.5, 0.1, 33.3])
-def test_an_angle_that_was_typed_is_written_back_as_it_was(degrees):
-    file = parse_joint(f"{HIP}[load]\nhalf_angle = {degrees}\n".encode(), "joint.toml")
-    assert tables_of(file)["load"] == {"half_angle": degrees}
-    assert joint_of(tables_of(file)) == file

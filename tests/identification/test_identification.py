@@ -118,13 +118,14 @@ def test_a_prior_distribution_makes_the_product_separable():
 
 
 @pytest.mark.long
-def test_coverage_and_bias_over_two_hundred_synthetic_sets():
+def test_coverage_and_bias_over_a_hundred_synthetic_sets():
+    """100 sets scatter by 2.2 % about 95 %, and their mean by a fortieth of a band."""
     contact = bs.Tabulated().press(JOINT, force=FORCE)
     depth, film = (measured(name, getattr(contact, name), share=0.01) for name in ("indentation", "max_pressure"))
     result = identified(depth, replace(film, saturation=8.0), model=bs.Tabulated())
-    tried = trials(result, 200)
+    tried = trials(result, 100)
     for name in ("clearance", "liner_young"):
-        assert 0.92 <= tried.coverage[name] <= 0.98
+        assert 0.906 <= tried.coverage[name] <= 0.994
         assert abs(tried.bias[name]) < 0.1
 
 

@@ -67,7 +67,7 @@ def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch
 @pytest.mark.long
 def test_finite_elements_confirm_the_finite_volumes():
     volumes = bs.film(CONTACT, spin=(30.0, 0.0, 0.0), method="reynolds")
-    elements = GalerkinFilm(30.0, 0.05 * np.sqrt(30.0), 1.5, 16, 1.25).solve()
+    elements = GalerkinFilm(30.0, 0.06 * np.sqrt(30.0), 1.5, 12, 1.3).solve()
     assert (volumes.central, volumes.minimum) == pytest.approx(elements, rel=0.003)
 
 
