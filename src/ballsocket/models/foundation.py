@@ -185,11 +185,6 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -210,11 +205,6 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -232,11 +222,6 @@ def Bartel() -> RadialFoundation:  # noqa: N802
     ----------
     Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -253,11 +238,6 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
-
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -278,11 +258,6 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
     ----------
     Askari & Andersen 2018, doi 10.1177/0954411918810044.
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -301,11 +276,6 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
-
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
 
     Examples
     --------
