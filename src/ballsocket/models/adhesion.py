@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from math import inf, pi
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from ..contact.roots import increasing_root
 from ..core.arrays import Array, broadcast, clip, safe_divisor, sqrt, where
@@ -16,11 +15,6 @@ from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, as_modulus, hess_forsbach
-
-
-def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
-    """Return the adhesion number η = u_c/c of a contact."""
-    return model.adhesion_number(contact.joint)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +88,7 @@ class AdhesiveSocket(ClosedForm):
         why = "from 1 on the full hemisphere adheres without load, and the result depends on the rim"
         return (
             *self.modulus.validity,
-            Range(quantity=partial(_adhesion_number, self), symbol="η", high=1.0, why=why),
+            Range(quantity=lambda contact: self.adhesion_number(contact.joint), symbol="η", high=1.0, why=why),
             SMALL_STRAIN,
         )
 
@@ -120,7 +114,7 @@ class AdhesiveSocket(ClosedForm):
         return float(pull) if isinstance(pull, float) else pull
 
     def _force_factor(self, joint: Joint) -> Array:
-        """Compute the factor 2π R2² K in N/mm that converts the scaled force in mm to the force in N."""
+        """Compute the force 2π R2² K in N per mm of scaled force."""
         return 2 * pi * joint.socket_radius**2 * self.modulus.evaluate(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:

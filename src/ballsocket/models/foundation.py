@@ -100,7 +100,6 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the contact stiffness dF/dd in N/mm at an indentation in mm."""
         return self.kinematics.stiffness(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -109,7 +108,6 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the integral of the pressure over the contact area in N."""
         return self.kinematics.pressure_integral(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -118,8 +116,7 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
-        return angle_of(versine)
+        return angle_of(self.kinematics.versine(joint.socket_radius, joint.clearance, indentation))
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
@@ -131,7 +128,6 @@ class RadialFoundation(ClosedForm):
         return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.evaluate(joint) * u, 0.0)

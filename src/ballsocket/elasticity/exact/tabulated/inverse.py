@@ -73,7 +73,7 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
         return root
 
     if curves.has_plain_joint:  # without the series of the start, which costs more than the steps that it saves
-        start = min(float(inverse.log_share(scaled, curves.widest)) + _LOG_OFFSET, _END)
+        start = min(inverse.log_share(scaled, Widest(*map(float, curves.widest))) + _LOG_OFFSET, _END)
         root = scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
     else:
         root = implicit_root(residual, solve, _start_from_series(curves, kind, scaled))
