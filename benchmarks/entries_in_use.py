@@ -17,7 +17,7 @@ import ballsocket as bs
 from ballsocket import dynamics as motion
 from ballsocket import hip as wear
 from ballsocket import studies as design
-from ballsocket.export import TARGETS, CElement, Job
+from ballsocket.export import TARGETS, CElement, ExportJob
 
 from .entries_of_contact import HIP, SEED, SPECIAL_JOINTS
 from .entries_of_questions import add_command, add_program, add_table
@@ -96,7 +96,17 @@ def _motion(results: Results, name: str, element: Any, duration: float) -> None:
     thrown: dict[str, Any] = {"position": (0.02, 0.05, 0.03), "velocity": (30.0, 50.0, 150.0), "spin": (1.0, -2.0, 3.0)}
     moved = motion.simulate(element, mass=1.0, **thrown, pull=(0.0, 100.0, -9.81), duration=duration, step=2e-5)
     results.add(f"{name}/summary", moved.summary())
-    for part in ("position", "velocity", "spin", "energy", "lost", "work", "kinetic", "total", "depth"):
+    for part in (
+        "position",
+        "velocity",
+        "spin",
+        "energy",
+        "dissipated_energy",
+        "work",
+        "kinetic_energy",
+        "total_energy",
+        "indentation",
+    ):
         results.add(f"{name}/{part}", getattr(moved, part)[::20])
 
 
@@ -149,13 +159,15 @@ def _relaxing(results: Results) -> None:
         results.add(f"viscoelastic/{model.name}/stiffness", liner.dynamic_stiffness(0.04, times))
 
 
-def in_use(**changes: Any) -> wear.InUse:
+def in_use(**changes: Any) -> wear.HipSimulation:
     """Make a hip in use of wide rings and few instants."""
-    usual = wear.InUse(joint=JOINT, cup=bs.Cup(inclination=0.5), cycle=WALK, wear=ARCHARD, ring_width=radians(8.0))
+    usual = wear.HipSimulation(
+        joint=JOINT, cup=bs.Cup(inclination=0.5), cycle=WALK, wear=ARCHARD, ring_width=radians(8.0)
+    )
     return replace(usual, **changes)
 
 
-def hips() -> dict[str, wear.InUse]:
+def hips() -> dict[str, wear.HipSimulation]:
     """Make hips in use of every law, contact and kind of cycle."""
     mixed = wear.Mix(
         activities=(
@@ -169,17 +181,18 @@ def hips() -> dict[str, wear.InUse]:
         return numpy.stack([60 + 0 * phases, 100 * phases, WALK.force(phases)])
 
     lifted = replace(WALK, force=lambda phases: 1500.0 * numpy.sin(2 * numpy.pi * phases))
-    ladder = wear.Ladder(compliances=(1e-3, 2e-3), times=(60.0, 3600.0), confinement=wear.constrained_share(0.4))
+    ladder = wear.KelvinVoigtChain(
+        compliances=(1e-3, 2e-3), times=(60.0, 3600.0), confinement=wear.constrained_share(0.4)
+    )
     hard = bs.Joint(ball_radius=18.0, clearance=0.05, liner_thickness=5.0, liner=bs.ALUMINA, ball=bs.ALUMINA_COMPOSITE)
     few: dict[str, Any] = {"ring_width": radians(6.0), "cycle": wear.iso_14242_1(12)}
     steep = bs.Cup(arc_of_cover=radians(160.0), inclination=radians(55.0), anteversion=radians(10.0))
-    own: Any = wear.OwnLaw  # by its old name, with its old argument
     return {
         "archard": in_use(),
-        "energy": in_use(wear=wear.EnergyLaw(coefficient=2e-5, friction=0.06)),
-        "area": in_use(wear=wear.AreaLaw(coefficient=2e-12)),
+        "energy": in_use(wear=wear.FrictionEnergyWear(coefficient=2e-5, friction=0.06)),
+        "area": in_use(wear=wear.ContactAreaWear(coefficient=2e-12)),
         "cross-shear": in_use(wear=wear.CrossShear(straight=2e-7, circular=2e-6, exponent=-0.3, reference=2.0)),
-        "own": in_use(wear=own(of=lambda cycle: 1e-9 * (1.0 + cycle.cross_shear) * cycle.work)),
+        "own": in_use(wear=wear.CustomWearLaw(function=lambda cycle: 1e-9 * (1.0 + cycle.cross_shear) * cycle.work)),
         "creep": in_use(creep=wear.logarithmic()),
         "ladder": in_use(creep=ladder, seconds_per_cycle=2.0),
         "both wear": in_use(joint=hard, ball_wear=wear.Archard(coefficient=3e-8), wear=wear.Archard(coefficient=5e-8)),
@@ -204,11 +217,13 @@ def hip(results: Results, folder: Path) -> None:
     for name, order in product((*MACHINES, *IN_VIVO), ("xyz", "zxy")):
         cycle = wear.named_cycle(name, 20, order, **({"body_weight": 800.0} if name in IN_VIVO else {}))
         results.add(f"cycle/{name}/{order}", [cycle.largest_force, cycle.duration, len(cycle.forces)])
-        results.add_attributes(f"cycle/{name}/{order}", cycle, "forces rotations turns middles notes")
+        results.add_attributes(
+            f"cycle/{name}/{order}", cycle, "forces rotations rotation_increments midpoint_rotations notes"
+        )
         if order == "xyz":
             results.add(f"cycle/{name}/courses", {"force": cycle.force(phases), "angles": cycle.angles(phases)})
             for change, changed in {"mirrored": cycle.mirrored(), "finer": cycle.finer()}.items():
-                results.add_attributes(f"cycle/{name}/{change}", changed, "forces turns")
+                results.add_attributes(f"cycle/{name}/{change}", changed, "forces rotation_increments")
             results.add(f"cycle/{name}/scaled", cycle.scaled(1.5).forces)
     for name, use in hips().items():
         with results.attempt(f"first/{name}"):
@@ -223,14 +238,14 @@ def hip(results: Results, folder: Path) -> None:
     results.add("creep", [ladder.compliances, ladder.times])
 
 
-def _first(results: Results, name: str, use: wear.InUse) -> None:
+def _first(results: Results, name: str, use: wear.HipSimulation) -> None:
     """Add the first cycle of a hip in use."""
     results.add_attributes(name, use.first, "slide work cross_shear volume depth max_pressure max_force")
-    contacts = use.rest()
+    contacts = use.solve_equilibrium()
     results.add(f"{name}/displacement", contacts.displacement)
     results.add(f"{name}/pressure", [contacts.pressure.sum(axis=1), contacts.pressure.max(axis=1)])
     results.add(f"{name}/edge distance", use.edge_distance(contacts))
-    exposure = use.passed(contacts)
+    exposure = use.exposure(contacts)
     results.add(f"{name}/exposure/work", exposure.work[::3])
     results.add(f"{name}/exposure/cross_shear", exposure.cross_shear[::3])
     results.add(f"{name}/notes", use.notes)
@@ -245,7 +260,9 @@ def _history(results: Results, name: str, history: wear.History) -> None:
     for number, report in enumerate(history.reports):
         results.add(f"{name}/{number}/wear", report.wear.ravel()[::3])
         results.add(f"{name}/{number}/crept", report.crept.ravel()[::3])
-        attributes = "work displacement worn_in crept_in edge_distance edge_place edge_pressure settled"
+        attributes = (
+            "work displacement wear_displacement creep_displacement edge_distance edge_place edge_pressure converged"
+        )
         results.add_attributes(f"{name}/{number}", report, attributes)
         results.add(f"{name}/{number}/ball wear", report.ball_wear[::3])
 
@@ -263,18 +280,20 @@ def patients(results: Results, folder: Path) -> None:
     everything = {key: value for scatter in scatters.values() for key, value in scatter.items()}
     for name, distributions in {**scatters, "everything": everything}.items():
         with results.attempt(name):
-            scatter = wear.Scatter(use=use, distributions=distributions)
+            scatter = wear.PatientVariability(use=use, distributions=distributions)
             bands = wear.uncertainty(scatter, use.after(3e5, report_at=[1e5]), count=4, seed=3)
             results.add(name, bands.summary())
             results.add(f"{name}/notes", bands.notes)
             results.add(f"{name}/volume", [bands.quantile("volume", share) for share in (0.1, 0.5, 0.9)])
     with results.attempt("cross-shear"):
         law = wear.CrossShear(straight=2e-7, circular=2e-6)
-        scatter = wear.Scatter(use=replace(use, wear=law, creep=wear.logarithmic()), distributions=everything)
+        scatter = wear.PatientVariability(
+            use=replace(use, wear=law, creep=wear.logarithmic()), distributions=everything
+        )
         _, bands = wear.population(scatter, [1e5, 3e5], patients=40, seed=1)
         results.add("cross-shear", bands.summary())
     with results.attempt("series"):
-        scatter = wear.Scatter(use=use, distributions=scatters["coefficient"])
+        scatter = wear.PatientVariability(use=use, distributions=scatters["coefficient"])
         _, bands = wear.population(scatter, [1e5, 3e5], patients=40, seed=1, method="series")
         results.add("series", bands.summary())
     for name, text in _hip_files(folder).items():
@@ -380,10 +399,10 @@ def export(results: Results, folder: Path) -> None:
             add_program(results, f"c/{name}/source", program.source)
     for (name, target), kind in product(TARGETS.items(), ("springs", "curve")):
         with results.attempt(f"{name}/{kind}"):
-            job = Job(element=elements()[kind], name="hip", depth=0.08)
+            job = ExportJob(element=elements()[kind], name="hip", depth=0.08)
             for path, text in target.texts(job).items():
                 add_program(results, f"{name}/{kind}/{path}", text)
             results.add(f"{name}/{kind}/note", target.note(job) or "none")
     for kind in ("springs", "curve", "exact"):
-        power = Job(element=elements()[kind], name="hip", depth=0.08).fitted_power_law
+        power = ExportJob(element=elements()[kind], name="hip", depth=0.08).fitted_power_law
         results.add_attributes(f"power/{kind}", power, "stiffness exponent depth error")

@@ -169,7 +169,7 @@ def contact(results: Results, folder: Path) -> None:
             results.add(f"{aimed}/edge", cup.edge_distance(14.1, 0.6, direction))
     for gap in (bs.LinearGap, bs.CircularGap):
         shape = gap(clearance=0.1, socket_radius=14.1)
-        for name in ("displacement", "transform", "slope", "deepening"):
+        for name in ("displacement", "transform", "slope", "indentation_derivative"):
             results.add(f"gap/{gap.__name__}/{name}", getattr(shape, name)(ANGLES, numpy.full(ANGLES.shape, 0.05)))
 
 
@@ -317,8 +317,10 @@ def off_axis(results: Results, folder: Path) -> None:
         "closed": bs.Sphere(cup=cup, surface=bs.ClosedShell(), ring_width=wide),
         "springs": bs.Sphere(cup=cup, surface=bs.Springs(), ring_width=wide),
         "circular": bs.Sphere(cup=cup, gap=bs.CircularGap, ring_width=wide),
-        "worn": bs.Sphere(cup=cup, worn=bs.Worn(of=lambda n: 0.03 * n[0] ** 2 + 0.01 * n[1] * n[2]), ring_width=wide),
-        "pinched": bs.Sphere(cup=cup, worn=bs.Pinched(squeeze=0.06, direction=0.4), ring_width=wide),
+        "worn": bs.Sphere(
+            cup=cup, worn=bs.BoreDeviation(of=lambda n: 0.03 * n[0] ** 2 + 0.01 * n[1] * n[2]), ring_width=wide
+        ),
+        "pinched": bs.Sphere(cup=cup, worn=bs.OvalBore(squeeze=0.06, direction=0.4), ring_width=wide),
         "table": bs.Sphere(cup=cup, worn=table, ring_width=wide),
         "left": bs.Sphere(cup=replace(cup, side=bs.Side.LEFT), ring_width=wide),
     }
@@ -341,11 +343,13 @@ def off_axis(results: Results, folder: Path) -> None:
     tight = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM, ball=bs.STEEL)
     fitted = bs.Preload(model=bs.Sphere(cup=bs.Cup(arc_of_cover=radians(300.0)), ring_width=wide), joint=tight)
     with results.attempt("preload"):
-        _tilted(results, "preload/rest", fitted.rest)
-        results.add_attributes("preload/rest", fitted.rest, CONTACT)
-        _tilted(results, "preload/displaced", fitted.displaced(numpy.array([[0.01, 0.0, 0.0], [0.0, 0.02, 0.01]])))
-        results.add("preload/lost", [fitted.lost_at(way) for way in ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0))])
-        results.add("preload/worn out", fitted.worn_out_at())
+        _tilted(results, "preload/rest", fitted.equilibrium)
+        results.add_attributes("preload/rest", fitted.equilibrium, CONTACT)
+        _tilted(results, "preload/displaced", fitted.displace(numpy.array([[0.01, 0.0, 0.0], [0.0, 0.02, 0.01]])))
+        results.add(
+            "preload/lost", [fitted.separation_displacement(way) for way in ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0))]
+        )
+        results.add("preload/worn out", fitted.wear_depth_to_loosen())
     with results.attempt("orient"):
         angles: dict[str, Any] = {
             "inclination": numpy.radians([35.0, 50.0, 65.0]),

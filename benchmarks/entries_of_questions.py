@@ -24,7 +24,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket import studies as design
-from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
+from ballsocket.identification import HeavyTailed, Machine, Measured, oscillation
 
 from .entries_of_contact import EXAMPLES, SEED
 
@@ -49,9 +49,9 @@ def identify(results: Results, folder: Path) -> None:
     depths, areas, angles = measured("indentation", 0.005), measured("area", 0.02), measured("half_angle", 0.03)
     read = measured("indentation", 0.005, machine=machine)
     film = measured("max_pressure", 0.03, saturation=9.0)
-    own: dict[str, Any] = {"own": oscillation(mass=2.0)}  # by the earliest name of the parameter
+    own = oscillation(mass=2.0)
     frequency = (1e3 * pressed.stiffness[:3] / 2.0) ** 0.5 / (2 * numpy.pi)
-    swing = Measured(quantity="frequency", values=frequency, uncertainty=4.0, force=force[:3], **own)
+    swing = Measured(quantity="frequency", values=frequency, uncertainty=4.0, force=force[:3], observable=own)
     by_depth = Measured(
         quantity="force",
         values=pressed.force,
@@ -156,7 +156,7 @@ def studies(results: Results, folder: Path) -> None:
         results, "tilted", bs.study(bs.Sphere(ring_width=0.1), joint, tilt=[0.0, 0.9], azimuth=[0.0, 1.0], force=2e3)
     )
     wide = bs.study(bs.Tabulated(), joint, grid)
-    limits = [design.Limit(name="outer_radius", high=29.0), design.limit_of("liner_thickness>=4 mm")]
+    limits = [design.Limit(name="outer_radius", high=29.0), design.parse_limit("liner_thickness>=4 mm")]
     results.add("allowed", design.allowed(wide, limits).values)
     _dataset(results, "front", design.pareto(wide, ("area", "max_pressure"), limits))
     ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}

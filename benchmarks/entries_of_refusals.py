@@ -15,7 +15,7 @@ import ballsocket as bs
 from ballsocket import dynamics as motion
 from ballsocket import hip as wear
 from ballsocket import studies as design
-from ballsocket.identify import Machine, Measured, oscillation
+from ballsocket.identification import Machine, Measured, oscillation
 
 from .entries_in_use import JOINT, WALK, elements, in_use
 from .entries_of_contact import HIP
@@ -49,7 +49,7 @@ def _entries() -> Iterator[tuple[str, Callable[..., Any], dict[str, Any]]]:
     yield "Adapted", bs.Adapted, {"elements": 24, "growth": 1.3}
     yield "Uniform", bs.Uniform, {"size": 0.5, "growth": 1.03}
     yield "FiniteElement", bs.FiniteElement, {"meshes": 1}
-    yield "Pinched", bs.Pinched, {"squeeze": 0.1, "direction": 0.3}
+    yield "OvalBore", bs.OvalBore, {"squeeze": 0.1, "direction": 0.3}
     yield "AdhesiveSocket", bs.AdhesiveSocket, {"work_of_adhesion": 1e-4}
     yield "constant", bs.constant, {"modulus": 200.0}
     yield "polynomial", bs.polynomial, {"c1": 0.8, "c2": 1.4, "c3": 0.06}
@@ -98,31 +98,43 @@ def _presses(model: Any, load: str) -> Callable[..., Any]:
 def _wear_entries() -> Iterator[tuple[str, Callable[..., Any], dict[str, Any]]]:
     """Yield the entries of hips in use."""
     yield "Archard", wear.Archard, {"coefficient": 1e-6}
-    yield "EnergyLaw", wear.EnergyLaw, {"coefficient": 1e-6, "friction": 0.06}
-    yield "AreaLaw", wear.AreaLaw, {"coefficient": 1e-9}
+    yield "FrictionEnergyWear", wear.FrictionEnergyWear, {"coefficient": 1e-6, "friction": 0.06}
+    yield "ContactAreaWear", wear.ContactAreaWear, {"coefficient": 1e-9}
     yield "CrossShear", wear.CrossShear, {"straight": 1e-7, "circular": 1e-6, "exponent": 0.1, "reference": 2.0}
-    yield "Ladder", lambda J, time: wear.Ladder(compliances=(J,), times=(time,)), {"J": 1e-3, "time": 60.0}
+    yield (
+        "KelvinVoigtChain",
+        lambda J, time: wear.KelvinVoigtChain(compliances=(J,), times=(time,)),
+        {"J": 1e-3, "time": 60.0},
+    )
     yield "logarithmic", wear.logarithmic, {"confinement": 0.5}
     yield "constrained_share", wear.constrained_share, {"poisson": 0.4}
     lubricant = {"viscosity": 1e-3, "ball_roughness": 1e-5, "cup_roughness": 1e-3, "friction": 0.06}
     yield "Lubricant", wear.Lubricant, lubricant
     yield "Spring", wear.Spring, {"stiffness": 100.0, "mismatch": 4.0}
     yield "Activity", lambda per_year: wear.Activity(cycle=WALK, per_year=per_year), {"per_year": 1e6}
-    yield "iso_14242_1", wear.iso_14242_1, {"instants": 20, "order": "xyz"}
-    yield "iso_14242_4", wear.iso_14242_4, {"instants": 20, "mismatch": 4.0, "stiffness": 100.0, "swing": 70.0}
+    yield "iso_14242_1", wear.iso_14242_1, {"n_steps": 20, "order": "xyz"}
+    yield "iso_14242_4", wear.iso_14242_4, {"n_steps": 20, "mismatch": 4.0, "stiffness": 100.0, "swing_load": 70.0}
     yield "in_vivo", wear.in_vivo, {"name": "walking", "body_weight": 800.0}
-    yield "named_cycle", wear.named_cycle, {"name": "flexion", "instants": 20}
+    yield "named_cycle", wear.named_cycle, {"name": "flexion", "n_steps": 20}
     yield (
-        "InUse",
+        "HipSimulation",
         in_use,
         {"ring_width": 0.1, "tolerance": 4e-3, "seconds_per_cycle": 1.0, "joint": JOINT, "cycle": WALK},
     )
     yield "after", lambda cycles: in_use(ring_width=0.17).after(cycles, report_at=[0.2]), {"cycles": 2.0}
     scatter = {"body_weight": 700.0}
     distributions = {"body_weight": design.LogNormal(median=700.0, factor=1.1)}
-    yield "Scatter", lambda **words: wear.Scatter(use=in_use(), distributions=distributions, **words), scatter
+    yield (
+        "PatientVariability",
+        lambda **words: wear.PatientVariability(use=in_use(), distributions=distributions, **words),
+        scatter,
+    )
     patient = {"clearance": 0.2, "tilt": 0.5, "body_weight": 800.0, "coefficient": 1e-6}
-    yield "patient", lambda **words: wear.Scatter(use=in_use(), distributions=distributions).patient(words), patient
+    yield (
+        "patient",
+        lambda **words: wear.PatientVariability(use=in_use(), distributions=distributions).patient(words),
+        patient,
+    )
 
 
 def refusals(results: Results, folder: Path) -> None:

@@ -8,8 +8,7 @@
 status: 0 all results are identical; 1 a result differs or is missing, or a room has nearly no results. Every room runs
 in a process of its own, on one thread, with an empty cache. Texts (notes, messages, comments in exported programs) are
 results too. With `--numbers` sentences may differ, for a change that rewords them. Both records must come from one
-machine with the same libraries. The entries are called by their earliest names, so that old code can be recorded too:
-copy `identical.py` and `entries_*.py` into its `benchmarks/`.
+machine with the same libraries. The entries call the present names.
 """
 
 from __future__ import annotations
@@ -206,7 +205,7 @@ def _record_room(room: str, folder: str) -> Results:
     """Record the results of a room."""
     results = Results(folder=folder)
     with warnings.catch_warnings(), numpy.errstate(all="ignore"), results.attempt("complete"):
-        warnings.simplefilter("ignore")  # deprecated names are recorded as well
+        warnings.simplefilter("ignore")
         logging.disable()
         module = import_module(f".{ROOMS[room]}", "benchmarks")
         getattr(module, room)(results, Path(folder))

@@ -12,8 +12,8 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.identify import IdentificationResult, Measured
-from ballsocket.identify.posterior import Posterior
+from ballsocket.identification import IdentificationResult, Measured
+from ballsocket.identification.posterior import Posterior
 
 from .report import Pair, Row, compare, digits, if_installed, with_version
 from .timing import Job

@@ -16,7 +16,7 @@ from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.reports.figure_files import save
 from ballsocket.reports.section_plots import section_figure
-from ballsocket.studies import Span, allowed, design_map, limit_of
+from ballsocket.studies import Span, allowed, design_map, parse_limit
 
 PAGE = "http://127.0.0.1:5006/?"
 
@@ -24,7 +24,7 @@ PAGE = "http://127.0.0.1:5006/?"
 # **The map.** Peak pressure over head radius and liner thickness, with two limits: what fits into the shell, and 6 mm
 # as the thinnest liner that we would mill. Faded is what breaks one of them.
 
-limits = (limit_of("outer_radius<=26 mm"), limit_of("liner_thickness>=6 mm"))
+limits = (parse_limit("outer_radius<=26 mm"), parse_limit("liner_thickness>=6 mm"))
 across, up = MapAxis(name="ball_radius", low=11.0, high=23.0), MapAxis(name="liner_thickness", low=3.0, high=15.0)
 seen = replace(START, view="map", across=across, up=up, limits=limits)
 print(PAGE + link_of(seen))

@@ -13,7 +13,7 @@ drawn from a model for a joint with a clearance of 0.1 mm and a liner of 1000 MP
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.identify import Measured
+from ballsocket.identification import Measured
 from ballsocket.reports.figure_files import save
 from ballsocket.reports.identify_results import corner_figure, experiment_figure, fit_figure
 

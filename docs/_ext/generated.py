@@ -3,27 +3,25 @@
 Results and report of the paper are computed once for each version of the code; everything else takes a few seconds.
 """
 
-import json
 import re
 from contextlib import contextmanager
 from os import environ
 from pathlib import Path
 
 import ballsocket as bs
-from ballsocket.catalogue import listed_models
-from ballsocket.core.quantities import QUANTITIES
+from ballsocket.core.quantities import CONTACT, QUANTITIES
 from ballsocket.core.sources import Source, bibliography
 from ballsocket.core.storage.pieces import fingerprint
 from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
 from ballsocket.mcp.tools import FILE_TABLES, file_table
+from ballsocket.model_catalogue import listed_models
 from ballsocket.paper.claims import SCALE
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_results import markdown
 from ballsocket.reports.paper_report import write_report
 
-_PROMISED = Path(__file__).parents[2] / "tests" / "data" / "promised.json"
 _COLUMNS = 88  # of the terminal whose help texts are shown
 
 
@@ -52,7 +50,6 @@ def write(folder: Path) -> None:
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
         "nearness": _nearness(),
-        "promised": _promised(),
         "statuses": _statuses(),
         "validity": _validity(),
     }
@@ -214,9 +211,7 @@ def _validity() -> str:
             each.promise,
             each.valid,
             f"{100 * each.kept_share:.1f} %",
-            ", ".join(
-                f"{bs.quantities.CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()
-            ),
+            ", ".join(f"{CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()),
         ]
         for each in found
     ]
@@ -258,19 +253,6 @@ def _entry(fields: dict[str, str]) -> str:
     if "eprint" in fields:
         parts.append(f"[arXiv {fields['eprint']}](https://arxiv.org/abs/{fields['eprint']})")
     return ". ".join(filter(None, parts)) + "."
-
-
-# --- what stays ---
-
-
-def _promised() -> str:
-    """Commands with their options, and statuses: the part of the promises that is looked up."""
-    promised = json.loads(_PROMISED.read_text(encoding="utf-8"))
-    rows = [
-        (f"`{name}`", " ".join(f"`{option}`" for option in options)) for name, options in promised["commands"].items()
-    ]
-    keys = [(told, " ".join(f"`{key}`" for key in keys)) for told, keys in promised["keys of JSON"].items()]
-    return f"{_table(('command', 'options'), rows)}\n\n{_table(('JSON', 'keys'), keys)}"
 
 
 def _comparator(each) -> str:

@@ -8,19 +8,15 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
-import sys
 from importlib import import_module
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from .core.deprecation import present_module_path, register_old_paths
 from .reports.figure_files import register_plots
 from .version import __version__ as __version__
 
 if TYPE_CHECKING:
     from . import studies as studies
-    from .catalogue import catalogue
-    from .compare import compare
+    from .comparison import compare
     from .contact import Contact, Model
     from .core.sources import Source, cite
     from .core.validity import OutsideDomainError, Range, Status
@@ -36,20 +32,19 @@ if TYPE_CHECKING:
         DepthTable,
         Orientations,
         OvalBore,
-        Pinched,
         Preload,
         RealCup,
         Sphere,
         Springs,
-        Worn,
         orient,
         pull_out,
         read_scan,
     )
     from .files.joint_file import read_joint
-    from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
+    from .identification import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
     from .lubrication import Lubricant
     from .lubrication.film import film
+    from .model_catalogue import catalogue
     from .models.adhesion import AdhesiveSocket
     from .models.closed_form import ClosedForm
     from .models.foundation import (
@@ -88,7 +83,6 @@ if TYPE_CHECKING:
     )
     from .studies.run import study
 
-register_old_paths()
 register_plots()
 
 __all__ = [  # noqa: RUF022, grouped by subject
@@ -104,9 +98,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "Side",
     "Support",
     "BoreDeviation",
-    "Worn",
     "OvalBore",
-    "Pinched",
     "DepthTable",
     "read_scan",
     "read_joint",
@@ -197,12 +189,11 @@ _HINTS = {
 }
 """Sentences on names that users look for here."""
 
-_DOORS = ("dynamics", "evidence", "export", "hip", "studies")
+_DOORS = ("dynamics", "evidence", "export", "hip", "identification", "studies")
 """Subpackages for users, which are imported on first use."""
 
 _NAMES_BY_MODULE = {
-    "catalogue": "catalogue",
-    "compare": "compare",
+    "comparison": "compare",
     "contact": "Contact Model",
     "core.sources": "Source cite",
     "core.validity": "OutsideDomainError Range Status",
@@ -212,12 +203,13 @@ _NAMES_BY_MODULE = {
     "elasticity.exact.tabulated.model": "Tabulated",
     "elasticity.finite_elements.model": "FiniteElement",
     "elasticity.finite_elements.spacing": "Adapted Element Uniform",
-    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Pinched Preload RealCup "
-    "Sphere Springs Worn orient pull_out read_scan",
+    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Preload RealCup "
+    "Sphere Springs orient pull_out read_scan",
     "files.joint_file": "read_joint",
-    "identify": "as_constant as_corrected_vessel as_polynomial calibrate identify",
+    "identification": "as_constant as_corrected_vessel as_polynomial calibrate identify",
     "lubrication": "Lubricant",
     "lubrication.film": "film",
+    "model_catalogue": "catalogue",
     "models.adhesion": "AdhesiveSocket",
     "models.closed_form": "ClosedForm",
     "models.foundation": "Bartel BondedLayer BondedLayerExact CosineLimit HessForsbach RadialFoundation Vessel",
@@ -239,25 +231,15 @@ _NAMES_BY_MODULE = {
 _MODULES = {name: module for module, names in _NAMES_BY_MODULE.items() for name in names.split()}
 
 
-class _Package(ModuleType):
-    """Module whose functions `compare` and `identify` and whose list `catalogue` hide the modules of their names."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Set an attribute; Python sets a submodule after its import."""
-        super().__setattr__(name, getattr(value, name) if name in _MODULES and isinstance(value, ModuleType) else value)
-
-
-sys.modules[__name__].__class__ = _Package
-
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Import a name, a subpackage, or a moved module of version 1.0 on first use."""
+        """Import a name or a subpackage on first use."""
         if name in _MODULES:
             value = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
             globals()[name] = value
             return value
-        if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
+        if name not in _DOORS:
             hint = f"; {_HINTS[name]}" if name in _HINTS else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
         return import_module(f"{__name__}.{name}")

@@ -23,10 +23,10 @@ from ballsocket.app.views.contact.view import Press
 from ballsocket.app.views.cup.worker import bore_of, orientation_key
 from ballsocket.app.views.gait.worker import gait_key
 from ballsocket.app.views.wear.worker import wear_key
-from ballsocket.catalogue import judge
-from ballsocket.compare import THIN_LINER_RATIO
+from ballsocket.comparison import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile
+from ballsocket.model_catalogue import judge
 from ballsocket.models.plane_layer import PlaneLayer
 from ballsocket.problem.cup import Cup
 

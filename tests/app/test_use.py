@@ -29,6 +29,7 @@ from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.contact.verdict import exact_number
+from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
@@ -246,7 +247,7 @@ def test_a_life_is_that_of_python(at_once, nothing_is_known):
 
 
 def made(scale):
-    grown, grid = scale * np.arange(3.0), bs.sphere.grid.graded_grid(radians(90.0), radians(10.0))
+    grown, grid = scale * np.arange(3.0), graded_grid(radians(90.0), radians(10.0))
     last = {"edge_distance": 1.0, "penetration_of_creep": 0.0, "max_pressure": 5.0, "contact": [{"utilisation": None}]}
     contact = {"valid": scale > 0.1, "unworn": [{"utilisation": 1.5 - scale}]}
     summary = {"history": [last], "contact": contact, "cycle": {"peaks": {"max_pressure_MPa": 10.0}}}

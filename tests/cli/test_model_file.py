@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.catalogue import named_model
 from ballsocket.core.input_files import restriction_variables
 from ballsocket.core.sources import Source
+from ballsocket.model_catalogue import named_model
 from ballsocket.studies.file import read_study
 
 from .command import answer, run

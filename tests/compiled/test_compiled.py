@@ -1,7 +1,5 @@
 """The compiled path is the same model."""
 
-from inspect import getattr_static
-
 import numpy as np
 import pytest
 
@@ -16,7 +14,6 @@ import numba
 from ballsocket.compiled import Compiled, compiled_law, overloads, table_kernel
 from ballsocket.compiled.kernels import _angle_polynomial
 from ballsocket.contact.roots import increasing_root
-from ballsocket.core.deprecation import RenamedAttribute
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)
@@ -183,8 +180,7 @@ def test_adhesive_laws_and_plain_functions_do_not_compile():
 
 
 def is_data(name: str) -> bool:
-    renamed = isinstance(getattr_static(bs.Model, name), RenamedAttribute)
-    return not (name.startswith("_") or renamed or callable(getattr(bs.Model, name)))
+    return not (name.startswith("_") or callable(getattr(bs.Model, name)))
 
 
 def test_compiled_model_has_the_attributes_and_notes_of_its_model():

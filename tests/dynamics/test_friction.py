@@ -148,8 +148,6 @@ def test_deflections_decay_without_contact():
     away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
     assert away.deflection_rate[0] == pytest.approx(-1.0)
     assert away.force == (0.0, 0.0, 0.0)
-    with pytest.warns(DeprecationWarning, match="use bristle_dissipation"):
-        assert away.rubbed == away.bristle_dissipation
 
 
 def steady_slip(element, duration, **state):

@@ -105,10 +105,3 @@ def test_loss_of_a_small_vibration_follows_the_complex_stiffness():
     last = slice(len(hold) + 400, None)
     loss = np.trapezoid(LINER.spring_force(time, path, rings=2000)[last], path[last])
     assert loss == pytest.approx(np.pi * size**2 * LINER.dynamic_stiffness(depth, frequency).imag, rel=1e-3)
-
-
-def test_old_names_of_forces_and_moduli_warn():
-    with pytest.warns(DeprecationWarning, match="use instantaneous_force"):
-        np.testing.assert_array_equal(LINER.at_once(PUSH), LINER.instantaneous_force(PUSH))
-    with pytest.warns(DeprecationWarning, match="use long_term_share"):
-        assert PE.rest == PE.long_term_share

@@ -28,8 +28,6 @@ def test_a_limit_counts_violations_missing_results_and_marginal_cases():
     assert (check.beyond, check.unknown, check.marginal, check.row) == (1, 1, 1, rows[2])
     assert [check_limit(LIMIT, rows, accuracy=accuracy).marginal for accuracy in (0.02, 0.03)] == [0, 1]
     assert (check.summary()["low"], check.summary()["high"]) == (None, 20.0)
-    with pytest.warns(DeprecationWarning, match="marginal"):
-        assert check.near == 1
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.evidence import worst_case
 from ballsocket.evidence.question import Question
 from ballsocket.evidence.worst_case import compare_methods, largest_deviation, propagate_tolerances, solve_with_calculix
-from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies.variance_shares import sensitivity
 
 from ..places import EXAMPLES
 from .small_pack import CLEARANCE, FORCE, YOUNG, question_of

@@ -23,7 +23,7 @@ from ballsocket.files.units import parse
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, read_cycle
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
-from ballsocket.identify.file import read_identify
+from ballsocket.identification.file import read_identify
 from ballsocket.mcp.call import command_line
 
 from ..cli.command import run

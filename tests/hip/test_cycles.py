@@ -22,7 +22,7 @@ from ballsocket.hip import (
 from ballsocket.hip.cycle import Cycle, Frame, Spring, check_step_count
 from ballsocket.hip.cycle_registry import CYCLES, named_cycle
 from ballsocket.hip.cycle_tables import monotone_periodic
-from ballsocket.hip.in_vivo import check_body_weight, in_vivo
+from ballsocket.hip.in_vivo_cycles import check_body_weight, in_vivo
 from ballsocket.hip.kinematics import SurfaceSliding, rotation_matrices, sliding_distance, track_cross_shear
 from ballsocket.hip.simulator_cycles import constant_load, flexion, iso_14242_1
 

@@ -11,8 +11,8 @@ import ballsocket as bs
 from ballsocket.hip import iso_14242_1, population, uncertainty
 from ballsocket.hip.bands import Bands, SharedCoefficient
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.uncertainty import share_coefficient
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
+from ballsocket.hip.wear_uncertainty import share_coefficient
 from ballsocket.reports.hip_plots import penetration_curve
 from ballsocket.reports.hip_tables import print_bands
 from ballsocket.studies import LogNormal, Normal, Rectangular

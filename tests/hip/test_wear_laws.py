@@ -1,7 +1,9 @@
 """Wear laws on small exposures with depths by hand, their units and JSON, and creep of a liner."""
 
 import re
+import tomllib
 from dataclasses import replace
+from operator import attrgetter
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +12,7 @@ import pytest
 from ballsocket.hip import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear, wear_integrator
 from ballsocket.hip.creep_law import confinement_note, constrained_share
 from ballsocket.hip.creep_laws import CREEP_LAWS, KelvinVoigtChain, LogarithmicCreep, logarithmic, read_creep_law
-from ballsocket.hip.law_fields import law_keys, law_summary
+from ballsocket.hip.law_fields import law_summary
 from ballsocket.hip.wear_law import (
     CycleExposure,
     coefficient_field,
@@ -30,8 +32,8 @@ WORK = np.array([8.0, 0.0, 8.0])
 CROSS_SHEAR = np.array([0.0, 0.1, 0.5])
 
 
-def exposure(pressure=PRESSURE, shares=SHARES):
-    sliding = SimpleNamespace(steps=SLIDES, distances=SLIDES, cross_shear=lambda pressure: CROSS_SHEAR)
+def exposure(pressure=PRESSURE, shares=SHARES, slides=SLIDES):
+    sliding = SimpleNamespace(steps=slides, distances=slides, cross_shear=lambda pressure: CROSS_SHEAR)
     return CycleExposure(pressure=pressure, sliding=sliding, contact_shares=None if shares is None else lambda: shares)
 
 
@@ -70,18 +72,51 @@ def test_notes_name_wear_factors_outside_the_usual_range():
         assert other.notes == ()
 
 
-def test_registered_laws_state_names_units_and_examples():
-    for registry in (WEAR_LAWS, CREEP_LAWS):
-        for name, law in registry.items():
-            made = law(**{field.name: field.example for field in law.law_fields()})
-            assert law.name == made.summary()["law"] == name
-            assert law.title
-            assert made.storable
-    laws = [law(**{field.name: field.example for field in law.law_fields()}) for law in WEAR_LAWS.values()]
-    units = {law.name: coefficient_field(law).unit.text for law in laws}
-    per_work = "mm³/(N m)"
-    assert units == {"archard": per_work, "energy": "mm³/J", "area": "mm/mm", "cross-shear": per_work}
-    assert set(law_keys(WEAR_LAWS)) == {"coefficient", "friction", "circular", "exponent", "reference"}
+def examples(laws):
+    """Make registered laws from the examples of their fields: rows of a test, by the names of the laws."""
+    made = [law(**{field.name: field.example for field in law.law_fields()}) for law in laws.values()]
+    return pytest.mark.parametrize("law", made, ids=attrgetter("name"))
+
+
+def read_from_file(law, read, *words):
+    """Read a law from the lines of a file that state its examples with their units."""
+    lines = (f"{field.key} = {field.unit.example(getattr(law, field.name))}" for field in law.law_fields())
+    return read(tomllib.loads("\n".join([f"law = '{law.name}'", *lines])), *words)
+
+
+@examples(WEAR_LAWS)
+def test_wear_needs_pressure_and_sliding_and_grows_with_coefficient_and_cycles(law):
+    depth = law.depth(exposure())
+    assert (depth.shape, depth[1]) == ((3,), 0.0)
+    assert min(depth[0], depth[2]) > 0
+    assert depth.max() < np.inf
+    assert law.depth(exposure(pressure=0 * PRESSURE, shares=0 * SHARES)) == pytest.approx(0.0, abs=0)
+    assert law.depth(exposure(slides=0 * SLIDES)) == pytest.approx(0.0, abs=0)
+    twice = exposure(*(np.tile(part, (2, 1)) for part in (PRESSURE, SHARES, SLIDES)))
+    assert law.depth(twice) == pytest.approx(2 * depth, rel=1e-12)
+    coefficient = getattr(law, coefficient_field(law).name)
+    assert law.with_coefficient(3 * coefficient).depth(exposure()) == pytest.approx(3 * depth, rel=1e-12)
+    if law.pressure_degree is not None:
+        expected = 2**law.pressure_degree * depth
+        assert law.depth(exposure(pressure=2 * PRESSURE)) == pytest.approx(expected, rel=1e-12)
+    assert (read_from_file(law, read_wear_law), law.summary()["law"]) == (law, law.name)
+    assert law.title
+    assert law.storable
+
+
+@examples(CREEP_LAWS)
+def test_creep_grows_from_zero_and_does_not_depend_on_time_steps(law):
+    seconds = np.append(0.0, np.logspace(-1.0, 9.0, 50))
+    response, strain, pressure = law.response(seconds), law.initial_strain(2), np.array([0.0, 5.0])
+    assert response[0] == 0
+    assert 0 <= np.diff(response).min() < response[-1] < np.inf
+    for step, total in zip(np.diff(seconds), response[1:], strict=True):
+        strain = law.advance_strain(strain, pressure, step)
+        assert strain.sum(axis=0) == pytest.approx(total * pressure, rel=1e-9)
+    assert replace(law, confinement=0.5).response(seconds) == pytest.approx(response / 2, rel=1e-12)
+    assert (read_from_file(law, read_creep_law, 0.4), law.summary()["law"]) == (law, law.name)
+    assert law.title
+    assert law.storable
 
 
 def test_summaries_have_units_in_their_keys():

@@ -10,8 +10,8 @@ import pytest
 from matplotlib.colors import to_hex, to_rgb
 
 import ballsocket as bs
-from ballsocket.catalogue import judge
-from ballsocket.compare import force_curves
+from ballsocket.comparison import force_curves
+from ballsocket.model_catalogue import judge
 from ballsocket.paper import claims, curves
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan

@@ -13,8 +13,8 @@ import pytest
 import xarray
 
 import ballsocket as bs
-from ballsocket.catalogue import named_model
 from ballsocket.core.kinds import Unit
+from ballsocket.model_catalogue import named_model
 from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives, off_axis_uncertainty
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
@@ -22,10 +22,10 @@ from ballsocket.studies.expressions import parse_distribution, parse_limit, pars
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, joint_dimension, limited_quantities, margin_on_plane, verdicts
 from ballsocket.studies.optimisation import optimise
-from ballsocket.studies.pareto import pareto
+from ballsocket.studies.pareto_front import pareto
 from ballsocket.studies.run import default_model
-from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.task import OUTCOMES
+from ballsocket.studies.variance_shares import sensitivity
 
 from ..cli.command import answer, run
 from ..extent import either, some
@@ -338,6 +338,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
         ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
+        ('"1 kN"', '"-1 kN"', r"s.toml: axes.force\[0\] = '-1 kN' is not allowed: a force \(N\) is 0 or more"),
         ("seed = 3", "correlation = ['clearance: 0.5']", "s.toml: .*is not a correlation, such as 'clearance, liner_y"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
         ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
@@ -349,7 +350,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
-    ids=range(17),
+    ids=range(18),
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)

@@ -9,8 +9,8 @@ from ballsocket.studies.derivatives import finite_differences, off_axis_uncertai
 from ballsocket.studies.design import Method, Span, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, copula_matrix, tolerance
 from ballsocket.studies.limits import Limit
-from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.variance_indices import shapley_effects
+from ballsocket.studies.variance_shares import sensitivity
 
 HIP = bs.joints["hess-forsbach"]
 RIGID = HIP.replace(ball=None)
@@ -55,7 +55,7 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: press(head_diameter=[30.0], ball_radius=[15.0], force=1.0), "head_diameter.* ball_radius|ball_radius"),
         (lambda: press(clearance=[], force=1.0), "clearance has no values"),
         (lambda: press(clearance=[0.1, np.nan], force=1.0), r"clearance\[1\] = nan is not allowed"),
-        (lambda: press(force=Span(-1.0, 5.0, 10**6)), r"force\[0\] = -1 is not allowed for a normal force"),
+        (lambda: press(force=Span(-1.0, 5.0, 10**6)), r"force\[0\] = -1 is not allowed: a force .N. is 0 or more"),
         (lambda: press(force=["1 kN"]), "force must be a row of numbers"),
         (lambda: Span(1.0, 2.0, 0), "count = 0 is not allowed: a span has at least one value"),
         (lambda: Span(1.0, 2.0, 10**400), "count = 1000.*[.]{3} is not allowed: a span has .* at most 1e15"),

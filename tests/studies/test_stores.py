@@ -17,8 +17,8 @@ import ballsocket as bs
 from ballsocket.core.executors import Processes
 from ballsocket.models.modulus import Modulus
 from ballsocket.studies import store as store_module
-from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
+from ballsocket.studies.file_formats import export
 from ballsocket.studies.run import _create_task, read
 from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, StudyStore
 

@@ -20,8 +20,8 @@ from ballsocket.core.executors import Processes, Serial
 from ballsocket.reports.study_tables import study_summary
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
-from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
+from ballsocket.studies.file_formats import export
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.parameters import vary_joint
 from ballsocket.studies.task import Blocks
@@ -98,7 +98,10 @@ def test_a_material_keeps_its_strength_while_its_elastic_constants_vary():
     assert "utilisation is that of the ball alone" in study_summary(unknown)["notes"][-1]
     rigid = bs.study(bs.Hertz(), replace(hip, ball=None), quantities=["utilisation"], force=1.0, liner=bs.ALUMINA)
     assert np.isnan(rigid.utilisation.item())
-    assert study_summary(rigid)["notes"][-1] == "utilisation: strength not checked: the liner has no yield stress"
+    assert (
+        study_summary(rigid)["notes"][-1]
+        == "utilisation: strength not checked: the liner has no yield stress, give yield_stress in its table"
+    )
 
 
 def test_each_point_that_is_not_valid_has_its_reason(tmp_path):
@@ -136,7 +139,7 @@ def rows_of(path):
 
 
 def test_materials_are_an_axis_or_fixed(tmp_path, monkeypatch):
-    monkeypatch.setattr(import_module("ballsocket.studies.export"), "_MAX_CHUNK_POINTS", 2)
+    monkeypatch.setattr(import_module("ballsocket.studies.file_formats"), "_MAX_CHUNK_POINTS", 2)
     for store in (None, tmp_path / "kept"):
         found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=store)
         assert found.max_pressure.dims == ("force", "liner")

@@ -10,8 +10,8 @@ from scipy import stats
 import ballsocket as bs
 from ballsocket.studies.distributions import LogNormal, Normal, Rectangular, copula_matrix
 from ballsocket.studies.run import study
-from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.variance_indices import shapley_effects, sobol_indices
+from ballsocket.studies.variance_shares import sensitivity
 
 from ..extent import either
 

@@ -9,13 +9,13 @@ from math import cbrt, ceil, degrees, log10, pi
 
 import numpy
 
-from ..catalogue import catalogue
-from ..compare import MAX_HALF_ANGLE, Comparison, compare, force_curves
+from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
 from ..contact.describe import Column
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
+from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import UP, Cup
 from ..reports.press_plots import force_axes

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from ..catalogue import catalogue
-from ..compare import is_curve_slow, press_short_curve
+from ..comparison import is_curve_slow, press_short_curve
 from ..contact import Contact
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
+from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
 from .jobs import Job

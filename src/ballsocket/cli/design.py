@@ -9,11 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import reference, with_gap
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
 from ..files.joint_file import JointFile
+from ..model_catalogue import reference, with_gap
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports import study_plots, study_tables
@@ -23,10 +23,10 @@ from ..studies.expressions import parse_choices, parse_correlations, parse_distr
 from ..studies.limits import Limit, limited_quantities
 from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
-from ..studies.pareto import pareto
+from ..studies.pareto_front import pareto
 from ..studies.run import check_model_domain, default_model, study
-from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import DEFAULT_QUANTITIES
+from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
 from .options import (

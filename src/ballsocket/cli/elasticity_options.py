@@ -11,7 +11,6 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from ..catalogue import judge, off_axis
 from ..contact import Contact
 from ..contact.describe import COLUMNS
 from ..contact.per_joint import SolvedContact
@@ -27,6 +26,7 @@ from ..elasticity.off_axis.directions import polar_angle
 from ..elasticity.off_axis.model import Sphere
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
+from ..model_catalogue import judge, off_axis
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units

@@ -12,7 +12,6 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import off_axis, reference, with_gap
 from ..core.checks import known_name, shown
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder
@@ -22,6 +21,7 @@ from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant
+from ..model_catalogue import off_axis, reference, with_gap
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
@@ -290,6 +290,11 @@ def deck(
     if out.suffix.lower() in _FILE_ENDINGS:
         checked_path(out, ".inp")
     file = joint_options.read(joint)
+    if file.joint.clearance < 0:
+        raise ValueError(
+            f"a deck needs a clearance of 0 or more, got interference = {file.joint.interference:g} mm: press solves a "
+            "preloaded joint (model sphere), and export table has its forces"
+        )
     load = load_options.read(file)
     if tilt is not None:
         angle = read_aim({"tilt": tilt})["tilt"]

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import off_axis, with_gap
 from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
@@ -20,6 +19,7 @@ from ..files.units import parse
 from ..lubrication.film import METHODS, FilmResult
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
+from ..model_catalogue import off_axis, with_gap
 from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units

@@ -143,7 +143,7 @@ def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
     """Compute uncertainty bands of a simulation; None if the file has no uncertainty."""
-    from ..hip.uncertainty import uncertainty
+    from ..hip.wear_uncertainty import uncertainty
 
     scatter = hip_file.uncertain
     if scatter is None:
@@ -188,7 +188,7 @@ def _simulate_cohort(
 ) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
     from ..hip.cohort import cohort_store, write_csv
-    from ..hip.uncertainty import population
+    from ..hip.wear_uncertainty import population
     from ..reports.hip_tables import print_bands, print_notes
 
     scatter = hip_file.uncertain

@@ -13,11 +13,11 @@ from ..core.checks import known_name
 from ..core.kinds import Kind
 from ..files.toml import read_toml
 from ..files.units import parse
-from ..identify import as_constant, as_corrected_vessel, as_polynomial
-from ..identify import calibrate as fit_modulus
-from ..identify.file import read_identify
-from ..identify.posterior import Posterior
-from ..identify.result import IdentificationResult
+from ..identification import as_constant, as_corrected_vessel, as_polynomial
+from ..identification import calibrate as fit_modulus
+from ..identification.file import read_identify
+from ..identification.posterior import Posterior
+from ..identification.result import IdentificationResult
 from ..paper.cases import refit_table_3
 from ..reports import identify_results
 from ..reports.accuracy_results import print_calibration, print_table_3

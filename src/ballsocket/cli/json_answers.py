@@ -14,10 +14,10 @@ from typing import Any
 import numpy
 import typer
 
-from ..catalogue import judge, listed_models, off_axis, reference
 from ..contact.closed_sphere import NOTED_CHANGE
 from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
+from ..model_catalogue import judge, listed_models, off_axis, reference
 from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS, LENGTHS
 from ..problem.presets import joints, materials

@@ -8,11 +8,11 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import listed_models
 from ..core.checks import known_name
 from ..core.sources import cite as bibtex_of
 from ..files.schema_keys import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
+from ..model_catalogue import listed_models
 from ..problem import Joint, Material
 from ..problem.presets import find_material, joints, materials
 from ..reports.catalogue_lists import (

@@ -13,11 +13,11 @@ from traceback import extract_tb
 from types import ModuleType
 from typing import Any
 
-from ..catalogue import named_model, named_models
 from ..contact import Model
 from ..core.checks import shown
 from ..core.input_files import is_restricted
 from ..core.validity import OutsideDomainError
+from ..model_catalogue import named_model, named_models
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus
 from ..problem.presets import joints

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
-from ..catalogue import listed_models
 from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
 from ..core.quantities import JOINT
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
+from ..model_catalogue import listed_models
 from ..problem.dimensions import LENGTHS, fit_beside
 from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save

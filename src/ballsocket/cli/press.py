@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, off_axis, reference, with_gap
-from ..compare import Comparison, compare, successful_contacts
+from ..comparison import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
 from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
@@ -22,6 +21,7 @@ from ..core.validity import Status
 from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
+from ..model_catalogue import catalogue, judge, off_axis, reference, with_gap
 from ..problem import Joint
 from ..problem.cup import UP, Cup
 from ..problem.presets import long_term_note

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..catalogue import judge, off_axis, reference
-from ..compare import Comparison, successful_contacts
+from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
 from ..elasticity.finite_elements.model import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
+from ..model_catalogue import judge, off_axis, reference
 from ..reports.figure_files import check_format, save
 from ..reports.pages import check_page_path, write_page
 from ..reports.unit_systems import Units

@@ -13,15 +13,15 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from ..catalogue import with_gap
 from ..core.executors.processes import count_text
 from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
+from ..model_catalogue import with_gap
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
-from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
+from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener
 from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study

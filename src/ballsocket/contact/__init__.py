@@ -13,6 +13,4 @@ from .contact import Contact, Laws
 from .model import Model, ModelWrapper, RimLimited
 from .outcome import ModelInfo
 
-Covered, Pressed, Wrapped = RimLimited, ModelInfo, ModelWrapper  # names of version 1.0
-
-__all__ = ["Contact", "Covered", "Laws", "Model", "ModelInfo", "ModelWrapper", "Pressed", "RimLimited", "Wrapped"]
+__all__ = ["Contact", "Laws", "Model", "ModelInfo", "ModelWrapper", "RimLimited"]

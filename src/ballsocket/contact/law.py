@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_names
 from ..core.lazy import cached_property
 
 PolynomialPieces = Sequence[Sequence[float]]
@@ -126,18 +125,13 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
     last_indentation = _deepest_indentation(force, shallowest, deepest)
     for piece_count in _PIECE_COUNTS:
         chebyshev_coefficients = _chebyshev_coefficients(force, shallowest, last_indentation, piece_count)
-        if numpy.nanmax(abs(chebyshev_coefficients[:, -1])) <= _SERIES_TOLERANCE:
+        if numpy.max(abs(chebyshev_coefficients[:, -1])) <= _SERIES_TOLERANCE:
             break
-    density = piece_count / math.log(last_indentation / shallowest)
-    if numpy.isnan(chebyshev_coefficients).any():  # single loads without a solution near the end
-        complete = int(numpy.isnan(chebyshev_coefficients).any(axis=1).argmax())
-        chebyshev_coefficients = chebyshev_coefficients[:complete]
-        last_indentation = shallowest * math.exp(complete / density)
     return CurveLaw(
         shallowest=shallowest,
         deepest=last_indentation,
         first=math.log(shallowest),
-        density=density,
+        density=piece_count / math.log(last_indentation / shallowest),
         pieces=numpy.ascontiguousarray((chebyshev_coefficients @ _chebyshev_to_power_matrix())[:, ::-1]),
     )
 
@@ -177,6 +171,3 @@ def _chebyshev_to_power_matrix() -> Numbers:
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])
     return matrix
-
-
-__getattr__ = renamed_names(__name__, {"Law": "ForceLaw", "Pieces": "PolynomialPieces"})

@@ -13,7 +13,6 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
 from ..problem.cup import Cup, Interface
@@ -65,8 +64,6 @@ class Model(ModelInfo):
     seconds_a_press: ClassVar[float] = 4e-7
     contact_type: ClassVar[type[Contact]] = Contact
     accepts_floats: ClassVar[bool] = False
-
-    of_numbers = RenamedAttribute("accepts_floats")
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -317,6 +314,3 @@ def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
     return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
-
-
-__getattr__ = renamed_names(__name__, {"Covered": "RimLimited", "Wrapped": "ModelWrapper"})

@@ -13,7 +13,6 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.deprecation import renamed_arguments
 from ..core.lazy import cached_property
 from ..problem import Joint
 from .contact import Contact
@@ -245,11 +244,15 @@ class SolvedContact(Contact):
         """Estimated relative errors, one array for each quantity name."""
         return {name: self._match_load(error) for name, error in self.laws.error.items()}
 
+    @property
+    def stated_error(self) -> dict[str, Array]:
+        """Relative errors of the solver, the same at points that are not valid."""
+        return self.error
+
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa by solving for the stresses."""
         return self.laws.combine_by_index(self._joint_von_mises)
 
-    @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
         """Compute the ratio of von Mises to yield stress at the points of a mask; NaN at the other points."""
         flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()

@@ -9,7 +9,6 @@ from math import inf
 from typing import Any, NamedTuple
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
-from .deprecation import RenamedAttribute
 from .kinds import Unit
 from .lazy import cached_property
 from .quantities import QUANTITIES
@@ -124,8 +123,6 @@ class Range:
         """Function that reads or computes the quantity from a contact."""
         return self.quantity if callable(self.quantity) else _AttributePath(self.quantity)
 
-    of = RenamedAttribute("quantity_of")
-
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
         value = self.quantity_of(contact)
@@ -185,12 +182,7 @@ class Promise:
     quantities: tuple[str, ...] = ("indentation", "max_pressure")
 
     def __str__(self) -> str:
-        return f"within {100 * self.within:g} % in {' and '.join(map(_symbol_of, self.quantities))}"
-
-
-def _symbol_of(name: str) -> str:
-    """Return the symbol of a quantity."""
-    return QUANTITIES[name].symbol
+        return f"within {100 * self.within:g} % in {' and '.join(QUANTITIES[name].symbol for name in self.quantities)}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,5 @@
 """Force elements of a joint, damping, friction, viscoelastic liners, and simulated motion."""
 
-from ..core.deprecation import renamed_names
 from . import restitution as relations
 from .bristles import Bristles
 from .damping import (
@@ -23,27 +22,22 @@ from .preloaded import PreloadedElement
 from .simulation import simulate
 from .viscoelastic import Prony, Viscoelastic
 
-Identified = DampingEstimate
-Touch = ContactState
-
-__getattr__ = renamed_names(__name__, {"of_restitution": "damping_from_restitution"})
-
 __all__ = [
     "Bristles",
+    "ContactState",
     "Damping",
+    "DampingEstimate",
     "Flores",
     "ForceElement",
     "Friction",
     "Gonthier",
     "HuntCrossley",
-    "Identified",
     "LankaraniNikravesh",
     "Load",
     "Motion",
     "PreloadedElement",
     "Prony",
     "Restitution",
-    "Touch",
     "Viscoelastic",
     "damping_from_restitution",
     "from_bounces",

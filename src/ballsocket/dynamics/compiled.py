@@ -18,7 +18,6 @@ from ..compiled.overloads import inline_formula, jit_formula
 from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
 from ..core.checks import check_shape, check_vectors, shown
-from ..core.deprecation import renamed_names
 from ..models import kinematics
 from ..models.kinematics import Kinematics
 from ..problem import Joint
@@ -266,5 +265,3 @@ for _formula in (
 
 for _inlined in (reaction.elastic_from_slopes, load_from_contact):
     inline_formula(_inlined)
-
-__getattr__ = renamed_names(__name__, {"answered": "loads_at"})

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import logging
-import warnings
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import inf
-from operator import attrgetter
 from typing import Any
 
 import numpy
@@ -18,7 +16,6 @@ from ..contact.law import CurveLaw
 from ..core import arrays
 from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
-from ..core.deprecation import RenamedAttribute
 from ..core.display import OneLine
 from ..core.validity import Range
 from ..lubrication import Lubricant
@@ -163,8 +160,6 @@ class ForceElement(OneLine):
         if isinstance(self.friction, Bristles):
             return "bristles have a state"
         return "an adhesive ball has a state" if self.stretch > 0.0 else ""
-
-    remembers = RenamedAttribute("internal_state")
 
     def _collect_constants(self, smoothing: float) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
@@ -419,12 +414,3 @@ def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:
     """Check if a contact, or a larger contact, lies inside a range."""
     increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
     return bool(limit.holds(contact)) or (increases_with_size and bool(limit.quantity_of(contact) < limit.low))
-
-
-def __getattr__(name: str) -> Any:
-    """Return the function of version 1.0 that is now the property `valid_depth`, with a warning."""
-    if name not in ("trusted_depth", "valid_depth"):
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    message = f"{name}(element) is deprecated: use the property ForceElement.valid_depth; removed in 2.0"
-    warnings.warn(message, DeprecationWarning, stacklevel=2)
-    return attrgetter("valid_depth")

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from ..core.arrays import Array, exp
 from ..core.checks import check_number, require
-from ..core.deprecation import RenamedAttribute
 
 
 class CoulombCoefficients:
@@ -25,8 +24,6 @@ class CoulombCoefficients:
     def breakaway_coefficient(self) -> float:
         """Coefficient of friction at the onset of sliding; equals the sliding one by default."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
-
-    static = RenamedAttribute("breakaway_coefficient")
 
     def check_static(self) -> None:
         """Check that the static coefficient of friction is not below the sliding one; ValueError otherwise."""

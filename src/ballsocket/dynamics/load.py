@@ -13,7 +13,6 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, Numbers, sqrt, to_list, where
 from ..core.checks import shown
-from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .ball_centre import BallCentre, Constants, Vector
 from .bristles import Bristles, Deflections, bristle_forces
@@ -250,13 +249,6 @@ def describe_load(force: Any, moment: Any, energy: Any) -> str:
         return f"of states of shape {tuple(getattr(force, 'shape', ()))[:-1]}"
     texts = [", ".join(f"{part + 0.0:.5g}" for part in vector) for vector in vectors]
     return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {number + 0.0:.5g} N mm"
-
-
-_OLD_DISSIPATION = RenamedAttribute("bristle_dissipation")
-"""Old name of a field of `Load`. A named tuple does not accept it in the body of the class."""
-
-_OLD_DISSIPATION.__set_name__(Load, "rubbed")
-setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
 def _to_json_value(value: Any) -> Any:

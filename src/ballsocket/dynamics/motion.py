@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.sources import Source
 from .element import ForceElement
 from .load import Load
@@ -18,9 +17,6 @@ TONNE = 1e-3
 """Tonnes in a kilogram: N, mm, s and t form a consistent system."""
 
 
-@renamed_fields(
-    lost="dissipated_energy", ended="end_reason", kinetic="kinetic_energy", total="total_energy", depth="indentation"
-)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
     """Simulated motion of a ball over time.
@@ -155,6 +151,3 @@ class Motion:
         """Number of times that the ball left the socket."""
         touching = numpy.asarray(self.load.attached)
         return int(numpy.sum(touching[:-1] & ~touching[1:]))
-
-
-__getattr__ = renamed_names(__name__, {"simulate": "ballsocket.dynamics.simulation.simulate"})

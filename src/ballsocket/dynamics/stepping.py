@@ -1,9 +1,13 @@
 """Time steps of a ball in its socket: second order, conserving energy and angular momentum to rounding.
 
-The elastic force is the discrete gradient of Gonzalez in the invariants of the contact: the distance e = |r| of the
-centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
-It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction and spin are evaluated at
-the midpoint of the step, and their dissipation is never negative.
+A step of h seconds from r0 to r1 = r0 + h a, with the velocity a and the spin b at its midpoint, solves
+
+    2 m (a - v0)/h = F(a, b) + pull,   2 I (b - w0)/h = M(a, b).
+
+The elastic force is the discrete gradient of Gonzalez (1996, doi 10.1007/BF02440162) in the invariants of the contact:
+the distance e = |r| of the centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly
+the decrease of the energy. It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction
+and spin are evaluated at the midpoint of the step, and their dissipation is never negative.
 """
 
 from __future__ import annotations
@@ -258,6 +262,8 @@ def step_residual(  # type: ignore[no-untyped-def]
         mean_power = mean_power - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
         tangential_speed = ax * mean.ux + ay * mean.uy + az * mean.uz
         square = square + tangential_speed * tangential_speed
+    # mean gradient plus (ΔU/h - mean power) a/a² along the path: its work is the change of the energy exactly. The
+    # weight lets the correction vanish for short paths, whose ΔU is rounding.
     path_length, depth = h * sqrt(square), abs(centre.indentation)
     quotient_weight = (
         path_length
@@ -321,6 +327,7 @@ def newton_correction(
         rotation = rotation + lever * lever * film_damping.across + film_damping.turning / (R1 * R1)
         drill = drill + film_damping.drilling
     tangential_stiffness = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
+    # along the load: (2 m/h + damping + h k/2) Δa_n = -residual; about it: (2 I/h + drill) Δb_n = -residual
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
     dn = -outward / (mass_rate + damping_rate + 0.5 * h * abs(contact.stiffness))

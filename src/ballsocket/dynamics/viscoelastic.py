@@ -18,7 +18,6 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import linear_kinematics
@@ -55,10 +54,6 @@ class Prony:
         total = sum(share for share, _ in terms)
         require("the sum of the shares", total, total < 1.0, "it must be below 1, or no modulus remains at long times")
         object.__setattr__(self, "terms", terms)
-
-    rest = RenamedAttribute("long_term_share")
-    relaxed = RenamedAttribute("relaxation")
-    crept = RenamedAttribute("creep_compliance")
 
     @property
     def shares(self) -> Numbers:
@@ -143,14 +138,6 @@ class Viscoelastic:
     model: Model
     joint: Joint
     modulus: Prony
-
-    at_once = RenamedAttribute("instantaneous_force")
-    relaxing = RenamedAttribute("relaxation_force")
-    creeping = RenamedAttribute("creep_indentation")
-    product = RenamedAttribute("separable_force")
-    grown = RenamedAttribute("hereditary_force")
-    pressed = RenamedAttribute("cycle_force")
-    springs = RenamedAttribute("spring_force")
 
     @cached_property
     def potential(self) -> Potential:

@@ -13,12 +13,11 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue
 from ..contact import Model
-from ..core.arrays import to_list
-from ..core.deprecation import renamed_fields, renamed_names
+from ..core.arrays import Numbers, to_list
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
+from ..model_catalogue import catalogue
 from ..problem import Joint, Material
 
 SHARE, EXCESS = 0.99, 1.3
@@ -27,10 +26,7 @@ SHARE, EXCESS = 0.99, 1.3
 TRUTH = Tabulated()
 """Reference solution, with an error of 2e-4; fast enough for large populations."""
 
-Numbers = numpy.ndarray
 
-
-@renamed_fields(asked="contacts", kept="kept_share")
 @dataclass(frozen=True, kw_only=True)
 class MeasuredValidity:
     """Measured errors of a model within its range.
@@ -95,7 +91,6 @@ def population(size: int, seed: int = 1) -> tuple[Joint, Numbers]:
 
 
 def _log_uniform(rng: numpy.random.Generator, low: float, high: float, size: int) -> Numbers:
-    """Sample a log-uniform distribution."""
     return numpy.exp(rng.uniform(log(low), log(high), size))
 
 
@@ -150,6 +145,3 @@ def _select(number: Any, indices: Any) -> Numbers:
     """Return the numbers of some contacts; a single number belongs to all of them."""
     values = numpy.atleast_1d(numpy.asarray(number, dtype=float))
     return values if values.size == 1 else values[indices]
-
-
-__getattr__ = renamed_names(__name__, {"promising": "models_with_promise"})

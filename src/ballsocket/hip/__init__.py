@@ -10,7 +10,7 @@ from .cycle_registry import named_cycle
 from .film import Film
 from .film_limit import FilmLimit
 from .history import History
-from .in_vivo import in_vivo
+from .in_vivo_cycles import in_vivo
 from .mix import Activity, Mix
 from .simulation import HipSimulation
 from .simulator_cycles import (
@@ -22,45 +22,32 @@ from .simulator_cycles import (
     rocking,
     two_axis,
 )
-from .uncertainty import population, uncertainty
 from .variability import PatientVariability
 from .wear_fit import MeasuredWear, WearFit, fit_wear_coefficient
 from .wear_laws import WEAR_FACTORS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
-
-AreaLaw = ContactAreaWear
-EnergyLaw = FrictionEnergyWear
-OwnLaw = CustomWearLaw
-InUse = HipSimulation
-Ladder = KelvinVoigtChain
-Scatter = PatientVariability
+from .wear_uncertainty import population, uncertainty
 
 __all__ = [
     "WEAR_FACTORS",
     "Activity",
     "Archard",
-    "AreaLaw",
     "Bands",
     "ContactAreaWear",
     "CrossShear",
     "CustomWearLaw",
     "Cycle",
-    "EnergyLaw",
     "Film",
     "FilmLimit",
     "Frame",
     "FrictionEnergyWear",
     "HipSimulation",
     "History",
-    "InUse",
     "KelvinVoigtChain",
-    "Ladder",
     "LogarithmicCreep",
     "Lubricant",
     "MeasuredWear",
     "Mix",
-    "OwnLaw",
     "PatientVariability",
-    "Scatter",
     "Spring",
     "Stribeck",
     "WearFit",

@@ -12,7 +12,6 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute, renamed_arguments
 from .contact_checks import list_check_notes
 from .series_accuracy import SeriesAccuracy
 from .variability import (
@@ -135,7 +134,6 @@ class Bands:
         low, high = self._end_probabilities
         return {"low": low, "median": 0.5, "high": high}
 
-    @renamed_arguments(share="fraction")
     def quantile(self, name: str, fraction: float) -> Numbers:
         """Compute a quantile of one result over the patients at each report; NaN without results.
 
@@ -274,7 +272,6 @@ class Bands:
         """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
 
-    @renamed_arguments(look="report")
     def valid_fraction(self, report: int) -> float:
         """Compute the fraction of patients whose contacts are valid from the first cycle to a report."""
         valid = self.cohort.valid[self.cohort.refused == "", report]
@@ -286,7 +283,6 @@ class Bands:
         valid = self.cohort.valid[self.cohort.refused == ""]
         return bool(valid.size and (valid == 1).all())
 
-    @renamed_arguments(share="fraction")
     def utilisation_quantile(self, fraction: float) -> Numbers:
         """Compute a quantile of the patients' largest ratio of von Mises to yield stress at each report."""
         known_utilisations = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
@@ -296,7 +292,6 @@ class Bands:
             else numpy.full(len(self.counts), numpy.nan)
         )
 
-    @renamed_arguments(look="report")
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
         column = list(RESULT_UNITS).index("edge_distance")
@@ -390,14 +385,6 @@ class Bands:
             }
             for row, result in enumerate(INFLUENCED_RESULTS)
         }
-
-    scatter = RenamedAttribute("variability")
-    lived = RenamedAttribute("cohort")
-    without = RenamedAttribute("n_failed")
-    patients = RenamedAttribute("n_patients")
-    off = RenamedAttribute("quick_run_errors")
-    usual_notes = RenamedAttribute("nominal_notes")
-    valid_share = RenamedAttribute("valid_fraction")
 
 
 def quantile_of_known(values: Numbers, fraction: float) -> Numbers:

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial, check_memory, count_text
 from ..core.storage.folders import ArrayPieceStore, folder_at
 from ..core.storage.pieces import PieceRun, check_worker_code, fingerprint, hash_inputs
@@ -208,7 +207,6 @@ class CohortStore(ArrayPieceStore):
         return result if len(result.table) == patient_count else None
 
 
-@renamed_arguments(scatter="variability")
 def cohort_store(
     folder: str | Path, variability: PatientVariability, counts: Sequence[float], seed: int
 ) -> CohortStore:
@@ -299,17 +297,3 @@ def _csv_blocks(names: Sequence[str], columns: Sequence[Numbers]) -> Iterator[by
 def _format_row(row: Numbers) -> str:
     """Write numbers with commas between them and a line break at the end; an unknown number is empty."""
     return ",".join(["" if value != value else f"{value:.9g}" for value in row.tolist()]) + "\n"
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "kept": "cohort_store",
-        "drawn": "sample_patients",
-        "Lives": "CohortRun",
-        "Lived": "ballsocket.hip.variability.CohortResult",
-        "Kept": "CohortStore",
-        "joined": "ballsocket.hip.variability.join_results",
-        "columns": "table_columns",
-    },
-)

@@ -9,7 +9,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import RenamedAttribute
 from .law_fields import Law
 
 
@@ -29,7 +28,6 @@ class CreepLaw(Law):
     """
 
     confinement: float = 1.0
-    advanced = RenamedAttribute("advance_strain")
 
     def __post_init__(self) -> None:
         super().__post_init__()

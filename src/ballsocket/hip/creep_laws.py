@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from ..core.checks import NamedItems, known_name
-from ..core.deprecation import renamed_names
 from .creep_law import CreepLaw, constrained_share
 from .law_fields import law_field, list_unit, read_law, select_law_class
 
@@ -147,12 +146,3 @@ def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
     name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
     law = select_law_class(table, CREEP_LAWS, "creep law")
     return read_law(table, CREEP_LAWS, law, confinement=CONFINEMENTS[name](poisson))
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Ladder": "KelvinVoigtChain",
-        "UNVERIFIED": "UNVERIFIED_NOTE",
-    },
-)

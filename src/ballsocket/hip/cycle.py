@@ -13,18 +13,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_whole_number, require
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.kinds import Kind
 from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "INSTANTS": "DEFAULT_STEPS",
-        "Course": "PhaseFunction",
-        "order_of": "ballsocket.hip.kinematics.parse_rotation_order",
-    },
-)
 
 DEFAULT_STEPS = 100
 """Number of time steps of a cycle, unless another is set."""
@@ -74,13 +64,6 @@ class Spring:
         return self.stiffness * self.mismatch
 
 
-@renamed_fields(
-    instants="n_steps",
-    sizes="force_magnitudes",
-    middles="midpoint_rotations",
-    turns="rotation_increments",
-    told="describe_step",
-)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cycle:
     """Cycle of load and motion, divided into time steps of equal length.

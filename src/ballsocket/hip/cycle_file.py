@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
-from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..files.tables import read_table as read_schema
@@ -33,12 +32,10 @@ from .cycle_tables import (
     select_time_range,
     time_column,
 )
-from .in_vivo import check_body_weight
+from .in_vivo_cycles import check_body_weight
 from .kinematics import rotation_matrices
 from .mix import Activity, Mix
 from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
-
-__getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 
 _FRAMES, _BODIES = FrameName.choices, LoadedPart.choices
 _MAX_FORCE = 1e9
@@ -89,7 +86,6 @@ class TableOptions:
         require("closing", self.closing, 0 <= self.closing <= 0.5, "0 to 0.5 of the range of a column")
 
 
-@renamed_arguments(instants="n_steps", reading="options")
 def read_cycle(
     path: str | Path | Sequence[str | Path],
     n_steps: int = DEFAULT_STEPS,
@@ -163,8 +159,21 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
         order=order,
         duration=duration,
         frame=Frame.CUP if frame == "cup" else Frame.BODY,
-        notes=_missing_angle_notes(columns) if motion is None else (f"the motion is that of {motion.name}",),
+        notes=(
+            *(_missing_angle_notes(columns) if motion is None else (f"the motion is that of {motion.name}",)),
+            *_assumed_frame_notes(table, options, loaded_body, frame),
+        ),
     )
+
+
+def _assumed_frame_notes(table: HipColumns, options: TableOptions, loaded_body: str, frame: str) -> tuple[str, ...]:
+    """Return a note on the loaded body and the frame of the force, as far as the user does not state them."""
+    assumed = {"force_on": f"acts on the {loaded_body}", "frame": f"is in the frame of the {frame}"}
+    unstated = [text for name, text in assumed.items() if getattr(options, name) is None]
+    if "force_z" not in table.columns or not unstated or (table.frame is not None and not table.orthoload):
+        return ()
+    reason = "by its heads, those of OrthoLoad" if table.orthoload else "by default"
+    return (f"the force {' and '.join(unstated)} {reason}; force_on and frame in [cycle] state it",)
 
 
 def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:

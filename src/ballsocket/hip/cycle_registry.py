@@ -7,9 +7,8 @@ from types import MappingProxyType
 from typing import Any
 
 from ..core.checks import known_name
-from ..core.deprecation import renamed_arguments
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition
-from .in_vivo import IN_VIVO_CYCLES
+from .in_vivo_cycles import IN_VIVO_CYCLES
 from .simulator_cycles import SIMULATOR_CYCLES
 
 _DEFINITIONS = (
@@ -22,7 +21,6 @@ CYCLES: Mapping[str, CycleDefinition] = MappingProxyType({definition.name: defin
 """Definitions of the named cycles by name, in the order in which they are listed."""
 
 
-@renamed_arguments(instants="n_steps")
 def named_cycle(
     name: Any, n_steps: int = DEFAULT_STEPS, order: str = "xyz", body_weight: float | None = None, **parameters: Any
 ) -> Cycle:

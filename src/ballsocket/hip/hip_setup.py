@@ -13,7 +13,6 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
-from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..core.display import OneLine, html_list
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
@@ -24,6 +23,7 @@ from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
+from ..problem.gaps import LinearGap
 from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
@@ -80,15 +80,6 @@ class HipSetup(OneLine):
     side_cycle = FromFrame[Cycle | Mix]()
     slide = FromFrame[float]()
     socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
-
-    carried = RenamedAttribute("socket_forces")
-    largest = RenamedAttribute("largest_load_index")
-    moved = RenamedAttribute("side_cycle")
-    tether = RenamedAttribute("lateral_stiffness")
-    turns = RenamedAttribute("rotation_increments")
-    bed = RenamedAttribute("foundation")
-    rest = RenamedAttribute("solve_equilibrium")
-    passed = RenamedAttribute("exposure")
 
     def __post_init__(self) -> None:
         """Check types and limits of the fields, and that no load pushes the ball over the rim."""
@@ -208,7 +199,6 @@ class HipSetup(OneLine):
             directions=self.foundation.directions,
         )
 
-    @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
         """Compute the distance of each contact from the rim (`RimDistance`), for a worn depth (cells,) in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
@@ -216,7 +206,6 @@ class HipSetup(OneLine):
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
         )
 
-    @renamed_arguments(rest="equilibrium")
     def edge_distance(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Compute the shortest arc in mm from each contact edge to the end of the bore: (loaded,).
 
@@ -245,13 +234,12 @@ class HipSetup(OneLine):
 
     @cached_property
     def contact_model(self) -> Model:
-        """Contact model with the same foundation as the simulation: radial springs, or full elasticity."""
+        """Contact model with the same foundation as the simulation: springs, or full elasticity, with a linear gap."""
         if isinstance(self.surface, Springs):
             return RadialFoundation(modulus=self.surface.modulus)
         ring_width = min(self.ring_width, MAX_RING_WIDTH)
-        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width)
+        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width, gap=LinearGap)
 
-    @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Tabulate the contact of largest pressure of each activity: (activities, columns `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
@@ -294,7 +282,6 @@ class HipSetup(OneLine):
         """Validity and strength of the worst contact of each activity in the first cycle."""
         return self.contact_checks(self.unworn_worst_contacts)
 
-    @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressure and sliding of the socket's cells over a cycle, as input of a wear law."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))

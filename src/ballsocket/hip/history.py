@@ -15,7 +15,6 @@ import numpy
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.display import OneLine, html_table, load_plot, plain_number
 from ..core.records import Record
 from ..lubrication import Lubricant
@@ -87,9 +86,6 @@ class Report(Record, OneLine):
     ball_depth: float = 0.0
     worst_contacts: Numbers = field(default_factory=lambda: numpy.zeros((0, len(COLUMNS))))
     converged: bool = True
-    worn_in = RenamedAttribute("wear_displacement")
-    crept_in = RenamedAttribute("creep_displacement")
-    settled = RenamedAttribute("converged")
 
     @property
     def penetration(self) -> float:
@@ -165,7 +161,6 @@ class History(OneLine):
     error: NumericalError
     steps: int
     lubricant: Lubricant | None = None
-    settled = RenamedAttribute("converged")
 
     @property
     def last(self) -> Report:
@@ -416,12 +411,3 @@ _NOT_CONVERGED = "a contact did not balance its load: the results of this run ar
 def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
     """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Error": "NumericalError",
-        "First": "ballsocket.hip.wear_law.FirstCycleResult",
-    },
-)

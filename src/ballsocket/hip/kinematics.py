@@ -10,12 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import shown
-from ..core.deprecation import renamed_arguments, renamed_fields, renamed_names
 from ..elasticity.off_axis.directions import tangents
-
-__getattr__ = renamed_names(
-    __name__, {"Sliding": "SurfaceSliding", "cross_shear_of": "track_cross_shear", "slide": "sliding_distance"}
-)
 
 _AXIS_NAMES = {
     **dict.fromkeys(("flexion", "flexion-extension", "fe", "f", "x"), "x"),
@@ -135,7 +130,6 @@ def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers
     return cross_shear(*((weight_per_length * product).sum(axis=-1) for product in (x * x, y * y, x * y)))
 
 
-@renamed_fields(turns="rotation_increments", steps="distances", part="select_points")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceSliding:
     """Sliding of the ball's surface over points of the socket during a cycle.
@@ -216,7 +210,6 @@ class SurfaceSliding:
         return numpy.divide(weighted_sum, total, out=numpy.zeros_like(total), where=total > 0)
 
 
-@renamed_arguments(turns="rotation_increments")
 def sliding_distance(radius: float, rotation_increments: Numbers, direction: Numbers) -> float:
     """Compute the distance in mm that the ball slides over one point of the socket during a cycle.
 

@@ -11,7 +11,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_fields
 from .cycle import Cycle, Frame
 
 
@@ -34,14 +33,6 @@ class Activity:
         require("per_year", self.per_year, 0 < self.per_year < inf, "a number of cycles a year is positive and finite")
 
 
-@renamed_fields(
-    instants="n_steps",
-    sizes="force_magnitudes",
-    middles="midpoint_rotations",
-    turns="rotation_increments",
-    told="describe_step",
-    shares="fractions",
-)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mix:
     """Mix of activities of a patient, weighted by their numbers of cycles a year.

@@ -12,14 +12,9 @@ from typing import Any, Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_fields, renamed_names
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from .cycle import Spring
-
-__getattr__ = renamed_names(
-    __name__, {"Edge": "RimDistance", "Worst": "ClosestApproach", "Separation": "Microseparation"}
-)
 
 _BISECTIONS = 60
 _BALANCE_TOLERANCE = 1e-6
@@ -53,7 +48,6 @@ class CupLoading(Protocol):
         """Indices of the loaded steps: (loaded,)."""
 
 
-@renamed_fields(place="azimuth", told="step_description", reaching="steps_at_rim", where="location")
 @dataclass(frozen=True, kw_only=True)
 class ClosestApproach:
     """Step of a cycle in which the contact is closest to the rim.
@@ -107,7 +101,6 @@ class ClosestApproach:
         }
 
 
-@renamed_fields(place="azimuth", nearest="closest_index", worst="closest_approach")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RimDistance(Record):
     """Distance of each contact of a cycle from the rim of the cup.
@@ -216,7 +209,6 @@ def _edge_azimuth(edge_angle: Numbers, last_ring: Numbers, azimuth: Numbers) -> 
     return numpy.arctan2(numpy.where(abs(y) < 1e-9 * abs(x), 0.0, y), x)
 
 
-@renamed_fields(instants="steps", place="azimuth", told="describe")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Microseparation:
     """Steps of a cycle in which the ball sits on the rim of the cup.

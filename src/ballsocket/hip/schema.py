@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar, Self
 
 import msgspec
 
-from ..catalogue import catalogue
 from ..core.checks import shown
 from ..files.columns import HeadKeys
 from ..files.joint_file import CupTable, JointTables, ReportTable
@@ -28,6 +27,7 @@ from ..files.schema import (
     meaning,
     with_keys,
 )
+from ..model_catalogue import catalogue
 from ..problem.cup import Side
 from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
@@ -323,7 +323,7 @@ class CycleCounts(Value, list[float]):
         return cls(Counts.read(name, value if isinstance(value, list) else [value]))
 
 
-class WearDataTable(Table, frozen=True, kw_only=True):
+class WearDataTable(HeadKeys, frozen=True, kw_only=True):
     """Measured wear, from which `ballsocket identify` fits the wear coefficient."""
 
     quantity: Annotated[WearQuantity | None, meaning("measured quantity")] = None

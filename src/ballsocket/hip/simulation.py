@@ -14,7 +14,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.display import plain_number
 from ..core.storage.atomic_files import make_folder, read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
@@ -277,9 +276,6 @@ class HipSimulation(HipSetup):
     30.1
     """
 
-    halved = RenamedAttribute("discretization_error")
-
-    @renamed_arguments(listen="progress")
     def after(
         self,
         cycles: float,
@@ -367,6 +363,3 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
             f"it lies between 0 and the {plain_number(cycles)} cycles of the run",
         )
     return sorted({float(count) for count in (*report_at, cycles)})
-
-
-__getattr__ = renamed_names(__name__, {"InUse": "HipSimulation"})

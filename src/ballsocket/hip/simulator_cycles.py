@@ -9,7 +9,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.deprecation import renamed_arguments
 from ..core.kinds import Kind
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, CycleParameter, PhaseFunction, Spring
 from .kinematics import parse_rotation_order
@@ -60,7 +59,6 @@ def _iso_14242_1_key_point_angles(phases: Numbers) -> Numbers:
     return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
 
 
-@renamed_arguments(instants="n_steps", key_points="angles")
 def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseFunction | None = None) -> Cycle:
     """Create the walking cycle of hip simulators (ISO 14242-1): 300 to 3000 N along a line fixed to the socket, 1 Hz.
 
@@ -86,13 +84,11 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
     )
 
 
-@renamed_arguments(instants="n_steps")
 def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of ISO 14242-1 with half cosines between the key points of each angle; see `iso_14242_1`."""
     return replace(iso_14242_1(n_steps, order, _iso_14242_1_key_point_angles), name="iso-14242-1-key-points")
 
 
-@renamed_arguments(instants="n_steps")
 def flexion(
     n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
@@ -134,7 +130,6 @@ def flexion(
     )
 
 
-@renamed_arguments(instants="n_steps", swing="swing_load")
 def iso_14242_4(
     n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
@@ -169,7 +164,6 @@ def iso_14242_4(
     )
 
 
-@renamed_arguments(instants="n_steps")
 def two_axis(
     n_steps: int = DEFAULT_STEPS,
     order: str = "xyz",
@@ -206,7 +200,6 @@ def two_axis(
     )
 
 
-@renamed_arguments(instants="n_steps")
 def rocking(
     n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, amplitude: float = radians(23.0), peak: float = 2000.0
 ) -> Cycle:
@@ -243,7 +236,6 @@ def _tilted_axis_angles(tilt: float, azimuth: Numbers) -> Numbers:
     return numpy.stack([flexion, adduction, rotation])
 
 
-@renamed_arguments(instants="n_steps")
 def constant_load(
     n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, force: float = 3000.0, amplitude: float = radians(21.5)
 ) -> Cycle:

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.records import Record
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..problem.cup import Cup
@@ -107,7 +106,6 @@ class PatientVariability:
     distributions: Mapping[str, Distribution]
     body_weight: float | None = None
     surface: Springs | ClosedShell | RealCup | None = None
-    quick = RenamedAttribute("coarse_simulation")
 
     def __post_init__(self) -> None:
         """Check the names and the medians of the distributions."""
@@ -254,9 +252,6 @@ class Patient:
             raise ValueError("a contact did not balance its load")
         return reports
 
-    pace = RenamedAttribute("cycle_ratio")
-    seen = RenamedAttribute("simulate")
-
 
 @dataclass(frozen=True, eq=False)
 class _CycleTable:
@@ -373,15 +368,3 @@ def _summarize_distribution(name: str, distribution: Distribution) -> dict[str, 
     parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
     shown_parameters = {key: factor * value for key, value in parameters.items() if isfinite(value)}
     return {"distribution": type(distribution).__name__, **shown_parameters}
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Scatter": "PatientVariability",
-        "SCATTERS": "SAMPLED_QUANTITIES",
-        "ANSWERS": "RESULT_UNITS",
-        "answers_of": "result_table",
-        "contact_over": "contact_table",
-    },
-)

@@ -10,7 +10,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, known_name, require
-from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..problem.presets import materials
 from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law_class
 from .wear_law import (
@@ -276,7 +275,6 @@ class CustomWearLaw(Law):
     title: ClassVar[str] = "custom function"
     storable: ClassVar[bool] = False
     function: Callable[[CycleExposure], Numbers]
-    of = RenamedAttribute("function")
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         """Compute the worn depth in mm of each point in a cycle by the given function: (points,)."""
@@ -290,8 +288,6 @@ class CustomWearLaw(Law):
             )
         return depth
 
-
-CustomWearLaw.__init__ = renamed_arguments(of="function")(CustomWearLaw.__init__)  # type: ignore[method-assign]
 
 _WEAR_LAWS: tuple[type[WearLaw], ...] = (
     Archard,
@@ -344,15 +340,3 @@ def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
         names = ", ".join(repr(name) for name, registered_law in WEAR_LAWS.items() if registered_law.wears_balls)
         raise ValueError(f"{BALL_COEFFICIENT} is not allowed with the law {law.name!r}; it belongs to {names}")
     return read_law(table, WEAR_LAWS, law, keys={COEFFICIENT: BALL_COEFFICIENT})
-
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "AreaLaw": "ContactAreaWear",
-        "EnergyLaw": "FrictionEnergyWear",
-        "OwnLaw": "CustomWearLaw",
-        "Pass": "ballsocket.hip.wear_law.CycleExposure",
-        "Law": "ballsocket.hip.wear_law.WearLaw",
-    },
-)

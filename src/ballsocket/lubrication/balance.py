@@ -40,6 +40,7 @@ def balance_cells(
 ) -> Balance:
     """Compute the volume that leaves each cell: Couette and Poiseuille flow (Reynolds' equation).
 
+    Through a face of width b, between films h of the filled fraction 1 - θ, flows Q = b (v h (1 - θ)/2 - h³ p'/(12 η)).
     Between two cells the film is taken as constant on each side and the pressure as continuous at the face, so that
     a step of the film is exact and a smooth film is of second order.
 
@@ -60,11 +61,13 @@ def balance_cells(
     velocity, rim_velocity = mesh.face_velocity(spin)
     first, second = mesh.first, mesh.second
     first_film, second_film = thickness[first], thickness[second]
-    # Conductances of the two sides of a face; in series they carry the flow from centre to centre.
+    # h³/s on both sides of a face, with the distance s from the centre. In series they carry the flow g1 g2/(g1 + g2).
     first_side = first_film**3 / mesh.first_distance
     second_side = second_film**3 / mesh.second_distance
     both = first_side + second_side
     conductance = mesh.width / (12 * viscosity) * first_side * second_side / both
+    # The pressure at the face follows from equal flows on both sides; the film that is carried is h1 g2 + h2 g1 over
+    # g1 + g2, exact for a step of the film.
     film = (first_film * second_side + second_film * first_side) / both
     first_slope = 3 * first_side / first_film
     second_slope = 3 * second_side / second_film
@@ -72,6 +75,7 @@ def balance_cells(
     conductance_by_second = mesh.width / (12 * viscosity) * (first_side / both) ** 2 * second_slope
     film_by_first = second_side / both + (second_film - first_film) * second_side / both**2 * first_slope
     film_by_second = first_side / both + (first_film - second_film) * first_side / both**2 * second_slope
+    # Couette flow: the vapour comes from upstream, the film from the face or, with less central differences, upstream.
     carried = 0.5 * velocity * mesh.width
     upstream = numpy.where(velocity > 0, first, second)
     film = central * film + (1 - central) * thickness[upstream]

@@ -10,11 +10,11 @@ from pathlib import Path
 from types import MappingProxyType, NoneType, UnionType
 from typing import Any, get_args, get_origin
 
-from ..catalogue import off_axis
 from ..core.checks import known_name
 from ..core.quantities import QUANTITIES
 from ..files.schema import Table
 from ..files.schema_keys import json_schema
+from ..model_catalogue import off_axis
 from ..problem.dimensions import DIAMETERS
 
 
@@ -41,7 +41,7 @@ def _study() -> type[Table]:
 
 def _identify() -> type[Table]:
     """Return the tables of identification files."""
-    from ..identify.file import IdentifyTable
+    from ..identification.file import IdentifyTable
 
     return IdentifyTable
 

@@ -12,7 +12,6 @@ import numpy
 
 from ..core.arrays import Array, clip, sin
 from ..core.checks import check_numeric, require, shown
-from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_domain
 from ..problem import Joint
@@ -77,8 +76,6 @@ class Modulus:
         if type(R2) is float and type(L) is float and type(E) is float and type(nu) is float and not self.constants:
             return _scalar_modulus(self.formula, R2, L, E, nu)
         return self.formula(R2, L, E, nu, *self.constants)
-
-    of = RenamedAttribute("evaluate")
 
     def __repr__(self) -> str:
         return self.name.replace("-", "_")

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import catalogue, reference, with_gap
 from ..contact import Contact, Model
 from ..core.arrays import Numbers
 from ..core.validity import OutsideDomainError
+from ..model_catalogue import catalogue, reference, with_gap
 from ..problem import Joint, Material
 from ..problem.presets import STEEL
 

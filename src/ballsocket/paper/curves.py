@@ -10,7 +10,6 @@ import numpy
 
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
-from ..core.deprecation import renamed_names
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT
 from ..models.foundation import HessForsbach
 from ..problem import Joint
@@ -94,9 +93,6 @@ def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
         groups.setdefault(panel.title, []).append(panel)
     for group in groups.values():
         yield replace(group[0], lines=[line for panel in group for line in panel.lines])
-
-
-__getattr__ = renamed_names(__name__, {"Line": "FigureLine"})
 
 
 Models = Mapping[str, Model]

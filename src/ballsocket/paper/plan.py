@@ -7,11 +7,11 @@ from functools import partial
 from itertools import product
 from typing import Any
 
-from ..catalogue import catalogue
 from ..contact import Model
 from ..core.storage.pieces import Piece, Plan, Summary
 from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.model import FiniteElement
+from ..model_catalogue import catalogue
 from ..problem.gaps import LinearGap
 from . import cases, curves
 from .accuracy import accuracies

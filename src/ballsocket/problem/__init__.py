@@ -8,7 +8,4 @@ materials and joints with sources.
 from .joint import Joint, Support
 from .material import Layer, Material, elementwise_maximum, make_unchecked
 
-larger = elementwise_maximum  # name of version 1.0
-unchecked = make_unchecked  # name of version 1.0
-
-__all__ = ["Joint", "Layer", "Material", "Support", "elementwise_maximum", "larger", "make_unchecked", "unchecked"]
+__all__ = ["Joint", "Layer", "Material", "Support", "elementwise_maximum", "make_unchecked"]

@@ -12,7 +12,6 @@ from rich.text import Text
 
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_arguments
 from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
@@ -29,7 +28,6 @@ _LEVELS = 12
 _LOST_BALL_HATCH, _RIM_HATCH = "xxx", "///"
 
 
-@renamed_arguments(stood="orientations")
 def orientation_figure(orientations: Orientations, units: Units = Units.SI, limits: Sequence[Limit] = ()) -> Figure:
     """Draw distance to the rim and largest pressure over inclination and anteversion, or over one of them.
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.table import Table
 
-from ..catalogue import judge
 from ..core.executors.processes import Engine, Serial
 from ..core.kinds import Unit
 from ..core.quantities import JOINT
 from ..core.storage.atomic_files import write_atomically, write_text
+from ..model_catalogue import judge
 from ..models.foundation import HessForsbach
 from ..paper.accuracy import RANGES, THICKNESS
 from ..paper.cases import OUTER_RADII, RATIOS

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..catalogue import reference
-from ..compare import force_curves, successful_contacts
+from ..comparison import force_curves, successful_contacts
 from ..contact import Contact
 from ..contact.describe import Column
 from ..core import arrays
@@ -17,6 +16,7 @@ from ..core.kinds import Unit
 from ..core.quantities import CONTACT, FIELD
 from ..dynamics.motion import Motion
 from ..elasticity.off_axis.contact import OffAxisContact
+from ..model_catalogue import reference
 from .cup_plots import cup_figure
 from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of
 from .unit_systems import Units

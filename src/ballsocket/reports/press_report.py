@@ -9,7 +9,7 @@ from hashlib import sha256
 from math import ceil, degrees, inf, isfinite
 from pathlib import Path
 
-from ..compare import Comparison, successful_contacts
+from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
 from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..catalogue import judge, reference
 from ..contact import Contact
 from ..core.display import plain_number
 from ..core.quantities import CONTACT, FIELD
 from ..elasticity.finite_elements.model import MeshedContact
+from ..model_catalogue import judge, reference
 from ..problem import Joint
 from ..problem.cup import Cup
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, in_matplotlib, line_of

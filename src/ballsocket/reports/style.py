@@ -7,8 +7,6 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
-from ..core.deprecation import renamed_names
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -96,6 +94,3 @@ def finish(axes: Axes, x: str, y: str) -> None:
     axes.set_ylabel(y)
     axes.grid(color="0.9", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
-
-
-__getattr__ = renamed_names(__name__, {"Line": "LineStyle"})

@@ -15,12 +15,12 @@ from rich.table import Column as RichColumn
 from rich.table import Table
 from rich.text import Text
 
-from ..catalogue import reference
-from ..compare import Comparison, relative_deviation, successful_contacts
+from ..comparison import Comparison, relative_deviation, successful_contacts
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column, number_text
 from ..contact.verdict import assess_strength, ratio_text
 from ..core.quantities import CONTACT, HEADLINE
+from ..model_catalogue import reference
 from ..problem import Joint
 from .unit_systems import Units
 

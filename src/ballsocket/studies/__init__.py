@@ -16,16 +16,16 @@ from .axes import Span
 from .derivatives import elasticities
 from .design import Design, grid, sample, table
 from .distributions import LogNormal, Normal, Rectangular, tolerance
-from .export import export
 from .expressions import parse_limit
+from .file_formats import export
 from .limits import Limit, allowed
 from .optimisation import Optimum, optimise
 from .parameters import PARAMETERS
-from .pareto import pareto
+from .pareto_front import pareto
 from .run import Progress, study
 from .sampling import Method
-from .sensitivity import sensitivity
 from .store import read
+from .variance_shares import sensitivity
 
 __all__ = [  # noqa: RUF022, grouped as they are used
     # designs
@@ -51,7 +51,6 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "Optimum",
     "allowed",
     "elasticities",
-    "limit_of",
     "optimise",
     "pareto",
     "parse_limit",
@@ -62,9 +61,6 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "front_figure",
     "sensitivity_figure",
 ]
-
-limit_of = parse_limit
-"""Earlier name of `parse_limit`."""
 
 _PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
 band_figure: Callable[..., Any]

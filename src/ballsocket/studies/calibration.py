@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy
 
-from ..catalogue import reference as exact
 from ..contact import Model
 from ..core import arrays
 from ..core.arrays import Array
+from ..model_catalogue import reference as exact
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, spherical_vessel
 from ..problem import Joint

@@ -12,7 +12,6 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs
-from ..core.deprecation import renamed_names
 from ..problem import Joint
 from ..problem.cup import Cup
 from .design import check_values, sample
@@ -20,17 +19,6 @@ from .distributions import Distribution, check_nominal
 from .parameters import AIMS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
 from .task import EDGE_DISTANCE, QUANTITIES
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "Slopes": "Derivatives",
-        "Derive": "DerivativeFunction",
-        "differences": "finite_differences",
-        "traced": "jax_derivatives",
-        "pressed": "press_quantities",
-    },
-)
 
 Derivatives = dict[str, dict[str, float]]
 """Derivatives by quantity and parameter."""
@@ -110,7 +98,7 @@ def _choose_steps(name: str, value: float, relative_step: float) -> tuple[float,
     for steps in ((size, -size), (size, 2 * size), (-size, -2 * size)):
         if PARAMETERS[name].allows(value + numpy.array(steps)).all():
             return steps
-    raise ValueError(f"{name} = {value:g} is not allowed for a {PARAMETERS[name].title}")
+    raise ValueError(f"{name} = {value:g} is not allowed: {PARAMETERS[name].allowed}")
 
 
 def _parabola_derivative(rises: Numbers, steps: tuple[float, float]) -> float:

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..core.checks import check_names, shown
-from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.units import parse
@@ -15,17 +14,6 @@ from ..problem.presets import named_material
 from .distributions import Correlation, Distribution, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
-
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "range_of": "parse_range",
-        "ends_of": "parse_ends",
-        "choice_of": "parse_choices",
-        "spread_of": "parse_distribution",
-        "limit_of": "parse_limit",
-    },
-)
 
 _MAX_CHARACTERS = 200
 """Largest length of a text; matching a longer one could take seconds."""

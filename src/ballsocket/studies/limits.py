@@ -12,27 +12,18 @@ import numpy
 
 from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
-from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, JOINT
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
 from ..problem.dimensions import STORED_LENGTHS, Dimensions, derive_lengths
+from .metadata import missing_reasons
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
 
 if TYPE_CHECKING:
     import xarray
 
-__getattr__ = renamed_names(
-    __name__,
-    {
-        "NAMES": "LIMITED_NAMES",
-        "dimension": "joint_dimension",
-        "margin_on_plane": "margin_on_plane",
-        "refusal": "refusal_reason",
-    },
-)
 
 _ANGLES = tuple(name for name, quantity in {**PARAMETERS, **CONTACT}.items() if quantity.kind is Kind.ANGLE)
 
@@ -87,8 +78,6 @@ class Limit:
         if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
             return self.cup.edge_distance(joint_dimension(study, "socket_radius"), study.half_angle, self.direction)
         return study[self.name] if self.name in study.data_vars else joint_dimension(study, self.name)
-
-    of = RenamedAttribute("evaluate")
 
     def bar(self, study: xarray.Dataset) -> Bounded:
         """Return the limited quantity with its error bar at every point; without width if the study has no bounds."""
@@ -214,6 +203,13 @@ def count_verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> dict[str, 
     return {**counts, "no result": int((~answered).sum())}
 
 
+def undecided_reason(study: xarray.Dataset, limits: Iterable[Limit]) -> str:
+    """Explain why limits are undecided at points of a study: by a missing strength, else by their error bars."""
+    missing = missing_reasons(study)
+    reasons = dict.fromkeys(missing[limit.name] for limit in limits if limit.name in missing)
+    return "; ".join(reasons) or "the error bar contains a limit: use a more accurate model"
+
+
 def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
     """Describe the reason why no point of a study is allowed: limits, or a model without a result.
 
@@ -229,8 +225,7 @@ def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str,
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):
         near = count_verdicts(study, limits := tuple(limits))[Verdict.UNDECIDED.word]
-        count = f"{near} of {study.status.size}, whose error bar contains a limit: use a more accurate model"
-        words = f"; undecided: {count}" if near else ""
+        words = f"; undecided: {near} of {study.status.size}, {undecided_reason(study, limits)}" if near else ""
         return f"{refused} by {' and '.join(map(str, limits))}, according to {model}{words}"
     numbers, counts = numpy.unique(study.status.values, return_counts=True)
     return f"{model} has no answer {place}: {Status(int(numbers[counts.argmax()])).sentence}"

@@ -14,7 +14,6 @@ from ..contact import Model
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
-from ..core.deprecation import renamed_arguments
 from ..problem import Joint
 from .derivatives import DerivativeFunction, finite_differences
 from .design import Design, grid, sample
@@ -105,7 +104,6 @@ class Optimum:
         }
 
 
-@renamed_arguments(among="choices")
 def optimise(
     model: Model,
     joint: Joint,

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..catalogue import catalogue, reference
 from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core import arrays
 from ..core.checks import check_names, needs, shown
-from ..core.deprecation import renamed_fields
 from ..core.executors.processes import Engine, Serial, available_memory, count_text, size_text
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
+from ..model_catalogue import catalogue, reference
 from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
@@ -57,7 +56,6 @@ _MANY_HOURS = 100.0
 """Number of hours that is written without digits after the point."""
 
 
-@renamed_fields(done="n_done", points="n_points", found="n_stored", left="seconds_left")
 @dataclass(frozen=True)
 class Progress:
     """Progress of a study.

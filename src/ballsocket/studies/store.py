@@ -14,7 +14,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.deprecation import renamed_names
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceStore
 from .axes import Axis
@@ -31,7 +30,6 @@ from .task import DTYPES, VERDICT, Task
 if TYPE_CHECKING:
     import xarray
 
-__getattr__ = renamed_names(__name__, {"Store": "StudyStore"})
 
 CHECKSUM = "block_checksum"
 """Array with the checksum of each block, or -1 for a missing block."""

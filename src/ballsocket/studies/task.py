@@ -14,7 +14,6 @@ from ..contact import Contact, Model
 from ..contact.describe import COLUMNS
 from ..contact.verdict import Verdict, error_bar
 from ..core.arrays import Numbers
-from ..core.deprecation import renamed_names
 from ..core.quantities import BEARING, Quantity
 from ..core.quantities import QUANTITIES as CONTACT_QUANTITIES
 from ..core.storage.pieces import check_worker_code, fingerprint
@@ -22,8 +21,6 @@ from ..core.validity import OutsideDomainError, Status
 from ..problem import Joint
 from .design import Design
 from .parameters import press_arguments
-
-__getattr__ = renamed_names(__name__, {"USUAL": "DEFAULT_QUANTITIES", "points_a_block": "points_per_block"})
 
 QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
 """Quantities that a study can have; `status` and `valid` are in every study."""

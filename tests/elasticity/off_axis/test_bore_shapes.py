@@ -78,17 +78,6 @@ def test_measured_depth_is_computed_once_for_a_grid():
     assert measured.depth(other.centroids) == pytest.approx(other.centroids[0] ** 2)
 
 
-def test_names_of_version_1_0_still_work():
-    assert (bs.Worn, bs.Pinched) == (bs.BoreDeviation, bs.OvalBore)
-    with pytest.warns(DeprecationWarning, match="use BoreDeviation"):
-        assert bore_shapes.Worn is bs.BoreDeviation
-    fitted = bs.Preload(model=WRAPPED, joint=TIGHT)
-    with pytest.warns(DeprecationWarning, match="use equilibrium"):
-        assert fitted.rest is fitted.equilibrium
-    with pytest.warns(DeprecationWarning, match="use separation_displacement"):
-        assert fitted.lost_at == fitted.separation_displacement
-
-
 # --- scans ---
 
 TO_POLE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]).T

@@ -9,13 +9,12 @@ from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
 
-from ...catalogue import catalogue, reference
 from ...core.checks import check_names, shown
-from ...core.deprecation import renamed_names
 from ...core.kinds import Kind
 from ...core.quantities import QUANTITIES
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
+from ...model_catalogue import catalogue, reference
 from ...problem.presets import joints
 from ...reports.unit_systems import Units
 from ...studies.expressions import parse_limit, parse_range
@@ -289,6 +288,3 @@ def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> li
     """Write each end of a limit as text that `parse_limit` reads."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
-
-
-__getattr__ = renamed_names(__name__, {"Axis": "MapAxis"})

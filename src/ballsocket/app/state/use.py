@@ -17,7 +17,7 @@ from ...hip.config import parse_creep, socket_surface
 from ...hip.creep_laws import CREEP_LAWS
 from ...hip.cycle_file import read_cycle
 from ...hip.cycle_registry import CYCLES
-from ...hip.in_vivo import check_body_weight
+from ...hip.in_vivo_cycles import check_body_weight
 from ...hip.law_fields import Law, LawField
 from ...hip.wear_law import COEFFICIENT
 from ...hip.wear_laws import WEAR_LAWS, read_wear_law

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 
-from ...compare import relative_deviation, successful_contacts
+from ...comparison import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...contact.verdict import Verdict, range_text
 from ...core.kinds import Unit

@@ -8,14 +8,14 @@ from html import escape
 from math import floor, isfinite, isnan, log10
 from typing import Any
 
-from ...catalogue import reference
-from ...compare import Comparison, relative_deviation
+from ...comparison import Comparison, relative_deviation
 from ...contact import Contact
 from ...contact.describe import COLUMNS, Column
 from ...contact.verdict import Verdict
 from ...core.kinds import Unit
 from ...core.quantities import HEADLINE, Quantity
 from ...elasticity.off_axis.contact import OffAxisContact
+from ...model_catalogue import reference
 from ...problem.cup import Cup
 from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from ...reports.style import line_of

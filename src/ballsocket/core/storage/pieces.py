@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 from ...version import __version__
-from ..deprecation import renamed_arguments
 from ..display import full_repr
 from ..executors.processes import Engine, Serial, Work
 from .atomic_files import make_folder, write_text
@@ -179,7 +178,6 @@ class Plan:
         for number, result in chain(run.stored.items(), run.compute_missing(engine)):
             yield *pieces[number], result
 
-    @renamed_arguments(listen="progress")
     def results(
         self, folder: Path, progress: Callable[[str], None] = lambda name: None, engine: Engine = _SERIAL
     ) -> Results:

@@ -11,7 +11,6 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import needs
-from ...core.deprecation import RenamedAttribute
 from ...core.storage.atomic_files import check_parent_folder, write_atomically
 from ...core.stress import Peak, Stress
 from ...problem import Joint
@@ -52,8 +51,6 @@ class Part:
     elements: Numbers
     displacement: Numbers
     stress: Stress
-
-    place = RenamedAttribute("position")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

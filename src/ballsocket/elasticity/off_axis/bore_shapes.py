@@ -13,13 +13,10 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import check_number, degrees_hint, require, shown
-from ...core.deprecation import RenamedAttribute, renamed_names
 from .directions import polar_angle
 
 if TYPE_CHECKING:
     from scipy.interpolate import RegularGridInterpolator
-
-__getattr__ = renamed_names(__name__, {"Pinched": "OvalBore", "Worn": "BoreDeviation"})
 
 
 class BoreShape(Protocol):
@@ -132,8 +129,6 @@ class InterpolatedDeviation:
     @abstractmethod
     def interpolate(self, directions: Numbers) -> Numbers:
         """Interpolate the depth of the bore in mm at unit vectors (3, ...) in the cup's frame."""
-
-    between = RenamedAttribute("interpolate")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

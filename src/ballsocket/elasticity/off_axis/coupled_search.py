@@ -1,5 +1,10 @@
 """Equilibrium of balls under prescribed loads: pressures and displacements together, by conjugate gradients.
 
+Unknown are the displacement e of the ball's centre and the pressures p >= 0 of the cells. With the clearance and the
+worn depth g, the normals n, the compliance S of the bore, a tether T and the load F, they satisfy
+
+    r = n·e - g - S p = 0 where p > 0,   r <= 0 where p = 0,   R2² ∫ p n dA + T e = F.
+
 One iteration moves every ball by a Newton step, and its pressures by a step of conjugate gradients under p >= 0
 (Polonsky & Keer 1999, doi 10.1016/S0043-1648(99)00113-1). The Newton step needs the force that the pressures will have
 once they have converged. To first order it is F(p) + R2² ∫ q r, with the remaining overlap r and the derivative q of
@@ -416,6 +421,7 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
             for axis in range(len(bore.tether))
         ]
     )
+    # (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA: what the pressures will still add on their own is not asked of the ball
     imbalance = lanes.imbalance - bore.scale * missing
     step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)
     length = xp.sqrt(xp.sum(step * step, axis=0))
@@ -427,19 +433,23 @@ def advance_lanes(bore: BoreArrays, step: Array, lanes: Lanes) -> Lanes:
     xp = arrays.namespace(lanes.pressure)
     moved = project_on_normals(bore, step)
     touching, active = lanes.pressure > 0, lanes.residual != 0
+    # residual r + n·Δe of the active cells, and its preconditioned gradient z, without cells that would part
     residual = moved * active
     residual += lanes.residual
     gradient = apply_operator(bore, bore.stiffness, residual)
     gradient *= active & (touching | (gradient > 0))
+    # direction t = z + β t with β = max(<r - r', z>/<r', z'>, 0) (Polak & Ribière): it forgets a changed contact
     factor = integrate(bore, residual - lanes.previous_residual, gradient) / lanes.descent
     descent = integrate(bore, residual, gradient)
     direction = lanes.direction * active
     direction *= xp.maximum(factor, 0.0 * factor)
     direction += gradient
+    # line search p + α t with α = <r, t>/<t, S t>, then p >= 0
     response = apply_operator(bore, bore.softness, direction)
     length = integrate(bore, residual, direction) / positive_or_one(integrate(bore, direction, response))
     unlimited = lanes.pressure + length * direction
     pressure = xp.maximum(unlimited, 0.0 * length)
+    # r + n·Δe - α S t, corrected for the pressures that were cut off at 0
     response *= length
     moved -= response
     moved += lanes.remaining

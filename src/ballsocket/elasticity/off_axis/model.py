@@ -24,7 +24,6 @@ from ...core.checks import (
     select_load,
     shown,
 )
-from ...core.deprecation import RenamedAttribute
 from ...core.sources import Source
 from ...core.validity import SMALL_STRAIN, Range, Remark, Status
 from ...problem import Joint
@@ -300,9 +299,6 @@ class Sphere(Model):
         """
         in_cup = numpy.einsum("...ij,...j->...i", cup_frames(self.cup, inclination, anteversion), self.direction)
         return replace(self, direction=in_cup @ numpy.array(self.cup.frame))
-
-    along = RenamedAttribute("with_direction")
-    facing = RenamedAttribute("with_orientation")
 
     def reach_of(self, joint: Joint) -> Array:
         """Compute the polar angle of the end of the bore in rad, from the pole of the dome."""

@@ -16,7 +16,6 @@ from ...contact.verdict import Bounded, error_bar
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
-from ...core.deprecation import renamed_arguments
 from ...core.quantities import CUP
 from ...core.validity import Status, is_missing
 from ...problem import Joint
@@ -104,7 +103,6 @@ class Orientations:
         """True where the bore holds the ball and there is a solution."""
         return ~numpy.asarray(is_missing(self.status))
 
-    @renamed_arguments(of="field")
     def best(self, field: Numbers) -> tuple[float, float, int]:
         """Return the inclination and anteversion in rad at which a field is largest, and its flat index."""
         index = int(numpy.where(self.held & numpy.isfinite(field), field, -inf).argmax())

@@ -14,7 +14,6 @@ from ...contact.assembly import check_joint
 from ...contact.strength import MAX_ELASTIC_UTILISATION
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
-from ...core.deprecation import RenamedAttribute
 from ...problem import Joint
 from ...problem.gaps import CircularGap
 from .directions import check_direction
@@ -148,11 +147,6 @@ class Preload:
             if high - low < _RELATIVE_TOLERANCE * high:
                 break
         return low
-
-    rest = RenamedAttribute("equilibrium")
-    displaced = RenamedAttribute("displace")
-    lost_at = RenamedAttribute("separation_displacement")
-    worn_out_at = RenamedAttribute("wear_depth_to_loosen")
 
 
 def _touches_everywhere(contact: OffAxisContact) -> bool:

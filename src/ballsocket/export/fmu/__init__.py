@@ -3,7 +3,4 @@
 from .fmu import Fmu, FmuFile
 from .variables import write_cross_check
 
-Written = FmuFile
-"""Name of `FmuFile` in version 1.0."""
-
-__all__ = ["Fmu", "FmuFile", "Written", "write_cross_check"]
+__all__ = ["Fmu", "FmuFile", "write_cross_check"]

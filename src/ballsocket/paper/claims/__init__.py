@@ -7,7 +7,6 @@ The tables hold the claims as data. A claim is judged with a reference model in 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from ...contact import Model
 from ...core.checks import nearest, shown
@@ -15,7 +14,6 @@ from .evaluation import SCALE, Claim, Finding, Verdict, judge
 from .table import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE
 
 _BY_NAME = {claim.name: claim for claim in (*CLAIMS, *MESHED_CLAIMS, *ELSEWHERE, *MESHED_ELSEWHERE)}
-_BY_IDENTIFIER = {claim.identifier: claim for claim in _BY_NAME.values()}
 
 
 def claim(name: str) -> Claim:
@@ -34,15 +32,6 @@ def claim(name: str) -> Claim:
 def ledger(reference: Model, claims: Iterable[Claim] = CLAIMS) -> tuple[Finding, ...]:
     """Judge claims with a reference model."""
     return tuple(judge(claim, reference) for claim in claims)
-
-
-def __getattr__(name: str) -> Any:
-    """Return a claim by its identifier, such as `overestimated_pressure`: the name of its function in version 1.0."""
-    if name == "judged":
-        return judge
-    if name in _BY_IDENTIFIER:
-        return _BY_IDENTIFIER[name]
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 __all__ = [

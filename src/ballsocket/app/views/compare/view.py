@@ -8,11 +8,11 @@ from functools import partial
 from html import escape
 from typing import Any
 
-from ....catalogue import catalogue
 from ....contact import Contact
 from ....core.checks import check_names
 from ....core.quantities import JOINT
 from ....files.joint_file import JointFile
+from ....model_catalogue import catalogue
 from ....problem.presets import joints
 from ....reports.figure_files import figure_bytes
 from ....reports.pages import table

@@ -8,12 +8,12 @@ from html import escape
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from ....catalogue import catalogue, reference
-from ....compare import Comparison, successful_contacts
+from ....comparison import Comparison, successful_contacts
 from ....contact import Contact
 from ....core.quantities import BEARING, FIELD
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....files.joint_file import JointFile
+from ....model_catalogue import catalogue, reference
 from ....reports.cup_plots import cup_figure
 from ....reports.figure_files import figure_bytes
 from ....reports.press_plots import press_figure

@@ -11,10 +11,10 @@ from html import escape
 from math import prod
 from typing import Any
 
-from ....catalogue import reference
 from ....contact.verdict import Verdict
 from ....evidence.matrix import limit_text, title_of, verdict_text
 from ....evidence.question import LEVELS
+from ....model_catalogue import reference
 from ....reports.evidence_parts import case_text, value_text
 from ....reports.pages import items, table
 from ....studies.expressions import parse_limit

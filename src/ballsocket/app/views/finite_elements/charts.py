@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy
 
-from ....catalogue import judge, reference
 from ....core.quantities import BEARING, JOINT
 from ....elasticity.finite_elements.model import MeshedContact
 from ....elasticity.finite_elements.section import Part
 from ....files.joint_file import JointFile
+from ....model_catalogue import judge, reference
 from ....reports.style import line_of
 from ...pictures import svg
 from ...pictures.chart import legend

@@ -7,7 +7,7 @@ from functools import partial
 from html import escape
 from typing import Any
 
-from ....compare import relative_deviation
+from ....comparison import relative_deviation
 from ....core.quantities import CONTACT, JOINT
 from ....files.joint_file import JointFile
 from ....reports.pages import picture, table

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy
 
-from ....catalogue import judge, reference
 from ....contact import Contact
 from ....contact.describe import to_summary
 from ....core.validity import OutsideDomainError
 from ....elasticity.finite_elements.model import MeshedContact
 from ....files.joint_file import JointFile
+from ....model_catalogue import judge, reference
 from ....reports.figure_files import figure_bytes
 from ....reports.section_plots import section_figure
 from ...pressing import profile

@@ -8,7 +8,7 @@ from math import nan
 
 import numpy
 
-from ....compare import relative_deviation
+from ....comparison import relative_deviation
 from ....core.quantities import CONTACT, DERIVED
 from ....reports.pages import table
 from ....reports.style import BLUE, VERMILLION, LineStyle

@@ -1,0 +1,317 @@
+"""Comparison of models: one joint and one load, pressed by each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from math import inf, radians
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from .contact import Contact, Model
+from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
+from .core.arrays import Array, to_list, where
+from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
+from .core.display import html_table, load_plot
+from .core.quantities import HEADLINE
+from .core.sources import Source
+from .core.validity import OutsideDomainError
+from .model_catalogue import catalogue, reference
+from .problem import Joint
+from .problem.cup import Cup
+from .version import __version__
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Mapping[str, Contact]):
+    """Contacts of several models for one joint and load, by the name of the model.
+
+    Prints as a table of one row per model, with the reasons why models are invalid for this contact.
+
+    Attributes
+    ----------
+    joint : Joint
+    contacts : dict of str to Contact
+    missing : dict of str to str
+        Reason for each model whose domain excludes the joint.
+    """
+
+    joint: Joint
+    contacts: dict[str, Contact]
+    missing: dict[str, str]
+
+    def __getitem__(self, name: str) -> Contact:
+        if name in self.missing:
+            raise KeyError(self.missing[name])
+        if name not in self.contacts:
+            raise KeyError(f"model {shown(name)} is not in this comparison{nearest(name, self.contacts)}")
+        return self.contacts[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.contacts)
+
+    def __len__(self) -> int:
+        return len(self.contacts)
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """Publications of the formulas of all compared models, without duplicates."""
+        listed = [source for contact in self.contacts.values() for source in getattr(contact.model, "sources", ())]
+        return tuple(dict.fromkeys(listed))
+
+    def notes(self) -> list[str]:
+        """List the notes of all contacts and the reasons of missing models, without duplicates.
+
+        Each note has the names of its models.
+        """
+        holders: dict[str, list[str]] = {}
+        for name, contact in self.contacts.items():
+            for note in contact.notes:
+                holders.setdefault(note, []).append(name)
+        return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
+
+    def deviation(self, name: str) -> dict[str, Array] | None:
+        """Compute the relative deviations of a model from the exact solution.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Deviation of each column of `COLUMNS`, of the shape of the contact. None for the exact model itself, for
+            a missing model, and in a comparison without the exact model.
+        """
+        exact = self.contacts.get(reference.name)
+        if exact is None or name == reference.name or name not in self.contacts:
+            return None
+        contact = self.contacts[name]
+        return {
+            column.name: relative_deviation(column.values_of(contact), column.values_of(exact)) for column in COLUMNS
+        }
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Format the table rows, one per model, with the columns of `COLUMN_HEADS`."""
+        return [
+            (name, *(number_text(column.values_of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
+            for name, contact in self.contacts.items()
+        ]
+
+    def summary(self) -> dict[str, Any]:
+        """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
+        results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
+        gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
+        missing = [
+            {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
+            for name, why in self.missing.items()
+        ]
+        return {"version": __version__, "joint": self.joint.summary(), "results": [*results, *missing]}
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Return a pandas data frame with one row per model and point.
+
+        Column names end in units; the last column has the notes.
+
+        Raises
+        ------
+        ImportError
+            pandas is not installed.
+        """
+        needs("study", "pandas")
+        import pandas
+
+        frames = {name: contact.to_frame().assign(notes="; ".join(contact.notes)) for name, contact in self.items()}
+        frames |= {name: pandas.DataFrame({"valid": [False], "notes": [why]}) for name, why in self.missing.items()}
+        table = pandas.concat(frames, names=["model"])
+        return table.droplevel(1) if all(len(frame) == 1 for frame in frames.values()) else table
+
+    def plot(self) -> Figure:
+        """Plot pressure over angle and force over indentation of all models that have a result.
+
+        Raises
+        ------
+        ValueError
+            More than one contact per model, or no model with a result.
+        """
+        figure: Figure = load_plot("contacts")(self.contacts)
+        return figure
+
+    def __repr__(self) -> str:
+        table = [COLUMN_HEADS, *self.rows()]
+        widths = [max(len(row[i]) for row in table) for i in range(len(COLUMN_HEADS))]
+        lines = [
+            "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(pairs))
+            for pairs in (list(zip(row, widths, strict=True)) for row in table)
+        ]
+        return "\n".join([str(self.joint), *lines, *self.notes()])
+
+    def _repr_html_(self) -> str:
+        notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
+        return f"<div>{escape(str(self.joint))}</div>{html_table(COLUMN_HEADS, self.rows())}{notes}"
+
+
+def relative_deviation(value: Array, truth: Array) -> Array:
+    """Compute the relative deviation value/truth - 1.
+
+    It is 0 where both are equal, and NaN where the truth is 0, infinite or NaN.
+    """
+    known = (truth > -inf) & (truth < inf) & (truth != 0)
+    return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
+
+
+def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
+    """Convert deviations to lists for JSON."""
+    return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
+
+
+_SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
+COLUMN_HEADS = ("model", *(column.head for column in _SHOWN), "valid")
+"""Heads of the columns of `Comparison.rows`: model, the quantities of `HEADLINE` with units, and valid."""
+
+
+def compare(
+    joint: Joint,
+    *unnamed: Any,
+    force: Array | None = None,
+    indentation: Array | None = None,
+    half_angle: Array | None = None,
+    models: Mapping[str, Model] | Sequence[Model | str] | None = None,
+    cup: Cup | None = None,
+) -> Comparison:
+    """Compute the contact of one joint and load with several models.
+
+    Parameters
+    ----------
+    joint : Joint
+    force, indentation, half_angle : float or array
+        Exactly one of them, in N, mm or rad.
+    models : mapping of str to Model, or list of Model or str, optional
+        Models by name, or models and names of the catalogue; all models of the catalogue by default.
+    cup : Cup, optional
+        Rim of the socket. Models without a rim are then invalid near it.
+
+    Returns
+    -------
+    Comparison
+        A mapping from name to `Contact`. Models whose domain excludes the joint are in `missing`, with the reason.
+
+    Raises
+    ------
+    ValueError
+        A load that is not allowed; two models of one name in a list.
+    TypeError
+        A load without its name; `models` that is not a mapping or a list of models.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> answers = bs.compare(bs.joints["hess-forsbach"], force=3000.0)
+    >>> round(answers["bartel"].max_pressure, 3)
+    11.717
+    """
+    reject_unnamed_loads(unnamed)
+    named = catalogue if models is None else _models_by_name(models)
+    kind, load = select_load(force=force, indentation=indentation, half_angle=half_angle)
+    keyword: dict[str, Any] = {kind: load}
+    contacts, missing = {}, {}
+    for name, model in named.items():
+        try:
+            contacts[name] = (model if cup is None else model.in_cup(cup)).press(joint, **keyword)
+        except OutsideDomainError as error:
+            missing[name] = str(error)
+    return Comparison(joint, contacts, missing)
+
+
+def _models_by_name(models: Any) -> dict[str, Model]:
+    """Return the models to compare by name, from a mapping or from a list of models and names of the catalogue."""
+    if not isinstance(models, Mapping | list | tuple):
+        raise TypeError(
+            f"models must be a list such as [bs.Exact(), bs.Hertz()] or a mapping {{'exact': bs.Exact()}}, "
+            f"got {shown(models)}"
+        )
+    if isinstance(models, Mapping):
+        pairs = list(models.items())
+    else:
+        listed = [catalogue[model] if isinstance(model, str) else model for model in models]
+        pairs = [(getattr(model, "name", number), model) for number, model in enumerate(listed)]
+    for name, model in pairs:
+        if isinstance(model, type) or not hasattr(model, "press"):
+            raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
+    named = dict(pairs)
+    if len(named) < len(pairs):
+        names = [name for name, _ in pairs]
+        double = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"two of the models are named {double!r}: use a mapping with two names")
+    return named
+
+
+def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]:
+    """Select the contacts of one point that have a result."""
+    return {name: contact for name, contact in comparison.items() if not contact.status.failed}
+
+
+THIN_LINER_RATIO = 12.0
+"""R2/L above which a curve of a numerical model takes seconds."""
+
+_NUMERICAL_SECONDS = 1e-3
+"""Time of one press in s above which a model counts as numerical."""
+
+_MESH_SECONDS = 0.1
+"""Time of one press in s above which a model counts as one that makes meshes."""
+
+_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2
+"""Indentations of a curve of a fast model, relative to the largest."""
+
+_MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
+"""Indentations of a curve of a model that makes meshes, relative to the largest; few, since each range needs a mesh."""
+
+_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)
+"""Half angles of a short curve, relative to the largest."""
+
+MAX_HALF_ANGLE = radians(84.9)
+"""Largest half angle of a short curve in rad."""
+
+
+def is_curve_slow(model: Model, joint: Joint) -> bool:
+    """Check if a force curve of this model and joint takes seconds, as with thin liners."""
+    return model.seconds_a_press > _NUMERICAL_SECONDS and float(joint.thickness_ratio) > THIN_LINER_RATIO
+
+
+def press_short_curve(contact: Contact, model: Model) -> Contact:
+    """Compute 12 contacts at half angles up to 1.15 times that of a contact.
+
+    A given half angle needs no search for the load.
+    """
+    max_half_angle = min(1.15 * float(contact.half_angle), MAX_HALF_ANGLE)
+    return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
+
+
+def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
+    """Compute the force curve of each model, up to 1.15 times the largest indentation of some contacts.
+
+    Parameters
+    ----------
+    contacts : mapping of str to Contact
+        Contacts of one point each, by the name of the model.
+    models : mapping of str to Model
+        Models by the same names.
+
+    Returns
+    -------
+    dict of str to Contact
+        Contacts of a 1-D array of indentations. Slow models have 12, up to 1.15 times their own half angle.
+    """
+    max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
+
+    def curve(contact: Contact, model: Model) -> Contact:
+        """Compute the force curve of one model with a number of points that suits its speed."""
+        if model.seconds_a_press > _MESH_SECONDS:
+            return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
+        if is_curve_slow(model, contact.joint):
+            return press_short_curve(contact, model)
+        return model.press(contact.joint, indentation=max_indentation * _FINE_STEPS)
+
+    return {name: curve(contact, models[name]) for name, contact in contacts.items()}

@@ -1,0 +1,266 @@
+"""Measured values with uncertainties, at loads or of the joint itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf, pi
+from types import MappingProxyType
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import known_name, require, select_load, shown
+from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
+from ..problem import Joint
+from .machine import IDEAL_MACHINE, Machine
+from .observables import CustomObservable
+
+MEASURED: Mapping[str, Quantity] = MappingProxyType(
+    {
+        **{name: quantity for name, quantity in CONTACT.items() if name != "max_pressure_angle"},
+        "pressure": FIELD["pressure"],
+        "pressure_integral": DERIVED["pressure_integral"],
+        **JOINT,
+        **PARTS,
+    }
+)
+"""Quantities that can be measured: those of a contact need a load, those of the joint none."""
+
+ALIASES: Mapping[str, str] = MappingProxyType({"displacement": "indentation"})
+"""Other names of measured quantities; a displacement is positive into the socket, and 0 at first touch."""
+
+OF_JOINT = (*JOINT, *PARTS)
+"""Quantities that are measured without a load, such as the free play of a joint, its `diametral_clearance`."""
+
+
+_FIRST_NOISE = 0.02  # first estimate of an uncertainty that was not stated, over the largest value
+_ZERO_HINT = "; it is positive into the socket and 0 at first touch: for another zero, give the machine an offset"
+_NOT_NEGATIVE = "the value must be 0 or more and finite"  # rule in a message
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measured:
+    """Data set: measured values of one quantity with uncertainties and loads.
+
+    A quantity of the joint itself has no load.
+
+    Parameters
+    ----------
+    quantity : str
+        One of `MEASURED`: "indentation", "half_angle", "area", "max_pressure", "force", ...; "pressure" needs angles. A
+        number of the joint, such as "diametral_clearance", needs no load. "displacement" is another name of the
+        indentation: positive into the socket, 0 at first touch. For another zero, the machine has an offset.
+    values : array (values,)
+        Measured values in mm, N, MPa, rad.
+    uncertainty : float or array, optional
+        Standard uncertainty (k = 1) of the values in their unit, above 0. Without it, `identify` estimates one for the
+        data set from the scatter about the fit.
+    force, indentation, half_angle : array
+        Loads in N, mm or rad; exactly one of the three is given.
+    relative_uncertainty : float
+        Standard uncertainty as a share of each true value, in place of `uncertainty`: `identify` takes it of the fitted
+        values, so that a reading that is low by chance has no larger weight. Default 0: none.
+    load_uncertainty : float or array
+        Standard uncertainty of the loads.
+    angle : array
+        Polar angles in rad from the load axis, for a "pressure".
+    saturation : float
+        Largest reading of a film or sensor. A value at this limit is a lower bound.
+    machine : Machine
+        Machine that reads the indentations.
+    order : array
+        Numbers of the readings in the order of measurement, for a drift of the zero. Default 0, 1, 2, ...
+    observable : CustomObservable
+        Custom quantity; `quantity` is then its name.
+    name : str
+        Name of the data set in messages and figures, such as its file.
+    remark : str
+        Rows of the file that were read, and lines that were left out; empty without such lines.
+
+    Raises
+    ------
+    ValueError
+        A number that is not allowed, with its value and index; an unknown quantity; a missing load.
+    TypeError
+        A machine that is not a `Machine`.
+
+    Examples
+    --------
+    >>> areas = Measured(quantity="area", values=[300.0, 420.0], uncertainty=8.0, force=[1000.0, 2000.0])
+    >>> len(areas)
+    2
+    """
+
+    quantity: str
+    values: Any
+    uncertainty: Any = None
+    force: Any = None
+    indentation: Any = None
+    half_angle: Any = None
+    relative_uncertainty: float = 0.0
+    load_uncertainty: Any = 0.0
+    angle: Any = None
+    saturation: float = inf
+    machine: Machine = IDEAL_MACHINE
+    order: Any = None
+    observable: CustomObservable | None = None
+    name: str = ""
+    remark: str = ""
+    described: Quantity = field(init=False)
+    """Quantity with its title and unit."""
+    load: str = field(init=False, default="")
+    """Name of the load; empty for a quantity of the joint."""
+    has_unknown_noise: bool = field(init=False, default=False)
+    """True if no uncertainty was stated: `uncertainty` is then a start of its estimate."""
+
+    def __post_init__(self) -> None:
+        """Check all fields of the data set, and convert them to arrays."""
+        if not isinstance(self.machine, Machine):
+            raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
+        if self.observable is None:
+            name = ALIASES.get(self.quantity, self.quantity) if isinstance(self.quantity, str) else self.quantity
+            self._set_field("quantity", known_name("quantity", name, MEASURED))
+        self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
+        values = _to_float_array(self._message_label(self.quantity), self.values)
+        self._set_field("values", values)
+        self._check_measured_values(values)
+        share = self.relative_uncertainty
+        require("relative_uncertainty", share, 0 <= share < inf, "a share of each value is at least 0 and finite")
+        if self.uncertainty is None and share:
+            self._set_field("uncertainty", share * abs(values))
+        if self.uncertainty is None:
+            self._set_field("has_unknown_noise", True)
+            self._set_field("uncertainty", _FIRST_NOISE * float(abs(values).max()) or 1.0)
+        self._set_field(
+            "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
+        )
+        sigma, title = self.uncertainty, self._message_label(f"{self.quantity}_uncertainty")
+        require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
+        require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
+        if self.quantity not in OF_JOINT:
+            self._check_and_set_load(values)
+        if (self.angle is not None) != (self.quantity == "pressure"):
+            rule = "needs an angle" if self.angle is None else "takes no angle"
+            raise ValueError(f"{self._message_label(self.quantity)} {rule}")
+        if self.angle is not None:
+            self._set_field("angle", FIELD["angle"].check(self._broadcast_to_values("angle", self.angle, values)))
+        if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
+            raise ValueError(
+                f"{self._message_label(self.quantity)} has a machine, but only indentations are read by one"
+            )
+        self._set_field("order", self._check_reading_numbers(values))
+
+    def _set_field(self, name: str, value: Any) -> None:
+        """Set a field of this frozen data set."""
+        object.__setattr__(self, name, value)
+
+    def _message_label(self, quantity: str) -> str:
+        """Format the names of data set and quantity as a label for messages."""
+        return f"{self.name}: {quantity}" if self.name else quantity
+
+    def _check_reading_numbers(self, values: Numbers) -> Numbers:
+        """Check the sequence numbers of the readings, and return them; 0, 1, 2, ... by default."""
+        if self.order is None:
+            return numpy.arange(float(values.size))
+        reading_numbers = self._broadcast_to_values("order", self.order, values)
+        require(
+            self._message_label("order"),
+            reading_numbers,
+            abs(reading_numbers) < inf,
+            "numbers of readings must be finite",
+        )
+        return reading_numbers
+
+    def _check_measured_values(self, values: Numbers) -> None:
+        """Check that all measured values are present and allowed; ValueError otherwise."""
+        missing_indices = numpy.flatnonzero(numpy.isnan(values))
+        if len(missing_indices):
+            row_numbers = ", ".join(str(index + 1) for index in missing_indices[:8])
+            raise ValueError(
+                f"{self._message_label(self.quantity)} has no number in row {row_numbers}: add it, or omit the row"
+            )
+        if self.observable is not None:
+            return
+        if not self.described.allowed:
+            require(self._message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+        elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
+            allowed = self.described.allows(values)
+            rule = self.described.allowed + (_ZERO_HINT if self.quantity == "indentation" else "")
+            require(self._message_label(self.quantity), values, allowed, rule)
+
+    def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
+        """Repeat one number for all values, or check that there is one number for each value."""
+        number_array = _to_float_array(self._message_label(name), numbers)
+        if number_array.size not in (1, values.size):
+            raise ValueError(
+                f"{self._message_label(name)} must have 1 or {values.size} numbers, got {number_array.size}"
+            )
+        if numpy.isnan(number_array).any():
+            raise ValueError(
+                f"{self._message_label(name)} has no number in row {int(numpy.isnan(number_array).argmax()) + 1}"
+            )
+        return numpy.broadcast_to(number_array, values.shape)
+
+    def _check_and_set_load(self, values: Numbers) -> None:
+        """Check the loads of the data set and their uncertainty, and store both."""
+        kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
+        if kind == self.quantity:
+            raise ValueError(
+                f"{self._message_label(kind)} is both the measured quantity and the load; choose another load"
+            )
+        loads = self._broadcast_to_values(kind, load, values)
+        if self.machine is IDEAL_MACHINE or kind != "indentation":
+            require(self._message_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
+        self._set_field("load", kind)
+        self._set_field(kind, loads)
+        load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
+        require(
+            self._message_label("load_uncertainty"),
+            load_sigma,
+            (load_sigma >= 0) & (load_sigma < inf),
+            _NOT_NEGATIVE,
+        )
+        self._set_field("load_uncertainty", load_sigma)
+        self._check_values_at_zero_load(loads, values)
+
+    def _check_values_at_zero_load(self, load: Numbers, values: Numbers) -> None:
+        """Check that measured values at zero load are 0, unless the machine has a zero error."""
+        if not self.machine.has_zero_error:
+            rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
+            require(self._message_label(self.load), load, (load > 0) | (values == 0), rule)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def loads(self) -> Numbers:
+        """Loads in N, mm or rad, one for each value; empty for a number of the joint."""
+        return getattr(self, self.load) if self.load else numpy.zeros(0)
+
+    @property
+    def saturated(self) -> Numbers:
+        """Mask of the saturated values, which are only lower bounds of the true values."""
+        return numpy.asarray(self.values >= self.saturation)
+
+    def check_area(self, joint: Joint) -> None:
+        """Check that measured contact areas are smaller than half of the ball's surface; ValueError otherwise."""
+        if self.quantity == "area":
+            half_ball_area = 2 * pi * float(joint.ball_radius) ** 2
+            rule = f"a contact area is below half of the ball, 2π R1² = {half_ball_area:.4g} mm²"
+            require(self._message_label("area"), self.values, self.values < half_ball_area, rule)
+
+
+def _to_float_array(name: str, numbers: Any) -> Numbers:
+    """Convert numbers to a one-dimensional array of floats; ValueError if this is impossible."""
+    try:
+        number_array = numpy.asarray(numbers)
+        float_array = numpy.atleast_1d(
+            number_array.astype(float, casting="safe" if number_array.dtype.kind == "c" else "unsafe")
+        )
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name} = {shown(numbers)} must be numbers") from error
+    if float_array.ndim != 1 or float_array.size == 0:
+        raise ValueError(f"{name} of shape {float_array.shape} must be a row of numbers")
+    return float_array

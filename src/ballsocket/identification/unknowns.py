@@ -1,0 +1,261 @@
+"""Unknowns of an identification, their prior distributions, and the scaled parameters of the search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf, log, sqrt
+from typing import Any
+
+import numpy
+
+from ..contact import Model
+from ..core.arrays import Array, Numbers
+from ..core.checks import check_names, require, shown
+from ..core.kinds import Kind
+from ..core.quantities import Quantity
+from ..model_catalogue import catalogue
+from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
+from .machine import Machine
+from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
+from .unknown_kinds import ModelNumber
+
+Prior = Any
+"""Prior of an unknown as a caller states it: two ends, (0.02, 0.3), or a distribution."""
+
+_SEARCH_DEVIATIONS = 8.0  # half width of the search range about a known mean, in standard deviations
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unknown:
+    """Unknown number of an identification, with its prior and search range.
+
+    Attributes
+    ----------
+    name : str
+        "clearance", "liner_young", "work_of_adhesion", "machine.offset".
+    quantity : Quantity
+        Title, unit and allowed range.
+    prior : Rectangular, Normal or LogNormal
+        Prior distribution.
+    low, high : float
+        Ends of the search range.
+    logarithmic : bool
+        True for a logarithmic scale: both ends are above 0, or the prior is log-normal.
+    of_machine : bool
+        True for an error of a machine, False for a number of the joint or of the model.
+    """
+
+    name: str
+    quantity: Quantity
+    prior: Distribution
+    low: float
+    high: float
+    logarithmic: bool
+    of_machine: bool = False
+
+    @property
+    def has_distribution(self) -> bool:
+        """True if the prior is a distribution, False if it is only a range."""
+        return not isinstance(self.prior, Rectangular)
+
+    @property
+    def prior_mean(self) -> float:
+        """Mean of the prior on the search scale, in standard deviations of the prior; 0 for a range."""
+        if isinstance(self.prior, Rectangular):
+            return 0.0
+        return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.prior_deviation
+
+    @property
+    def prior_deviation(self) -> float:
+        """Standard deviation of the prior on the search scale."""
+        if isinstance(self.prior, Normal):
+            return self.prior.deviation
+        if isinstance(self.prior, LogNormal):
+            return log(self.prior.factor)
+        return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
+
+    def is_physical(self, side: int, theta: float) -> bool:
+        """Check if theta is at an end of the range that is a physical limit, such as a compliance of 0."""
+        end = self.high if side > 0 else self.low
+        beyond = end + side * 1e-6 * max(abs(end), 1e-12)
+        return abs(theta - self.to_scale(end) / self.prior_deviation) < 1e-6 and not self.quantity.allows(beyond)
+
+    def to_scale(self, value: Array) -> Array:
+        """Convert a value of the unknown to the search scale: its logarithm, or the value itself."""
+        return numpy.log(value) if self.logarithmic else value
+
+    def from_scale(self, scaled: Array) -> Array:
+        """Convert a number on the search scale to a value of the unknown."""
+        return numpy.exp(scaled) if self.logarithmic else scaled
+
+    def derivative(self, scaled: Array) -> Array:
+        """Compute the derivative of the unknown's value with respect to its number on the search scale."""
+        return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
+
+
+def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
+    """List all unknowns of an identification: free numbers, and machine errors with ranges.
+
+    Parameters
+    ----------
+    free : mapping of str to two ends or a distribution
+        Names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
+    machines : iterable of Machine
+    model : Model
+        Model that must have the free numbers of a model.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known or is stated twice; a number that the model does not have; ends that are not allowed.
+    """
+    priors = {name.replace(".", "_"): prior for name, prior in free.items()}
+    if len(priors) < len(free):
+        raise ValueError(f"an unknown is stated twice: {', '.join(free)}")
+    check_names(priors, FREE_NUMBERS, "among the unknowns")
+    for name in priors:
+        if name in MODEL_NUMBERS:
+            _check_has_number(MODEL_NUMBERS[name], model)
+    number_unknowns = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
+    return (*number_unknowns, *_collect_machine_errors(machines))
+
+
+def _check_has_number(number: ModelNumber, model: Model) -> None:
+    """Check that a contact model has the parameter that is to be identified; ValueError otherwise."""
+    if not number.belongs_to(model):
+        models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
+        raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
+
+
+def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
+    """List the unknown errors of all machines; ValueError if two machines have the same name."""
+    machines_by_name: dict[str, Machine] = {}
+    for machine in machines:
+        if machines_by_name.setdefault(machine.name, machine) != machine:
+            raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
+    return [
+        _make_unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
+        for machine in machines_by_name.values()
+        for error, size in machine.errors
+        if isinstance(size, tuple)
+    ]
+
+
+def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine: bool = False) -> Unknown:
+    """Make an `Unknown` with prior, search range and scale from its stated prior."""
+    prior = _make_prior(name, stated_prior)
+    low, high = _search_range(prior, quantity)
+    for end in (low, high):
+        require(name, end, quantity.allows(end), quantity.allowed)
+    logarithmic_range = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
+    return Unknown(
+        name=name,
+        quantity=quantity,
+        prior=prior,
+        low=low,
+        high=high,
+        logarithmic=logarithmic_range or isinstance(prior, LogNormal),
+        of_machine=of_machine,
+    )
+
+
+def _make_prior(name: str, stated_prior: Prior) -> Distribution:
+    """Convert two ends to a uniform distribution; return a stated distribution unchanged."""
+    if isinstance(stated_prior, Distribution):
+        return stated_prior
+    try:
+        low, high = map(float, stated_prior)
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            f"{name} = {shown(stated_prior)} must be two ends, such as (0.02, 0.3), or a distribution"
+        ) from error
+    if not -inf < low < high < inf:
+        raise ValueError(f"{name} = {shown(stated_prior)} is not allowed: two finite ends in ascending order")
+    return Rectangular(low=low, high=high)
+
+
+def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
+    """Compute the lower and the upper end of the search range of an unknown from its prior.
+
+    They are those of a range, or eight standard deviations about a mean, if allowed.
+    """
+    if isinstance(prior, Rectangular):
+        return prior.low, prior.high
+    if isinstance(prior, LogNormal):
+        factor = prior.factor**_SEARCH_DEVIATIONS
+        return prior.median / factor, prior.median * factor
+    low, high = (prior.mean + side * _SEARCH_DEVIATIONS * prior.deviation for side in (-1, 1))
+    low, high = max(low, prior.low), min(high, prior.high)
+    if not quantity.allows(low):
+        low = 1e-3 * prior.mean
+    return low, high if quantity.allows(high) else 0.5
+
+
+@dataclass(frozen=True)
+class ParameterTransform:
+    """Transform between values of the unknowns and scaled parameters theta.
+
+    Theta is the value, or its logarithm, over the standard deviation of the prior.
+    """
+
+    unknowns: tuple[Unknown, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the unknowns."""
+        return tuple(unknown.name for unknown in self.unknowns)
+
+    @property
+    def low(self) -> Numbers:
+        """Lower ends of the search ranges, as scaled parameters theta (unknowns,)."""
+        return self.to_theta([unknown.low for unknown in self.unknowns])
+
+    @property
+    def high(self) -> Numbers:
+        """Upper ends of the search ranges, as scaled parameters theta (unknowns,)."""
+        return self.to_theta([unknown.high for unknown in self.unknowns])
+
+    def to_theta(self, values: Any) -> Numbers:
+        """Convert values of the unknowns (..., unknowns) to scaled parameters theta."""
+        columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
+        unknowns_and_columns = zip(self.unknowns, columns, strict=True)
+        return numpy.stack(
+            [unknown.to_scale(column) / unknown.prior_deviation for unknown, column in unknowns_and_columns], axis=-1
+        )
+
+    def to_values(self, theta: Numbers) -> Numbers:
+        """Convert scaled parameters theta (..., unknowns) to values of the unknowns."""
+        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        return numpy.stack(
+            [unknown.from_scale(column * unknown.prior_deviation) for unknown, column in unknowns_and_columns], axis=-1
+        )
+
+    def derivatives(self, theta: Numbers) -> Numbers:
+        """Compute the derivative of each unknown's value with respect to its theta: (..., unknowns)."""
+        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        columns = [
+            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation
+            for unknown, column in unknowns_and_columns
+        ]
+        return numpy.stack(columns, axis=-1)
+
+    def prior_residuals(self, theta: Numbers) -> Numbers:
+        """Compute the deviation of each theta from its prior mean, in standard deviations.
+
+        It is 0 for a range.
+        """
+        has_distribution = numpy.array([unknown.has_distribution for unknown in self.unknowns])
+        return numpy.where(has_distribution, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
+
+
+def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
+    """Compute the logarithm of the prior density of theta, up to a constant; -inf outside the search ranges.
+
+    All values in a range are equally likely.
+    """
+    in_range = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
+    has_range = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
+    log_jacobian = numpy.sum(has_range * numpy.log(transform.derivatives(theta)), axis=-1)
+    half_squares = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
+    return numpy.where(in_range, log_jacobian - half_squares, -inf)

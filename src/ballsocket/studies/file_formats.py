@@ -1,0 +1,224 @@
+"""Export of a study to NetCDF, CSV, Parquet or Zarr, and access to its points in chunks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..contact.verdict import Verdict
+from ..core.checks import needs
+from ..core.quantities import QUANTITIES, Quantity
+from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
+from ..core.storage.folders import folder_at, open_address
+from .metadata import derived_lengths, invalid_reasons
+from .task import BOUNDS, VERDICT, Blocks
+
+if TYPE_CHECKING:
+    import xarray
+
+SUFFIXES = (".nc", ".csv", ".parquet", ".zarr")
+"""Endings of the file names of exports."""
+
+_MAX_CHUNK_POINTS = 1 << 18
+"""Largest number of points of a chunk."""
+
+_QUOTED_CHARACTERS = set(',"\r\n')
+"""Characters that only a quoted cell may contain."""
+
+
+def dimension_names(study: xarray.Dataset) -> tuple[str, ...]:
+    """Return the names of the dimensions of a study, in the order of its arrays."""
+    return tuple(str(dim) for dim in next(iter(study.data_vars.values())).dims)
+
+
+def _chunk_blocks(study: xarray.Dataset) -> Blocks:
+    """Divide a study into chunks that fit into the memory."""
+    return Blocks.divide(tuple(study.sizes[dim] for dim in dimension_names(study)), _MAX_CHUNK_POINTS)
+
+
+def iterate_chunks(study: xarray.Dataset) -> Iterator[xarray.Dataset]:
+    """Load the chunks of a study one after the other, in the order of the points; the last dimension varies fastest."""
+    dims, blocks = dimension_names(study), _chunk_blocks(study)
+    for number in range(len(blocks)):
+        yield study.isel(dict(zip(dims, blocks[number], strict=True))).load()
+
+
+def check_suffix(path: Path) -> None:
+    """Check that a path ends like a format of exports, and that a file can be written there.
+
+    Raises
+    ------
+    ValueError
+        Another ending, a folder that does not exist, or a Zarr group that exists.
+    ImportError
+        The library of a format, or of the remote store of an address, is missing.
+    OSError
+        The remote store of an address does not respond.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
+    needs("study", *_LIBRARIES.get(suffix, ()))
+    address = address_of(path)
+    if address is not None:
+        _open_export(address)
+        return
+    check_parent_folder(path)
+    if suffix == ".zarr" and path.exists():
+        raise ValueError(f"{path} exists: choose another name for the Zarr group, or remove it")
+
+
+_LIBRARIES = {".nc": ("h5netcdf",), ".parquet": ("pyarrow",), ".zarr": ("zarr",)}
+
+
+def export(study: xarray.Dataset, path: str | Path) -> None:
+    """Write a study to a NetCDF (.nc), CSV (.csv), Parquet (.parquet) or Zarr (.zarr) file, in chunks.
+
+    The file appears when it is complete. CSV and Parquet have a row for each point: first the parameters in the order
+    of the design, then the lengths that follow from them, the quantities, and `why_not_valid`, the reason of an invalid
+    point. Column names end in their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have
+    the labelled arrays of the study in mm, N, MPa, rad.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        Result of `study`.
+    path : path or str
+        Local path, or address of a remote store that fsspec knows, such as "s3://bucket/hips.parquet". A file for an
+        address is first written to a temporary folder.
+
+    Raises
+    ------
+    ValueError
+        A path with another ending, no such folder, or a Zarr group that exists.
+    ImportError
+        The library of a format, or of a remote store, is missing.
+    OSError
+        The file cannot be written.
+    """
+    check_suffix(Path(path))
+    address = address_of(path)
+    if address is not None:
+        _upload(study, address)
+        return
+    path = Path(path)
+    write = {".nc": _write_netcdf, ".csv": _write_csv, ".parquet": _write_parquet, ".zarr": _write_zarr}
+    with write_atomically(path) as draft:
+        write[path.suffix.lower()](study, draft)
+
+
+def _upload(study: xarray.Dataset, address: str) -> None:
+    """Write a study to the address of a remote store."""
+    with TemporaryDirectory() as folder:
+        local = Path(folder) / address.rpartition("/")[2]
+        export(study, local)
+        system, target = _open_export(address)
+        try:
+            if local.is_dir():
+                system.put(f"{local}/", f"{target}/", recursive=True)
+            else:
+                system.put_file(str(local), target)
+        except Exception as error:  # each store raises errors of its own
+            raise OSError(None, f"cannot be written: {error}", address) from error
+
+
+def _open_export(address: str) -> tuple[Any, str]:
+    """Return the file system of an address and the path in it; ValueError for a Zarr group that exists."""
+    system, target = open_address(address)
+    exists = folder_at(address).exists()
+    if exists and target.lower().endswith(".zarr"):
+        raise ValueError(f"{address} exists: choose another name for the Zarr group, or remove it")
+    return system, target
+
+
+def _plain_dataset(study: xarray.Dataset) -> xarray.Dataset:
+    """Return a study in chunks, with attributes of text only and without the encoding of its store."""
+    plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})
+    plain.attrs.pop("study", None)
+    return plain.chunk(dict(zip(dimension_names(study), _chunk_blocks(study).size, strict=True)))
+
+
+def _write_netcdf(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a NetCDF file."""
+    _plain_dataset(study).to_netcdf(path, engine="h5netcdf")
+
+
+def _write_zarr(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a Zarr group."""
+    _plain_dataset(study).drop_encoding().to_zarr(path, zarr_format=3, consolidated=False)
+
+
+def _write_parquet(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a Parquet file, one row group for each chunk."""
+    import pyarrow
+    from pyarrow import parquet
+
+    metadata = {key: value for key, value in study.attrs.items() if isinstance(value, str)}
+    writer = None
+    try:
+        for columns in _iterate_columns(study):
+            table = pyarrow.table(columns)
+            if writer is None:
+                writer = parquet.ParquetWriter(path, table.schema.with_metadata(metadata), compression="zstd")
+            writer.write_table(table.cast(writer.schema))
+    finally:
+        if writer is not None:
+            writer.close()
+
+
+def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]]:
+    """Yield the columns of each chunk by their heads, in the units of files."""
+    names = [str(name) for name in (*study.coords, *study.data_vars)]
+    dims, reasons = dimension_names(study), invalid_reasons(study)
+    for chunk in iterate_chunks(study):
+        variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
+        columns = (variable.transpose(*dims).values.ravel() for variable in variables)
+        values = dict(zip(names, columns, strict=True))
+        parameters = {name: values[name] for name in map(str, study.coords)}
+        values = {**parameters, **derived_lengths(study, parameters), **values}
+        kinds = zip(values["status"].tolist(), values.pop("broken_limit").tolist(), strict=True)
+        why = [reasons.get(kind, "") for kind in kinds]
+        heads = {_column_head(name): _in_written_unit(name, column) for name, column in values.items()}
+        yield {**heads, "why_not_valid": numpy.array(why)}
+
+
+def _write_csv(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a CSV file."""
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        for number, columns in enumerate(_iterate_columns(study)):
+            if number == 0:
+                stream.write(",".join(columns) + "\n")
+            rows = zip(*columns.values(), strict=True)
+            stream.writelines(",".join(map(_cell_text, row)) + "\n" for row in rows)
+
+
+def _column_head(name: str) -> str:
+    """Return the head of a variable's column, with its unit."""
+    quantity = _quantity(name)
+    return name if quantity is None else quantity.column
+
+
+def _in_written_unit(name: str, column: numpy.ndarray) -> numpy.ndarray:
+    """Convert a column from internal units to the units of files, and verdicts to words."""
+    if name == VERDICT:
+        return numpy.array([*(verdict.word for verdict in Verdict), "no result"])[column]
+    quantity = _quantity(name)
+    return column if quantity is None else column * quantity.written.factor
+
+
+def _quantity(name: str) -> Quantity | None:
+    """Return the quantity of a variable, or of the bound of one; None for another variable."""
+    return BOUNDS.get(name) or QUANTITIES.get(name)
+
+
+def _cell_text(value: object) -> str:
+    """Format a value as a cell of a CSV file."""
+    if isinstance(value, numpy.bool_):
+        return "1" if value else "0"
+    if isinstance(value, str):
+        return '"{}"'.format(value.replace('"', '""')) if _QUOTED_CHARACTERS & set(value) else str(value)
+    return repr(value.item()) if isinstance(value, numpy.generic) else str(value)

@@ -1,0 +1,227 @@
+"""Measurements, machines and unknowns: their numbers, the search scale, and refusals with the reason."""
+
+from math import inf, log, nan, sqrt
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.identification import CustomObservable, HeavyTailed, Machine, Measured, oscillation, sliding_torque
+from ballsocket.identification.misfit import by_tracing
+from ballsocket.identification.synthetic import trials
+from ballsocket.identification.unknowns import ParameterTransform, collect_unknowns, log_prior
+from ballsocket.studies import LogNormal, Normal, Rectangular
+
+from .rigid import JOINT, MODEL
+
+FORCE = [100.0, 400.0, 900.0]
+CLEARANCE, YOUNG = {"clearance": (0.02, 0.3)}, {"liner.young": (400.0, 2000.0)}
+COMPLIANT = Machine(compliance=1e-6)
+
+
+def measured(quantity="indentation", values=(0.01, 0.02, 0.03), force=FORCE, uncertainty=1e-3, **settings):
+    return Measured(quantity=quantity, values=values, uncertainty=uncertainty, force=force, **settings)
+
+
+def identified(free=CLEARANCE, model=MODEL, joint=JOINT, data=None, **options):
+    return bs.identify(model, joint, measured() if data is None else data, free, **options)
+
+
+def unknowns(free, *machines):
+    return collect_unknowns(free, machines, MODEL)
+
+
+def torques():
+    return measured("friction_torque", observable=sliding_torque())
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        # numbers of a set of measurements
+        (lambda: measured(uncertainty=[1e-3, nan, 1e-3]), "indentation_uncertainty has no number in row 2"),
+        (lambda: measured(uncertainty=inf), "indentation_uncertainty.* an uncertainty is above 0 and finite"),
+        (lambda: measured(name="film", uncertainty=0.0), r"film: indentation_uncertainty\[0\] = 0 \(and 2 more\)"),
+        (lambda: measured(order=[0.0, inf, 2.0]), r"order\[1\] = inf is not allowed: numbers of readings must be fin"),
+        (lambda: measured(values=[nan, 0.02, nan]), "indentation has no number in row 1, 3: add it, or omit the row"),
+        (lambda: measured(values=[nan] * 12, force=[1.0] * 12), "no number in row 1, 2, 3, 4, 5, 6, 7, 8: add it"),
+        (lambda: measured(values=[[0.01, 0.02]]), r"indentation of shape \(1, 2\) must be a row of numbers"),
+        (lambda: measured(values=["thick", "thin", "flat"]), "indentation = .* must be numbers"),
+        *((lambda v=v: measured(values=[v, 0.03]), "indentation.* must be numbers") for v in (0.02 + 1j, 10**400)),
+        (lambda: measured("displacement", values=-0.01, force=1.0), "positive into the socket and 0 at first touch"),
+        (lambda: measured("stiffness", values=[1.0, -2.0, 3.0]), r"stiffness\[1\] = -2 .*the value must be 0 or more"),
+        (lambda: measured("energy", values=[1.0, inf, 3.0]), r"energy\[1\] = inf .*the value must be 0 or more"),
+        (lambda: measured(force=[100.0, 200.0]), "force must have 1 or 3 numbers, got 2"),
+        (lambda: measured(force=[-1.0, 1.0, 2.0]), r"force\[0\] = -1 is not allowed"),
+        (lambda: measured(force=[0.0, 1.0, 2.0], machine=COMPLIANT), "force.* = 0 .*: at first touch the indentation"),
+        *((lambda u=u: measured(load_uncertainty=u), "load_.* must be 0 or more and finite") for u in (-1.0, inf)),
+        (lambda: measured(saturation=0.0), "saturation = 0 is not allowed: the largest reading of a film is above 0"),
+        # kinds of measurements
+        (lambda: measured("indentations"), "quantity 'indentations' is not known; did you mean 'indentation'?"),
+        (lambda: measured("force"), "force is both the measured quantity and the load; choose another load"),
+        (lambda: measured(force=None), "exactly one of force, indentation, half_angle is needed, got none"),
+        (lambda: measured(angle=0.1), "indentation takes no angle"),
+        (lambda: measured("pressure"), "pressure needs an angle"),
+        (lambda: measured("pressure", angle=4.0), "a polar angle lies between -pi and pi"),
+        (lambda: measured("area", machine=Machine()), "area has a machine, but only indentations are read by one"),
+        *((lambda mass=mass: oscillation(mass), "a mass .kg. is above 0 and finite") for mass in (0.0, inf)),
+        *((lambda angle=angle: sliding_torque(angle), "axis_angle = .* not allowed") for angle in (-0.1, 1.6, nan)),
+        *((lambda n=n: HeavyTailed(degrees=n), "degrees of freedom are above 0 and finite") for n in (0.0, inf, nan)),
+        # machines
+        (lambda: Machine(compliance=(-1e-6, 1e-6)), "a machine's compliance .mm/N. is 0 or more"),
+        (lambda: Machine(offset=(0.1, 0.1)), "offset = .* must be a number, or two ends in ascending order"),
+        *((lambda o=o: Machine(drift=o), "two ends in ascending order") for o in ((0.1, 0.2, 0.3), (-inf, 0.0))),
+        (lambda: unknowns({}, Machine(offset=1.0), Machine(offset=2.0)), "two machines have the name 'machine'; use"),
+        # unknowns
+        (lambda: unknowns({**YOUNG, "liner_young": (1.0, 2.0)}), "an unknown is stated twice"),
+        *((lambda e=e: unknowns({"clearance": (0.1, e)}), "two finite ends in ascending order") for e in (inf, 0.1)),
+        *((lambda e=e: unknowns({"clearance": e}), "must be two ends, such as") for e in ((0.1, 0.2, 0.3), "wide")),
+        (lambda: unknowns({"clearence": (0.1, 0.2)}), "'clearence' among the unknowns is not known; did you mean 'cl"),
+        (lambda: unknowns({"liner_poisson": (0.3, 0.6)}), "liner_poisson = 0.6 is not allowed"),
+        (lambda: unknowns({"clearance": (-0.1, 0.1)}), "clearance = -0.1 is not allowed: a radial clearance"),
+        (lambda: identified({"work_of_adhesion": (1e-5, 1e-3)}), "not a number of the model .*: adhesive"),
+        (lambda: identified({"work_of_adhesion": (-1e-5, 1e-3)}, bs.AdhesiveSocket()), "= -1e-05 .*a work of adhesion"),
+        (lambda: identified({"work_of_adhesio": (1e-5, 1e-3)}), "did you mean 'work_of_adhesion'"),
+        # identification
+        (lambda: identified({}), "free has no unknowns"),
+        (lambda: identified({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}), "are one too many"),
+        (lambda: identified({**CLEARANCE, **YOUNG}, data=measured(values=0.02, force=9.0)), "1 values do not suff"),
+        (lambda: identified(data=measured(values=0.02, force=9.0, uncertainty=None)), "is missing, and 1 values are t"),
+        (lambda: identified(data=measured("area", [10.0, 5e3, 20.0])), r"area\[1\] = 5000 .* below half of the ball"),
+        (lambda: identified(data=[]), "data must have at least one set of measurements"),
+        (lambda: identified(joint=JOINT.replace(clearance=np.array([0.1, 0.2]))), "identify one joint at a time"),
+        (lambda: identified({"liner_thickness": (0.05, 0.1)}, bs.Tabulated()), "has no result for all the data"),
+        (lambda: identified(data=torques()), "data of friction_torque depend on friction_coefficient: free it, with"),
+        (lambda: identified({**CLEARANCE, "friction_coefficient": (0.0, 0.3)}), "no data depend on friction"),
+        (lambda: identified({"friction_coefficient": (-0.1, 0.3)}, data=torques()), "-0.1 .*: a coefficient of fric"),
+        (lambda: identified(model=bs.Exact(), slopes=by_tracing), "exact cannot be traced by JAX: use by_differences"),
+        (lambda: trials(identified(), 0), "count = 0 is not allowed: 1 trial or more"),
+        # kinds of arguments
+        (lambda: identified(model="tabulated"), r"^model must be a model, such as bs.Tabulated\(\), got 'tabulated'"),
+        (lambda: identified(joint="hip-36"), "^joint must be a Joint"),
+        (lambda: identified(data=[3.0]), "^data must be sets of Measured, got 3.0"),
+        (lambda: measured(machine="press"), "^machine must be a Machine, got 'press'"),
+        (lambda: Machine(offsett=0.1), "^'offsett' is not an error of a machine; did you mean 'offset'"),
+    ],
+)
+def test_a_wrong_number_or_argument_is_refused_with_the_reason(call, message):
+    with pytest.raises(TypeError if message.startswith("^") else ValueError, match=message):
+        call()
+
+
+def test_numbers_become_rows_of_the_values():
+    data = measured(load_uncertainty=5.0)
+    for row, expected in (
+        (data.values, [0.01, 0.02, 0.03]),
+        (data.uncertainty, [1e-3] * 3),
+        (data.loads, FORCE),
+        (data.load_uncertainty, [5.0] * 3),
+        (data.order, [0.0, 1.0, 2.0]),
+        (measured().load_uncertainty, [0.0] * 3),
+        (data.saturated, [False] * 3),
+        (measured(values=5.0, force=FORCE[:1]).values, [5.0]),
+        (measured(values=[0.0, 0.02, 0.03], force=[0.0, 100.0, 200.0]).values, [0.0, 0.02, 0.03]),  # no load, no value
+        (measured("max_pressure", [4.0, 7.0, 8.0], saturation=7.0).saturated, [False, True, True]),
+    ):
+        np.testing.assert_array_equal(row, expected)
+    assert (len(data), data.load, data.described.title) == (3, "force", "indentation")
+    of_joint = Measured(quantity="liner_young", values=[900.0, 950.0], uncertainty=[10.0, 20.0])
+    assert (of_joint.load, len(of_joint.loads), len(of_joint)) == ("", 0, 2)
+
+
+def test_a_machine_with_a_zero_error_may_read_below_zero_and_without_a_load():
+    for machine in (Machine(offset=-0.02), Machine(drift=-0.02), Machine(offset=(-0.1, 0.0))):
+        assert measured(values=[-0.01, 0.0, 0.02], force=[0.0, 100.0, 200.0], machine=machine).values[0] == -0.01
+        by_depth = measured("force", FORCE, None, indentation=[-0.01, 0.02, 0.03], machine=machine)
+        assert by_depth.loads[0] == -0.01
+
+
+def test_an_area_is_at_most_half_of_the_ball():
+    half = 2 * np.pi * JOINT.ball_radius**2
+    measured("area", [0.999 * half] * 3).check_area(JOINT)
+    measured(values=[1e4, 2e4, 3e4]).check_area(JOINT)
+    with pytest.raises(ValueError, match=r"area\[0\] = .* is not allowed: a contact area is below half of the ball"):
+        measured("area", [1.001 * half] * 3).check_area(JOINT)
+
+
+def test_a_custom_observable_is_read_from_contacts_with_any_name_and_values():
+    contact = MODEL.press(JOINT, force=1000.0)
+    frequency = oscillation(2.0).read(contact)
+    assert (2 * np.pi * frequency) ** 2 * 2.0 == pytest.approx(1e3 * contact.stiffness)
+    twice = CustomObservable(oscillation(1.0).described, lambda contact: -2 * contact.force)
+    data = measured("pull", [-200.0, -400.0, -600.0], observable=twice)
+    assert (data.described, data.quantity) == (twice.described, "pull")
+
+
+def unknown_of(name, prior, machines=()):
+    return collect_unknowns({name: prior}, machines, MODEL)[0]
+
+
+RANGE = unknown_of("clearance", (0.02, 0.3))
+LINEAR = unknown_of("clearance", (0.0, 0.3))
+POISSON = unknown_of("liner_poisson", (0.3, 0.48))
+NORMAL = unknown_of("liner.young", Normal(mean=900.0, deviation=50.0))
+FACTOR = unknown_of("clearance", LogNormal(median=0.1, factor=1.2))
+ALL = ParameterTransform((RANGE, POISSON, NORMAL, FACTOR))
+VALUES = np.array([[0.05, 0.4, 860.0, 0.09], [0.2, 0.31, 1000.0, 0.13]])
+
+
+def test_a_range_above_zero_is_searched_on_a_logarithmic_scale_in_deviations_of_its_prior():
+    assert [unknown.logarithmic for unknown in (RANGE, FACTOR, LINEAR, POISSON, NORMAL)] == [True, True, *[False] * 3]
+    assert [unknown.has_distribution for unknown in (RANGE, POISSON, NORMAL, FACTOR)] == [False, False, True, True]
+    deviations = [unknown.prior_deviation for unknown in (RANGE, LINEAR, NORMAL, FACTOR)]
+    assert deviations == pytest.approx([log(15.0) / sqrt(12), 0.3 / sqrt(12), 50.0, log(1.2)])
+    means = [unknown.prior_mean for unknown in (RANGE, NORMAL, FACTOR)]
+    assert means == pytest.approx([0.0, 18.0, log(0.1) / log(1.2)])
+
+
+def test_theta_is_the_scaled_value_over_the_span_with_its_derivatives():
+    theta, scaled = ALL.to_theta(VALUES), VALUES.copy()
+    scaled[:, [0, 3]] = np.log(VALUES[:, [0, 3]])
+    np.testing.assert_allclose(theta, scaled / [unknown.prior_deviation for unknown in ALL.unknowns], rtol=1e-14)
+    np.testing.assert_allclose(ALL.to_values(theta), VALUES, rtol=1e-13)
+    np.testing.assert_allclose(ALL.low, ALL.to_theta([unknown.low for unknown in ALL.unknowns]))
+    assert ALL.names == ("clearance", "liner_poisson", "liner_young", "clearance")
+    for index, shift in enumerate(1e-6 * np.eye(4)):
+        slope = (ALL.to_values(theta + shift) - ALL.to_values(theta - shift)) / 2e-6
+        np.testing.assert_allclose(ALL.derivatives(theta)[:, index], slope[:, index], rtol=1e-7)
+
+
+def test_the_log_prior_is_flat_in_the_value_of_a_range_and_minus_half_the_squared_distance_of_a_distribution():
+    transform = ParameterTransform((RANGE,))
+    density = log_prior(transform, transform.to_theta([[0.03], [0.06]]))
+    assert density[1] - density[0] == pytest.approx(log(2.0))  # d value / d theta grows with the value
+    assert log_prior(transform, transform.to_theta([[0.019], [0.31]])).tolist() == [-inf, -inf]
+    assert np.isfinite(log_prior(transform, np.stack([transform.low, transform.high]))).all()
+    transform = ParameterTransform((NORMAL, FACTOR))
+    theta = transform.to_theta([[900.0, 0.1], [950.0, 0.1], [900.0, 0.144]])
+    np.testing.assert_allclose(log_prior(transform, theta), [0.0, -0.5, -2.0], atol=1e-9)
+
+
+def test_distributions_are_searched_within_eight_standard_deviations_of_allowed_values():
+    assert (NORMAL.low, NORMAL.high) == (500.0, 1300.0)
+    assert (FACTOR.low, FACTOR.high) == pytest.approx((0.1 / 1.2**8, 0.1 * 1.2**8))
+    cut = unknown_of("liner_young", Normal(mean=900.0, deviation=50.0, low=850.0, high=1000.0))
+    assert (cut.low, cut.high) == (850.0, 1000.0)
+    assert unknown_of("liner_young", Normal(mean=900.0, deviation=300.0)).low == pytest.approx(0.9)
+    assert unknown_of("liner_poisson", Normal(mean=0.45, deviation=0.02)).high == 0.5
+
+
+def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
+    compliance, offset = collect_unknowns({}, [Machine(compliance=(0.0, 1e-5), offset=(0.0, 0.01))], MODEL)
+    low = compliance.to_scale(0.0) / compliance.prior_deviation
+    assert compliance.is_physical(-1, low)
+    assert not compliance.is_physical(-1, low + 1e-3)
+    assert not compliance.is_physical(1, compliance.high / compliance.prior_deviation)
+    assert not offset.is_physical(-1, 0.0)  # which may be negative
+    poisson = unknown_of("liner_poisson", (0.3, 0.5))
+    assert poisson.is_physical(1, 0.5 / poisson.prior_deviation)
+    assert not POISSON.is_physical(1, 0.48 / POISSON.prior_deviation)
+
+
+def test_unknowns_are_those_of_the_joint_and_then_those_of_machines():
+    machines = [Machine(drift=(-1e-3, 1e-3), compliance=(0.0, 1e-5), name="a"), Machine(name="b"), Machine(name="")]
+    unknowns = collect_unknowns({"clearance": (0.1, 0.2)}, [*machines, machines[0]], MODEL)
+    kinds = [(unknown.name, unknown.of_machine) for unknown in unknowns]
+    assert kinds == [("clearance", False), ("a.compliance", True), ("a.drift", True)]
+    assert isinstance(unknowns[0].prior, Rectangular)

@@ -1,0 +1,215 @@
+"""Registry of unknowns: work of adhesion, friction, errors of a machine, and the cost of a new one."""
+
+import copy
+import json
+import os
+import pickle
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from math import pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.identification import MACHINE_ERRORS, MODEL_NUMBERS, Machine, Measured, sliding_torque
+from ballsocket.identification.file import read_identify
+from ballsocket.identification.misfit import by_differences
+from ballsocket.problem.cup import Cup
+from ballsocket.studies import Normal
+
+from ..extent import some
+from ..places import CONTRIBUTING
+
+HIP = bs.joints["hess-forsbach"]
+FORCE = np.linspace(0.5, 40.0, 12)
+MODEL = bs.AdhesiveSocket(work_of_adhesion=2e-4)
+CONTACT = MODEL.press(HIP, force=FORCE)
+
+
+def indentations(**settings):
+    return Measured(quantity="indentation", values=CONTACT.indentation, uncertainty=1e-6, force=FORCE, **settings)
+
+
+def test_the_work_of_adhesion_is_identified_from_indentations_at_small_forces():
+    start = bs.AdhesiveSocket()
+    result = bs.identify(start, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3), "clearance": (0.05, 0.2)})
+    assert result.point == pytest.approx({"work_of_adhesion": 2e-4, "clearance": HIP.clearance}, rel=1e-3)
+    assert result.identifiable
+    assert result["work_of_adhesion"].unit == "N/mm"
+    assert result.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
+    assert result.joint.clearance == pytest.approx(HIP.clearance, rel=1e-3)
+    assert result.misfit.forward.model is start
+    alone = bs.identify(start, HIP, indentations(), {"work_of_adhesion": (0.0, 1e-3)})
+    assert alone.point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-4)
+    assert alone.joint == HIP
+    known = bs.identify(start, HIP, indentations(), {"work_of_adhesion": Normal(mean=3e-4, deviation=1e-8)})
+    assert known.point["work_of_adhesion"] == pytest.approx(3e-4, rel=1e-2)
+    covered = start.in_cup(Cup(arc_of_cover=np.radians(150.0)))
+    inside = bs.identify(covered, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3)}).model
+    assert inside.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
+    assert inside.cup == covered.cup
+
+
+@pytest.mark.parametrize("name", MODEL_NUMBERS)
+def test_a_number_of_a_model_is_identified_from_presses_with_it(name):
+    number = MODEL_NUMBERS[name]
+    model = next(filter(number.belongs_to, bs.catalogue.values()))
+    usual = getattr(model, name, None) or getattr(model.press(HIP, force=20.0), name, 0.0) or 2e-4
+    low, truth = number.insert_into(model, np.array([[0.5], [1.3]]) * usual).press(HIP, force=FORCE).indentation
+    alone = number.insert_into(model, 1.3 * usual).press(HIP, force=FORCE).indentation
+    assert truth == pytest.approx(alone, rel=1e-9)
+    assert np.abs(low - truth).max() > 1e-5
+    reading = Measured(quantity="indentation", values=truth, uncertainty=1e-6, force=FORCE)
+    result = bs.identify(model, HIP, reading, {name: (0.5 * usual, 3.0 * usual)})
+    assert result.point == pytest.approx({name: 1.3 * usual}, rel=1e-3)
+    with pytest.raises(ValueError, match=re.escape(number.quantity.allowed.partition(" ")[0])):
+        bs.identify(model, HIP, reading, {name: (-2.0, -1.0)})
+
+
+def identified_file(folder, model, free, data):
+    text = f'model = "{model}"\njoint = "hess-forsbach"\n[free]\n{free}\n[[data]]\n{data}\n'
+    (folder / "data.toml").write_text(text, "utf-8")
+    return read_identify(folder / "data.toml").identify_unknowns().point
+
+
+def test_a_file_frees_a_number_of_the_model(tmp_path):
+    values = ", ".join(f'"{1e3 * value:.9f} um"' for value in CONTACT.indentation)
+    data = f'quantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\nuncertainty = "1 nm"'
+    point = identified_file(tmp_path, "adhesive", 'work_of_adhesion = "0.01..1 J/m^2"', data)
+    assert point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-3)
+
+
+LOADS = np.linspace(300.0, 3000.0, 5)
+SLIDING = bs.HessForsbach().press(HIP, force=LOADS)
+FRICTION = {"friction_coefficient": (0.0, 0.3)}
+
+
+def torques(values=None, axis_angle=pi / 2):
+    """Make friction torques of μ = 0.06, or of stated values."""
+    values = SLIDING.friction_torque(0.06, axis_angle) if values is None else values
+    data = {"quantity": "friction_torque", "values": values, "uncertainty": 20.0, "force": LOADS}
+    return Measured(**data, observable=sliding_torque(axis_angle))
+
+
+def identified(data, free=FRICTION):
+    return bs.identify(bs.HessForsbach(), HIP, data, free)
+
+
+def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis():
+    for axis_angle in some([0.7, 0.0, pi / 2], 1):
+        result = identified(torques(axis_angle=axis_angle))
+        assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
+        assert result.identifiable
+        assert result["friction_coefficient"].unit == "1"
+        assert (result.joint, result.model) == (HIP, bs.HessForsbach())
+    press = Measured(quantity="indentation", values=SLIDING.indentation, uncertainty=1e-4, force=LOADS)
+    result = identified([press, torques()], {"clearance": (0.02, 0.3), **FRICTION})
+    assert result.point == pytest.approx({"clearance": HIP.clearance, "friction_coefficient": 0.06}, rel=1e-4)
+    assert result.identifiable
+
+
+def test_estimate_and_band_of_friction_are_those_of_weighted_linear_regression():
+    """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
+    lever = np.asarray(SLIDING.friction_torque(1.0))
+    values = 0.06 * lever + 20.0 * np.array([0.5, -1.0, 1.2, 0.3, -0.8])
+    estimate = identified(torques(values))["friction_coefficient"]
+    assert estimate.value == pytest.approx(lever @ values / (lever @ lever), rel=1e-6)
+    half = 1.959964 * 20.0 / sqrt(lever @ lever)
+    assert (estimate.high - estimate.low) / 2 == pytest.approx(half, rel=1e-3)
+
+
+def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
+    pytest.importorskip("jax")
+    from ballsocket.identification.misfit import by_tracing
+
+    misfit = identified(torques()).misfit
+    arguments = misfit.forward, misfit.transform, misfit.transform.to_theta([0.06])
+    for traced, differences in zip(by_tracing(*arguments), by_differences(*arguments), strict=True):
+        np.testing.assert_allclose(traced, differences, rtol=1e-8)
+
+
+@pytest.mark.parametrize(("axis", "angle"), some([('axis_angle = "0 deg"', 0.0), ("", pi / 2)], 1))
+def test_a_file_frees_the_coefficient_of_friction(tmp_path, axis, angle):
+    text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in SLIDING.friction_torque(0.06, angle))
+    data = f'quantity = "friction_torque"\nvalues = [{text}]\nforce = {LOADS.tolist()}\nuncertainty = "2 %"\n{axis}'
+    point = identified_file(tmp_path, "hess-forsbach", 'friction_coefficient = "0..0.3"', data)
+    assert point == pytest.approx({"friction_coefficient": 0.06}, rel=1e-6)
+
+
+def test_a_machine_has_every_registered_error():
+    machine = Machine(**dict.fromkeys(MACHINE_ERRORS, 1e-06), name="press")
+    assert machine.known_errors() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
+    assert Machine().known_errors() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
+    assert Machine(offset=(-1.0, 2.0)).unknown_errors == {"machine.offset": (-1.0, 2.0)}
+    assert Machine(offset=0.1) == Machine(offset=0.1)
+    assert Machine(offset=0.1) != Machine(drift=0.1)
+    assert pickle.loads(pickle.dumps(machine)) == copy.deepcopy(machine) == machine
+    assert replace(machine, offset=0.3).known_errors()["press.offset"] == 0.3
+    with pytest.raises(AttributeError, match="no attribute 'offsett'"):
+        _ = Machine().offsett
+
+
+PAGE = (CONTRIBUTING / "unknown.md").read_text("utf-8")
+FILES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+PATHS = re.findall(r"`src/ballsocket/identification/(\w+)\.py`", PAGE)[:2]
+
+SCRIPT = """
+import json
+import numpy as np
+import ballsocket as bs
+from ballsocket.identification import Machine, Measured
+from ballsocket.identification.file import read_identify
+
+hip, force = bs.joints["hess-forsbach"], np.linspace(50.0, 3000.0, 15)
+model = bs.RadialFoundation(modulus=bs.constant(300.0))
+depth = np.asarray(model.press(hip, force=force).indentation) + 0.005 * force / (force + 100.0)
+depths = {"quantity": "indentation", "values": depth, "uncertainty": 1e-5, "force": force}
+machine = Machine(seating=(0.0, 0.02))
+press = Measured(**depths, machine=machine)
+by_depth = Measured(quantity="force", values=force, uncertainty=0.1, indentation=depth, machine=machine)
+free = {"foundation_modulus": (100.0, 800.0)}
+points = [bs.identify(bs.HessForsbach(), hip, data, free).point for data in (press, by_depth)]
+known = bs.identify(bs.HessForsbach(), hip, Measured(**{**depths, "uncertainty": 1e-4}), free)
+open("data.toml", "w").write(
+    'model = "hess-forsbach"\\njoint = "hess-forsbach"\\n[free]\\nfoundation_modulus = "100..800 MPa/mm"\\n'
+    '[machine.frame]\\nseating = "0..20 um"\\n'
+    f'[[data]]\\nquantity = "indentation"\\nvalues = {depth.tolist()}\\nforce = {force.tolist()}\\n'
+    'uncertainty = "0.01 um"\\nmachine = "frame"\\n'
+)
+from_file = read_identify("data.toml").identify_unknowns()
+summary = [from_file.point, from_file["foundation_modulus"].unit]
+print(json.dumps([*points, *summary, known.notes]))
+"""
+
+
+@pytest.mark.long
+def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(tmp_path):
+    """In a copy of the package with the two files of the page, by loads of both kinds, and from a file."""
+    room = tmp_path / "ballsocket" / "identification"
+    shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
+    registry = (room / "registry.py").read_text("utf-8")
+    for name, text, tuple_name in zip(PATHS, FILES, ("_MODEL_NUMBERS", "_MACHINE_ERRORS"), strict=True):
+        (room / f"{name}.py").write_text(text, "utf-8")
+        start = f"{tuple_name} = (\n"
+        assert start in registry
+        registry = registry.replace(start, f"from .{name} import {name.upper()}\n\n{start}    {name.upper()},\n")
+    (room / "registry.py").write_text(registry, "utf-8")
+    (tmp_path / "script.py").write_text(SCRIPT, "utf-8")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    environment |= {"PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
+    completed = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", check=False
+    )
+    assert completed.returncode == 0, completed.stderr
+    by_force, by_depth, from_file, unit, notes = json.loads(completed.stdout)
+    truth = {"foundation_modulus": 300.0, "machine.seating": 0.005}
+    assert by_force == pytest.approx(truth, rel=1e-3)
+    assert by_depth == pytest.approx(truth, rel=1e-3)
+    assert from_file == pytest.approx({"foundation_modulus": 300.0, "frame.seating": 0.005}, rel=1e-3)
+    assert unit == "MPa/mm"
+    assert any(note.startswith("a seating of 1 µm would move foundation_modulus by") for note in notes)
