@@ -144,7 +144,11 @@ class AdhesiveSocket(ClosedForm):
         start = sqrt(low * low + stretch * stretch)
         ends = low, high, where(start < high, start, high)
         low, high, start = (broadcast(end, *ends) for end in ends)
-        return increasing_root(_scaled_force_and_stiffness, scaled, low, high, start, arguments=(c, stretch))
+
+        def force_and_stiffness(d: Array) -> tuple[Array, Array]:
+            return _scaled_force(d, c, stretch), _scaled_stiffness(d, c, stretch)
+
+        return increasing_root(force_and_stiffness, scaled, low, high, start)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return angle_of(_edge_cosine_and_versine(indentation, joint.clearance, self.critical_stretch(joint))[1])
@@ -190,8 +194,3 @@ def _scaled_stiffness(d: Array, c: Array, stretch: Array) -> Array:
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge_cosine_and_versine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
-
-
-def _scaled_force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute the scaled force F/(2π R2² K) in mm and its derivative by the indentation."""
-    return _scaled_force(d, c, stretch), _scaled_stiffness(d, c, stretch)
