@@ -59,7 +59,7 @@ def _presses(count: int) -> list[Pair]:
     copy = jax_job(lambda values: values + 1.0, [zeros], count)
     return [
         Pair(f"{model.name}, {title}", jax_job(_press(model, joint), [numbers], count), "copy of seven arrays", copy)
-        for model in (bs.HessForsbach(), bs.Tabulated(), bs.Refined())
+        for model in (bs.HessForsbach(), bs.Tabulated())
         for title, joint in (("one joint", _one_joint), ("a joint a press", _joint_each))
     ]
 

@@ -5,10 +5,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from scipy.interpolate import PchipInterpolator
 
 import ballsocket as bs
-from ballsocket.models import table_3
 from ballsocket.models.closed_form import ClosedForm
 
 from ..catalogue import test_contract as contract
@@ -200,14 +198,6 @@ def test_no_indentation_has_a_half_angle_below_that_of_the_adhering_patch():
     contact = model.press(HIP, half_angle=patch * np.array([0.99, 1.01]))
     np.testing.assert_array_equal(contact.status, [bs.Status.NOT_REACHED, bs.Status.OK])
     assert contact.indentation[1] > 0
-
-
-def test_monotone_slopes_are_those_of_scipy():
-    """Of rough data too, whose slopes at the ends are limited."""
-    random = np.random.default_rng(1)
-    knots, values = np.cumsum(random.uniform(0.1, 2.0, 6)), random.normal(size=(200, 6))
-    expected = PchipInterpolator(knots, values, axis=1).derivative()(knots)
-    np.testing.assert_allclose(table_3._monotone_slopes(knots, values), expected, rtol=1e-12, atol=1e-13)
 
 
 @pytest.mark.parametrize(

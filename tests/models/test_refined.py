@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
-from ballsocket.models.refined import FIT, RefinedSolution
+from ballsocket.models.refined import FIT
 
 from ..joints import HIP, random_joint
 from ..places import DATA
@@ -188,7 +188,7 @@ def test_validity_is_the_measured_range_of_width_and_poisson_ratio():
 @pytest.mark.parametrize(("coefficient", "position"), [(0.3, 0.0), (0.5, 0.0), (0.8, 0.25), (2.0, 0.5)])
 def test_largest_pressure_of_a_full_profile_lies_on_a_ring(coefficient, position):
     """sqrt(1 - y)(1 + β y) is largest at y = (2β - 1)/(3β) for β above 1/2, which no fit has reached."""
-    solution = RefinedSolution(joint=HIP, half_angle=0.9, indentation=0.1)
+    solution = MODEL.press(HIP, half_angle=0.9).laws
     vars(solution)["_shape_coefficient"] = coefficient
     angles = np.linspace(0.0, 0.9, 20_001)
     profile = solution.pressure(angles)

@@ -50,52 +50,18 @@ def _overload_pick_element(values: Any, i: Any) -> Callable[..., Any]:
     return lambda values, i: values
 
 
-@overload(arrays.sqrt, strict=False)
-def _overload_sqrt(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.sqrt` for numbers in compiled code."""
-    return lambda x: math.sqrt(x)
+def _overload_elementwise(scalar_function: Callable[[float], float]) -> Callable[..., Any]:
+    return lambda x: lambda x: scalar_function(x)
 
 
-@overload(arrays.exp, strict=False)
-def _overload_exp(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.exp` for numbers in compiled code."""
-    return lambda x: math.exp(x)
-
-
-@overload(arrays.log, strict=False)
-def _overload_log(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.log` for numbers in compiled code."""
-    return lambda x: math.log(x)
-
-
-@overload(arrays.log1p, strict=False)
-def _overload_log1p(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.log1p` for numbers in compiled code."""
-    return lambda x: math.log1p(x)
-
-
-@overload(arrays.sin, strict=False)
-def _overload_sin(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.sin` for numbers in compiled code."""
-    return lambda x: math.sin(x)
+for _name in ("sqrt", "exp", "log", "log1p", "sin", "cos", "asin"):
+    overload(getattr(arrays, _name), strict=False)(_overload_elementwise(getattr(math, _name)))
 
 
 @overload(arrays.short_sine, strict=False, jit_options={"forceinline": True})
 def _overload_short_sine(x: Any) -> Callable[..., Any]:
     """Replace `arrays.short_sine` by its series in compiled code."""
     return arrays.short_sine_series
-
-
-@overload(arrays.cos, strict=False)
-def _overload_cos(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.cos` for numbers in compiled code."""
-    return lambda x: math.cos(x)
-
-
-@overload(arrays.asin, strict=False)
-def _overload_asin(x: Any) -> Callable[..., Any]:
-    """Implement `arrays.asin` for numbers in compiled code."""
-    return lambda x: math.asin(x)
 
 
 @overload(arrays.atan2, strict=False)

@@ -49,24 +49,17 @@ def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
 
 
 @cache
-def _read_polynomial_coefficients(polynomial_name: str) -> tuple[float, ...]:
-    """Read the coefficients of a fitted polynomial by its name from the data file of the package."""
-    coefficient_table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
-    return tuple(coefficient_table[polynomial_name])
+def _fitted_polynomials() -> dict[str, list[float]]:
+    """Read the coefficients of the fitted polynomials by their names."""
+    return tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
 
 
-def _evaluate_fitted_polynomial(polynomial_name: str, degree: int, contact: Any) -> Array:
+def _fitted_change(name: str, degree: int, contact: Any) -> Array:
     """Evaluate the fitted relative change of a contact: the exponential of a polynomial."""
     joint = contact.joint
     x, y, z = polynomial_variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
-    return exp(
-        sum(
-            coefficient * x**i * y**j * z**k
-            for coefficient, (i, j, k) in zip(
-                _read_polynomial_coefficients(polynomial_name), polynomial_exponents(degree), strict=True
-            )
-        )
-    )
+    terms = zip(_fitted_polynomials()[name], polynomial_exponents(degree), strict=True)
+    return exp(sum(coefficient * x**i * y**j * z**k for coefficient, (i, j, k) in terms))
 
 
 def hemisphere_indentation_change(contact: Any) -> Array:
@@ -74,9 +67,7 @@ def hemisphere_indentation_change(contact: Any) -> Array:
 
     The force is the same.
     """
-    return _evaluate_fitted_polynomial(
-        "indentation", 5, contact
-    ) + contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
+    return _fitted_change("indentation", 5, contact) + contact.joint.modulus_ratio * _fitted_change("ball", 4, contact)
 
 
 def max_hemisphere_change(contact: Any) -> Array:
@@ -84,8 +75,8 @@ def max_hemisphere_change(contact: Any) -> Array:
 
     It is the largest of the changes of indentation, half angle, largest pressure and stiffness at the same force.
     """
-    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
-    return _evaluate_fitted_polynomial("largest", 5, contact) + ball
+    ball = BALL_FACTOR * contact.joint.modulus_ratio * _fitted_change("ball", 4, contact)
+    return _fitted_change("largest", 5, contact) + ball
 
 
 LIKE_HEMISPHERE = Range(

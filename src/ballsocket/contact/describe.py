@@ -156,17 +156,12 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 
 def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
     """Format the printed quantities of a contact as rows of name, number and unit."""
-    digit_count = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
+    is_single = arrays.to_numpy(contact.indentation).size == 1
     rows = [
-        (column.attribute, number_text(column.values_of(contact), digit_count, "no answer"), column.unit)
+        (column.attribute, number_text(column.values_of(contact), 6 if is_single else 5, "no answer"), column.unit)
         for column in COLUMNS
     ]
-    return [*rows, *_format_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
-
-
-def _format_utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
-    """Format the row of the ratio of von Mises to yield stress; [] if unknown, or for many contacts."""
-    if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
-        return []
-    value = UTILISATION.values_of(contact)
-    return [] if value != value else [(UTILISATION.attribute, number_text(value, 3, ""), "")]
+    if is_single and contact.joint.strengths():
+        value = UTILISATION.values_of(contact)
+        rows += [(UTILISATION.attribute, number_text(value, 3, ""), "")] if value == value else []
+    return [*rows, ("valid", count_text(contact.valid), "")]

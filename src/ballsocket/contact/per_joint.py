@@ -134,7 +134,6 @@ def _quantity_of_all_joints(quantity_name: str) -> Any:
     """Make a cached property: the values of one quantity in all joints, as one array."""
 
     def combine_quantity(self: CombinedSolution) -> Array:
-        """Return the values of the quantity in all joints as one array."""
         return self.combine(lambda contacts: getattr(contacts.state, quantity_name))
 
     combine_quantity.__name__ = quantity_name
@@ -187,7 +186,6 @@ class CombinedSolution:
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
     def _combine_relative_error(self, name: str) -> Array:
-        """Combine the estimated relative error of one quantity of all joints to one array."""
         return self.combine(lambda contacts: contacts.error[name])
 
     @property
@@ -227,7 +225,6 @@ class CombinedSolution:
         rows = numpy.broadcast_to(angles, (*angle_shape, *self.shape)).reshape(prod(angle_shape), prod(self.shape))
 
         def joint_pressure(indices: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
-            """Compute the contact pressure in MPa of one joint at its angles."""
             pressures: numpy.ndarray = contacts.state.pressure(rows[:, indices[contacts.touching]])
             return pressures
 
@@ -289,7 +286,6 @@ class SolvedContact(Contact):
 
     @property
     def _all_points_failed(self) -> bool:
-        """True if no point of the contact has a result."""
         return bool(arrays.to_numpy(self._failed).all())
 
     def summary(self) -> dict[str, Any]:

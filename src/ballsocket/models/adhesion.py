@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from math import inf, pi
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from ..contact.roots import increasing_root
 from ..core.arrays import Array, broadcast, clip, safe_divisor, sqrt, where
@@ -17,11 +16,6 @@ from ..problem.gaps import LinearGapRange
 from .closed_form import ClosedForm
 from .kinematics import MAX_SPRING_REDUCTION, angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, as_modulus, hess_forsbach
-
-
-def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
-    """Return the adhesion number η = u_c/c of a contact."""
-    return model.adhesion_number(contact.joint)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +89,7 @@ class AdhesiveSocket(ClosedForm):
         why = "from 1 on the full hemisphere adheres without load, and the result depends on the rim"
         return (
             *self.modulus.validity,
-            Range(quantity=partial(_adhesion_number, self), symbol="η", high=1.0, why=why),
+            Range(quantity=lambda contact: self.adhesion_number(contact.joint), symbol="η", high=1.0, why=why),
             LinearGapRange(high=MAX_SPRING_REDUCTION, why="springs with adhesion have the linear gap alone"),
             SMALL_STRAIN,
         )
@@ -122,7 +116,7 @@ class AdhesiveSocket(ClosedForm):
         return float(pull) if isinstance(pull, float) else pull
 
     def _force_factor(self, joint: Joint) -> Array:
-        """Compute the factor 2π R2² K in N/mm that converts the scaled force in mm to the force in N."""
+        """Compute the force 2π R2² K in N per mm of scaled force."""
         return 2 * pi * joint.socket_radius**2 * self.modulus.evaluate(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -150,7 +144,11 @@ class AdhesiveSocket(ClosedForm):
         start = sqrt(low * low + stretch * stretch)
         ends = low, high, where(start < high, start, high)
         low, high, start = (broadcast(end, *ends) for end in ends)
-        return increasing_root(_scaled_force_and_stiffness, scaled, low, high, start, arguments=(c, stretch))
+
+        def force_and_stiffness(d: Array) -> tuple[Array, Array]:
+            return _scaled_force(d, c, stretch), _scaled_stiffness(d, c, stretch)
+
+        return increasing_root(force_and_stiffness, scaled, low, high, start)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return angle_of(_edge_cosine_and_versine(indentation, joint.clearance, self.critical_stretch(joint))[1])
@@ -196,8 +194,3 @@ def _scaled_stiffness(d: Array, c: Array, stretch: Array) -> Array:
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge_cosine_and_versine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
-
-
-def _scaled_force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute the scaled force F/(2π R2² K) in mm and its derivative by the indentation."""
-    return _scaled_force(d, c, stretch), _scaled_stiffness(d, c, stretch)

@@ -187,5 +187,4 @@ class ClosedFormSolution:
     pressure_integral = _law_property("pressure_integral")
 
     def pressure(self, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         return self.model.pressure(self.joint, self.indentation, angle)

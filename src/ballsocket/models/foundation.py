@@ -100,7 +100,6 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the contact stiffness dF/dd in N/mm at an indentation in mm."""
         return self.kinematics.stiffness(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -109,7 +108,6 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the integral of the pressure over the contact area in N."""
         return self.kinematics.pressure_integral(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -118,8 +116,7 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
-        return angle_of(versine)
+        return angle_of(self.kinematics.versine(joint.socket_radius, joint.clearance, indentation))
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
@@ -131,7 +128,6 @@ class RadialFoundation(ClosedForm):
         return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.evaluate(joint) * u, 0.0)
@@ -185,11 +181,6 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -210,11 +201,6 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -232,11 +218,6 @@ def Bartel() -> RadialFoundation:  # noqa: N802
     ----------
     Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -253,11 +234,6 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
-
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -278,11 +254,6 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
     ----------
     Askari & Andersen 2018, doi 10.1177/0954411918810044.
 
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
-
     Examples
     --------
     >>> import ballsocket as bs
@@ -301,11 +272,6 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
-
-    Notes
-    -----
-    ``press(joint, force=..., indentation=..., half_angle=...)``
-    computes the contact of a joint under one of these loads.
 
     Examples
     --------

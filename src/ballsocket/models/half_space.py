@@ -55,7 +55,6 @@ class HalfSpace(ClosedForm):
         return kappa * joint.clearance / (2 * joint.ball_radius * R2) * R2 ** (2 - 2 * n)
 
     def _contact_radius(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the contact radius a in mm."""
         return power(indentation / self._gap_coefficient(joint), 1 / (2 * self.order))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -73,7 +72,6 @@ class HalfSpace(ClosedForm):
         return 2 * n / (4 * n + 1) * self.force(joint, indentation) * indentation
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        """Compute the indentation d in mm of a contact force in N."""
         n = self.order
         profile = self._gap_coefficient(joint)
         radius = power(force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile), 1 / (2 * n + 1))
@@ -98,7 +96,6 @@ class HalfSpace(ClosedForm):
         return _peak_position_and_ratio(self.order)[0] * self.half_angle(joint, indentation)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         # p = (E*/π) κ A 2n ∫ t^(2n - 1)/sqrt(t² - r²) dt over r..a, a polynomial in y = sqrt(a² - r²)
         n = self.order
         r = angle * joint.socket_radius
@@ -288,7 +285,6 @@ class LiuReconstruction(ClosedForm):
         return self._force_factor(joint) * (indentation / e) * (1 + joint.clearance / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the elastic energy in N mm, the integral of the force over the indentation."""
         # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
         c, d = joint.clearance, indentation
         closed = d * d / 2 - c * d + c * c * log(1 + d / safe_divisor(c))
@@ -306,24 +302,18 @@ class LiuReconstruction(ClosedForm):
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
-    def _squared_sine(self, joint: Joint, indentation: Array) -> Array:
-        """Compute sin² ε of the contact's half angle."""
-        # sin² ε = d (2c + d)/(c + d)²
-        e = safe_divisor(joint.clearance + indentation)
-        return indentation / e * (1 + joint.clearance / e)
-
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         return self.foundation_modulus(joint, indentation) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the foundation modulus K = p0/d in MPa/mm at an indentation in mm."""
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
         ratio = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
         return 1.5 * self._force_factor(joint) * ratio / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
-        square = sin(angle) ** 2 / safe_divisor(self._squared_sine(joint, indentation))
+        e = safe_divisor(joint.clearance + indentation)
+        squared_sine = indentation / e * (1 + joint.clearance / e)  # sin² ε = d (2c + d)/(c + d)²
+        square = sin(angle) ** 2 / safe_divisor(squared_sine)
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
         return where(inside, self.pole_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

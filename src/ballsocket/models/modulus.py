@@ -171,11 +171,6 @@ def _poisson_range(low: float, high: float, why: str) -> Range:
     return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
-def _thickness_ratio_range(low: float, high: float, why: str) -> Range:
-    """Make a validity range of the thickness ratio R2/L."""
-    return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
-
-
 def _relative_contact_width(contact: Any) -> Array:
     """Compute a (1/L + 1/R2), the contact radius over the smaller of liner thickness and radius, rounded off."""
     return contact.width_ratio + sin(contact.half_angle)
@@ -185,11 +180,6 @@ def _relative_width_range(low: float) -> Range:
     """Make a validity range with a smallest contact radius, measured by liner thickness and socket radius."""
     why = "a contact narrower than the liner is thick feels a half-space, not springs"
     return Range(quantity=_relative_contact_width, symbol="a (1/L + 1/R2)", low=low, why=why)
-
-
-def _contact_width_range(low: float, why: str) -> Range:
-    """Make a validity range with a smallest ratio of contact width to liner thickness."""
-    return Range(quantity="width_ratio", low=low, why=why)
 
 
 _SPRINGS = Promise(within=0.15)
@@ -230,7 +220,7 @@ bonded_layer = Modulus(
             low=5.5,
             why="the layer is taken as flat, but a thick shell is larger outside than inside and stiffer",
         ),
-        _contact_width_range(1.5, "the layer must be thin against the contact radius"),
+        Range(quantity="width_ratio", low=1.5, why="the layer must be thin against the contact radius"),
         RIGID_BALL,
         RIGID_BACKING,
     ),
@@ -351,7 +341,12 @@ hess_forsbach = Modulus(
     sources=(Source("hess2021", "(18), Table 3"),),
     validity=(
         _poisson_range(0.15, 0.47, "Table 3 has ν 0.30 to 0.49; its first column is measured down to 0.15"),
-        _thickness_ratio_range(0.2, 7.7, "Table 1 ends at R2/L 7.7; thicker liners are measured down to 0.2"),
+        Range(
+            quantity="joint.thickness_ratio",
+            low=0.2,
+            high=7.7,
+            why="Table 1 ends at R2/L 7.7; thicker liners are measured down to 0.2",
+        ),
         _relative_width_range(1.0),
         Range(
             quantity=_thin_volume_constraint,

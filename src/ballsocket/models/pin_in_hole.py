@@ -88,7 +88,8 @@ class PinInHole(ModelInfo):
             if kind == "line_load":
                 line_load, angle = load, 2 * atan(sqrt(_solve_squared_tangent(stiffness, load)))
             else:
-                reached = stiffness / _flexibility(tan(load / 2) ** 2)
+                s = tan(load / 2) ** 2
+                reached = stiffness / ((2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s)))
                 line_load, angle = where((stiffness > 0) | (load == 0), reached, numpy.nan), load
         line_load, angle = broadcast(line_load, angle), broadcast(angle, line_load)
         is_finite = arrays.isfinite(line_load) & arrays.isfinite(angle)
@@ -143,11 +144,6 @@ class LineContact(Outcome):
         lines = [f"{self.model.name} on {self.joint}", f"  line_load     {arrays.to_numpy(self.line_load)} N/mm"]
         lines += [f"  half_angle    {angle * degrees(1.0)} deg", f"  max_pressure  {peak} MPa"]
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
-
-
-def _flexibility(s: Array) -> Array:
-    """Compute the scaled flexibility E1 c/Q at the squared half-angle tangent s = tan²(ε/2)."""
-    return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
 def _solve_squared_tangent(stiffness: Array, load: Array) -> Array:

@@ -201,12 +201,10 @@ class LayerSolution:
 
     @property
     def _effective_radius(self) -> Array:
-        """Effective radius R* in mm."""
         return self.joint.ball_radius * self.joint.socket_radius / self.joint.clearance
 
     @property
     def _contact_radius(self) -> Array:
-        """Contact radius a in mm."""
         return self.width * self.joint.liner_thickness
 
     @property
@@ -281,7 +279,6 @@ class LayerSolution:
         return self.force_and_indentation[0]
 
     def pressure(self, angle: Array) -> Array:
-        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
         position = angle * self.joint.socket_radius / safe_divisor(self._contact_radius)
         remainder = clip(1 - position * position, 0.0, 1.0)

@@ -108,7 +108,7 @@ class Refined(Model):
         indentation = where(is_loaded, indentation, 0.0 * edge)
         diverged = is_loaded & (abs(residual) > arrays.machine_epsilon(load) ** 0.75)
         return SolverResult(
-            laws=RefinedSolution(joint=joint, half_angle=edge, indentation=indentation),
+            laws=RefinedSolution(joint=joint, half_angle=edge, indentation=indentation, scaled=contact),
             force=where(is_loaded, load if kind == "force" else spring * contact.secant[0] * indentation, 0.0 * edge),
             indentation=indentation,
             failures={Status.NOT_CONVERGED: diverged},
@@ -223,10 +223,7 @@ class RefinedSolution:
     joint: Joint
     half_angle: Array
     indentation: Array
-
-    @cached_property
-    def _scaled_contact(self) -> ScaledContact:
-        return scaled_contact(safe_divisor(self.half_angle), _joint_liner(self.joint))
+    scaled: ScaledContact
 
     def _zero_without_load(self, value: Array) -> Array:
         return where(self.half_angle > 0, value, 0.0 * self.half_angle)
@@ -234,15 +231,15 @@ class RefinedSolution:
     @cached_property
     def stiffness(self) -> Array:
         """Tangent stiffness dF/dd in N/mm."""
-        secant, rate = self._scaled_contact.secant
-        growth = 1 + rate / self._scaled_contact.indentation_rate
+        secant, rate = self.scaled.secant
+        growth = 1 + rate / self.scaled.indentation_rate
         return self._zero_without_load(self.joint.liner.young * self.joint.socket_radius * secant * growth)
 
     @cached_property
     def energy(self) -> Array:
         """Elastic energy ∫ F (dd/dε) dε in N mm; the points are dense near the edge, where d increases fast."""
         edge, liner = safe_divisor(self.half_angle), _joint_liner(self.joint)
-        rate = self._scaled_contact.indentation_rate / edge
+        rate = self.scaled.indentation_rate / edge
         width = log(1 + rate * edge)
 
         def work_rate(x: float) -> Array:
@@ -257,18 +254,18 @@ class RefinedSolution:
 
     @property
     def foundation_modulus(self) -> Array:
-        K = self.joint.liner.young / (self.joint.socket_radius * self._scaled_contact.compliance)
+        K = self.joint.liner.young / (self.joint.socket_radius * self.scaled.compliance)
         return where(self.half_angle == 0, inf, K + 0.0 * self.half_angle)
 
     @cached_property
     def pole_pressure(self) -> Array:
         scale = self.joint.liner.young / self.joint.socket_radius
-        return self._zero_without_load(scale * self.indentation / self._scaled_contact.compliance)
+        return self._zero_without_load(scale * self.indentation / self.scaled.compliance)
 
     @cached_property
     def _shape_coefficient(self) -> Array:
         """Shape coefficient β of the pressure profile, whose vertical force 2π R2² ∫ p cos φ sin φ dφ is F."""
-        contact, S = self._scaled_contact, self._scaled_contact.share[0]
+        contact, S = self.scaled, self.scaled.share[0]
         mean = contact.secant[0] * contact.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
@@ -288,13 +285,13 @@ class RefinedSolution:
 
     @property
     def max_pressure_angle(self) -> Array:
-        return self._zero_without_load(2 * arrays.asin(sqrt(self._peak_position * self._scaled_contact.share[0])))
+        return self._zero_without_load(2 * arrays.asin(sqrt(self._peak_position * self.scaled.share[0])))
 
     @cached_property
     def pressure_integral(self) -> Array:
-        ring = 4 * pi * self.joint.socket_radius**2 * self._scaled_contact.share[0]
+        ring = 4 * pi * self.joint.socket_radius**2 * self.scaled.share[0]
         return ring * self.pole_pressure * (2 / 3 + 4 * self._shape_coefficient / 15)
 
     def pressure(self, angle: Array) -> Array:
-        y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._scaled_contact.share[0]
+        y = sin(clip(angle, -pi, pi) / 2) ** 2 / self.scaled.share[0]
         return where(y < 1, self.pole_pressure * self._pressure_ratio(y), self._zero_without_load(0.0 * y))

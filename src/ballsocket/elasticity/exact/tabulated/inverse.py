@@ -72,18 +72,14 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
             root = limited_newton_step(root, *residual(root))
         return root
 
-    if curves.has_plain_joint:
-        root = _solve_scalar(residual, inverse.estimate(scaled) + (_LOG_OFFSET - math.log(LIMIT)))
+    if curves.has_plain_joint:  # without the series of the start, which costs more than the steps that it saves
+        start = min(inverse.log_share(scaled, Widest(*map(float, curves.widest))) + _LOG_OFFSET, _END)
+        root = scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
     else:
         root = implicit_root(residual, solve, _start_from_series(curves, kind, scaled))
     state = tabulated_state(half_angle_of_root(root), curves.curve)
     shift = inverse.shift(state, scaled)
     return shift_state(state, shift), shift
-
-
-def _solve_scalar(residual: Increasing, start: float) -> float:
-    """Solve for the unknown of a single press, from an estimate."""
-    return scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
 
 
 _SCALAR_STEPS = 16
@@ -209,8 +205,6 @@ class _Inverse(NamedTuple):
     """Estimate of ln(ε/LIMIT) from a dimensionless load."""
     load_at: Callable[[Array, Widest], Array]
     """Dimensionless load of an estimated ε/LIMIT; negative beyond the perfect fit."""
-    estimate: Callable[[Array], Array]
-    """Estimate of ln ε for a single press, which needs no fit."""
 
 
 INVERSES = {
@@ -219,14 +213,12 @@ INVERSES = {
         shift=force_shift,
         log_share=force_log_share,
         load_at=lambda share, widest: widest.force / (1 / share**3 - widest.opening),
-        estimate=lambda load: log(load / (3 + load)) / 3,
     ),
     "indentation": _Inverse(
         residual=_indentation_residual,
         shift=indentation_shift,
         log_share=indentation_log_share,
         load_at=lambda share, widest: 1 / (1 / (share * share * widest.opening) - 1),
-        estimate=lambda load: log(1.5 * load / (1 + load)) / 2,
     ),
 }
 """Functions of the inverse by kind of load."""
