@@ -224,7 +224,7 @@ def models(results: Results, folder: Path) -> None:
         from ballsocket.compiled import Compiled
 
         forces = numpy.linspace(100.0, 4000.0, 12)
-        for model in (bs.HessForsbach(), bs.Bartel(), bs.Refined(), bs.Tabulated()):
+        for model in (bs.HessForsbach(), bs.Bartel(), bs.Tabulated()):
             fast = Compiled(model=model)
             add_contact(results, f"compiled/{model.name}/force", fast, array_joint(), force=forces)
             add_contact(results, f"compiled/{model.name}/indentation", fast, array_joint(), indentation=1e-5 * forces)

@@ -341,7 +341,7 @@ def test_script_in_names_is_text_in_every_view(browser, address, view):
     other = "&".join(f"beside1.{part}" for part in joint.split("&"))
     with opened_profile(browser, address, bypass_csp=True) as profile:
         user = User(profile, address).open(f"?view={view}&{joint}&{other}")
-        user.page.wait_for_timeout(500)
+        user.page.wait_for_timeout(200)
         assert user.page.evaluate("window.ran") is None
         assert user.page.locator("img[src=x]").count() == 0
 

@@ -1,17 +1,8 @@
 """A new view of the explorer, as docs/contributing describes it, in a copy of the package."""
 
-import os
-import re
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
-import ballsocket as bs
-
-from ..places import CONTRIBUTING
+from ..extended_package import extend_package, page_code, run_python
 
 LAST = '    "evidence": "evidence.Evidence",\n'
 OPENED = """
@@ -29,17 +20,9 @@ assert b"Volume: hip-28" in make_file(page.seen(), "HTML")[1]
 
 @pytest.mark.long
 def test_a_new_view_is_a_folder_and_a_line(tmp_path):
-    copy = tmp_path / "ballsocket"
-    shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    text = (CONTRIBUTING / "view.md").read_text("utf-8")
-    code = re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
+    code = page_code("view")[0]
     assert code.count("\n") <= 31
-    views = copy / "app" / "views"
-    (views / "volume").mkdir()
-    (views / "volume" / "__init__.py").touch()
-    (views / "volume" / "view.py").write_text(code, "utf-8")
-    lines = (views / "registry.py").read_text("utf-8")
-    assert LAST in lines
-    (views / "registry.py").write_text(lines.replace(LAST, f'{LAST}    "volume": "volume.Volume",\n'), "utf-8")
-    env = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
-    subprocess.run([sys.executable, "-c", OPENED], cwd=tmp_path, env=env, check=True)
+    files = {"app/views/volume/__init__.py": "", "app/views/volume/view.py": code}
+    extend_package(tmp_path, files, {"app/views/registry.py": {LAST: f'{LAST}    "volume": "volume.Volume",\n'}})
+    done = run_python(tmp_path, "-c", OPENED)
+    assert done.returncode == 0, done.stderr

@@ -26,13 +26,11 @@ def end(model, joint):
 @EACH_JOINT
 def test_a_law_has_force_and_stiffness_of_a_press_up_to_its_end(model, joint):
     law = model.law(joint)
-    d = np.append(0.0, np.geomspace(1e-6 * joint.clearance, (1 - 1e-9) * end(model, joint), POINTS))
+    d = np.append(0.0, np.geomspace(1e-6 * joint.clearance, end(model, joint), POINTS))
     said = np.array([law(float(depth)) for depth in d])
     contact = model.press(joint, indentation=d)
-    solved = contact.status != bs.Status.NOT_REACHED  # a circular gap fails at single loads near its end
-    assert solved.mean() > 0.95
-    np.testing.assert_allclose(said[solved, 0], contact.force[solved], rtol=1e-9)
-    np.testing.assert_allclose(said[solved, 1][1:], contact.stiffness[solved][1:], rtol=1e-7)
+    np.testing.assert_allclose(said[:, 0], contact.force, rtol=1e-9)
+    np.testing.assert_allclose(said[1:, 1], contact.stiffness[1:], rtol=1e-7)
     assert all(type(number) is float for number in law(0.05))
 
 

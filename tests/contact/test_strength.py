@@ -12,14 +12,14 @@ import ballsocket as bs
 from ballsocket.contact import strength
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, TABLE_ERROR, von_mises_ratio
 from ballsocket.contact.stress_ratio import poisson_at, thickness_ratio_at
-from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, strength_uses
+from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number, strength_uses
 from ballsocket.elasticity.exact import subsurface
 
 from ..extent import either
 
 HIP = bs.joints["hip-36"]
 BARE = bs.Material(young=1000.0, poisson=0.4)
-NOT_CHECKED = "strength not checked: the liner has no yield stress"
+NOT_CHECKED = "strength not checked: the liner has no yield stress, give yield_stress in its table"
 PROMISING = {name: model for name, model in bs.catalogue.items() if model.promise is not None and name != "hertz"}
 EACH_PROMISING = pytest.mark.parametrize("model", [*PROMISING.values(), bs.Exact()], ids=lambda model: model.name)
 
@@ -52,19 +52,16 @@ def test_the_error_of_the_stress_grows_beyond_the_table_and_with_elastic_partner
     hip = bs.Exact().press(HIP.replace(ball=None), force=1000.0)
     changes = (
         ({}, TABLE_ERROR),
-        (
-            {"ball": bs.COCR},
-            TABLE_ERROR
-            + 0.06 * HIP.liner.young / bs.COCR.young * HIP.thickness_ratio / np.sqrt(1 - 2 * HIP.liner.poisson),
-        ),
-        ({"liner": replace(BARE, poisson=-0.1)}, 0.3),
-        ({"liner_thickness": 0.5}, 0.3),
+        ({"ball": bs.COCR}, TABLE_ERROR + 0.01 * HIP.liner.young / bs.COCR.young),
+        ({"ball": BARE, "liner_thickness": 1.0}, 0.05 * HIP.socket_radius),
+        ({"liner": replace(BARE, poisson=-0.1)}, TABLE_ERROR + 0.12),
+        ({"liner_thickness": 0.5}, TABLE_ERROR + 0.15),
         ({"support": bs.Support.FREE}, inf),
     )
     for change, error in changes:
         contact = SimpleNamespace(joint=replace(HIP, **{"ball": None, **change}), half_angle=hip.half_angle)
         assert strength.von_mises_error(contact) == pytest.approx(error)
-    assert strength.von_mises_bounds(contact, 5.0) == (0.0, inf)
+    assert strength.bounded_von_mises(contact, 5.0) == (5.0, 0.0, inf)
 
 
 def test_utilisation_of_a_contact_is_its_stress_over_yield_stress():
@@ -74,7 +71,7 @@ def test_utilisation_of_a_contact_is_its_stress_over_yield_stress():
     np.testing.assert_allclose(contact.von_mises, ratio * contact.max_pressure)
     np.testing.assert_allclose(contact.utilisation_at(np.array([True, False])), contact.utilisation)
     exact = bs.Exact().press(HIP, force=3000.0)
-    low, high = exact.utilisation_bounds
+    _, low, high = error_bar(exact, "utilisation")
     assert low < exact.utilisation < high
 
 
@@ -113,7 +110,7 @@ def test_models_that_solve_for_stresses_report_the_largest(model):
 def test_the_tabulated_ratio_is_the_exact_one_within_its_error():
     """Half angles of 0.3 to 85°, ν of 0 to 0.4993 crowded towards 1/2, R2/L of 0 to 20.5."""
     random = np.random.default_rng(8)
-    for _ in range(either(15, 300)):
+    for _ in range(either(15, 100)):
         angle, nu = radians(random.uniform(0.3, 85.0)), poisson_at(random.uniform())
         joint = joint_with(nu, thickness_ratio_at(random.uniform()))
         contact = bs.Exact(tolerance=1e-4).press(joint, half_angle=angle)
@@ -148,8 +145,8 @@ def test_a_hip_at_8_kilonewtons_yields_by_all_accurate_models(model):
     contact = model.press(bs.joints["hip-28"], force=8000.0)
     within = 2 * TABLE_ERROR + (model.promise.within if model.promise else 0.0)
     assert contact.utilisation == pytest.approx(1.035, rel=within)
-    low, high = contact.utilisation_bounds
-    assert low * (1 - within) <= 1.035 <= high * (1 + within)
+    _, low, high = error_bar(contact, "utilisation")
+    assert low <= 1.035 <= high
     assert low > 1 or model.name in ("refined", "sphere")
 
 
@@ -164,8 +161,8 @@ def test_bounds_of_the_stress_contain_the_exact_one_in_99_of_100_joints():
         for model in (bs.Tabulated(), bs.Refined(), bs.HessForsbach()):
             contact = model.press(joint, force=force)
             if contact.valid:
-                low, high = contact.von_mises_bounds
-                assert high / low < 1 + 5 * TABLE_ERROR
+                stress, low, high = contact.quick_von_mises
+                assert high - low == pytest.approx(2 * TABLE_ERROR * stress, rel=0.02)  # a stiff ball adds at most 1 %
                 inside.append(low * (1 - model.promise.within) <= known <= high * (1 + model.promise.within))
     assert np.mean(inside) >= 0.99
 
@@ -178,7 +175,7 @@ def test_stresses_of_a_soft_backed_socket_are_solved_only_near_yield(monkeypatch
     monkeypatch.setattr(subsurface, "find_peak_stress", lambda *arguments: looks.append(1) or peak(*arguments))
     assert bs.Exact().press(soft, force=forces[:3]).valid.all()
     assert not looks
-    least, most = known.von_mises_bounds
+    _, least, most = known.quick_von_mises
     assert ((least <= known.von_mises) & (known.von_mises <= most)).all()
     strong = soft.replace(liner=replace(soft.liner, yield_stress=known.von_mises[3] / (1.01 * MAX_ELASTIC_UTILISATION)))
     looks.clear()
@@ -208,7 +205,7 @@ def test_a_liner_without_a_yield_stress_is_noted_once_for_any_shape(model):
     [
         ({"yield_stress": 20.0}, None, ""),
         ({}, None, NOT_CHECKED),
-        ({"fatigue_limit": 20.0}, None, "yield not checked: the liner has no yield stress"),
+        ({"fatigue_limit": 20.0}, None, NOT_CHECKED.replace("strength", "yield")),
         ({}, 200.0, f"{NOT_CHECKED}; the utilisation is that of the ball alone"),
     ],
 )
@@ -216,6 +213,7 @@ def test_the_reason_depends_on_the_known_strengths(liner, ball, reason):
     joint = replace(joint_of(None, ball), liner=replace(BARE, **liner))
     contact = bs.HessForsbach().press(joint, force=1.0)
     assert contact.utilisation_note == reason
+    assert error_bar(contact, "utilisation").verdict(high=1.0).word == ("undecided" if reason else "kept")
     assert [note for note in contact.notes if "checked" in note] == ([reason] if reason else [])
     failed = bs.Exact().press(joint, half_angle=1.55)
     assert failed.status.failed
@@ -327,7 +325,7 @@ def test_each_material_of_an_axis_has_its_own_strength():
 )
 def test_ratios_above_one_are_printed_with_two_digits(ratio, text):
     joint = replace(HIP, liner=replace(BARE, allowable_pressure=10.0), ball=None)
-    contact = SimpleNamespace(joint=joint, max_pressure=10.0 * ratio, von_mises_bounds=(0.0, 0.0), von_mises=0.0)
+    contact = SimpleNamespace(joint=joint, max_pressure=10.0 * ratio, quick_von_mises=exact_number(0.0), von_mises=0.0)
     notes = [note for _, note in strength.strength_remarks(contact)]
     assert notes == [f"pressure {text} the allowable pressure of the liner"]
 

@@ -20,7 +20,7 @@ from scipy.optimize import least_squares, linprog
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_coefficients
-from ballsocket.models.refined_state import NUMBERS, Fit, make_fit, scaled_contact
+from ballsocket.models.refined import FIT, scaled_contact
 
 SIZES = {"waves": 4, "level": 4, "edge": 10, "exponent": 5}
 ROUGH = np.array([0.6, 2.0, 4.0, 20.0, *[0.0] * 4, 0.1, 0.25, *[0.0] * 8, -0.3, -0.5, *[0.0] * 3])
@@ -64,11 +64,11 @@ def grid() -> Points:
     return points
 
 
-def fit_from(x: np.ndarray) -> Fit:
+def fit_from(x: np.ndarray) -> dict[str, list[float]]:
     """The coefficients by their names."""
     ends = np.cumsum([0, *SIZES.values()])
     parts = {name: x[first:last].tolist() for name, (first, last) in zip(SIZES, pairwise(ends), strict=True)}
-    return make_fit(**parts, plane=NUMBERS["plane"])
+    return {**parts, "plane": FIT["plane"]}
 
 
 def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -79,7 +79,7 @@ def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray)
         at = scaled_contact(angle, liner, fit_from(x))
         d = joint.clearance * at.indentation
         p0 = d * joint.liner.young / (joint.socket_radius * at.compliance)
-        force = d * joint.liner.young * joint.socket_radius * at.secant
+        force = d * joint.liner.young * joint.socket_radius * at.secant[0]
         return np.log([d, p0, force])
 
 

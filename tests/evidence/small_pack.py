@@ -1,8 +1,5 @@
 """Small question and its pack."""
 
-import json
-from functools import cache
-
 from ballsocket.evidence.folder import write
 from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
@@ -44,15 +41,5 @@ def small_pack(folder):
     """Return the question, its record, and the folder with the pack in `out` and its stored results in `data`."""
     question = question_of(folder)
     record = gather_evidence(question, folder / "data")
-    write(question, record, page, folder / "out")
+    write(question, record, evidence_page, folder / "out")
     return question, record, folder
-
-
-def page(record, digest):
-    """Return the page, drawn once for each record and digest."""
-    return _page(json.dumps(record), digest)
-
-
-@cache
-def _page(record, digest):
-    return evidence_page(json.loads(record), digest)

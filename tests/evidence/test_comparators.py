@@ -28,7 +28,7 @@ def test_comparators_state_the_read_part_the_inputs_and_the_assumptions(publishe
         summary = comparator.summary()
         assert summary["call"] == f"ballsocket.evidence.comparators.PUBLISHED[{name!r}]()"
         assert (summary["name"], summary["kind"]) == (name, comparator.kind)
-        assert summary["ours"] == {title: list(ends) for title, ends in comparator.ours.items()}
+        assert summary["ours"] == comparator.ours
 
 
 def test_hertz_is_within_a_seventh_for_a_ceramic_insert(published):
@@ -63,8 +63,7 @@ def test_comparators_apply_by_the_range_of_their_joints(published):
     assert applicability(published["durom"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     assert applicability(published["anderson"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     around = {name: (0.9 * low, 1.1 * high) for name, (low, high) in NEEDED.items()}
-    where = dict.fromkeys(SIMILARITY, "within")
-    assert applicability(around, NEEDED, tilted=False) == {"verdict": "applies", "where": where, "text": "applies"}
+    assert applicability(around, NEEDED, tilted=False)["text"] == "applies"
     tilted = applicability(around, NEEDED, tilted=True)["text"]
     assert tilted == "applies in part: a tilted load against one along the axis"
     thick = applicability({**around, "R1/L": (8.0, 9.0)}, NEEDED, tilted=False)
@@ -101,15 +100,9 @@ def test_verdict_follows_from_the_overlap_of_ranges():
     for reached, (position, verdict) in overlaps.items():
         result = applicability({"ν": reached}, {"ν": (2.0, 3.0)}, tilted=False)
         assert (result["where"], result["verdict"]) == ({"ν": position}, verdict)
-
-
-def test_half_of_the_numbers_outside_still_applies_in_part():
-    needed = {"ν": (0.4, 0.4), "c/R1": (0.01, 0.01)}
-    assert applicability({**needed, "c/R1": (0.02, 0.02)}, needed, tilted=False)["verdict"] == "applies in part"
-    stiff = {"E/E of the ball": (0.0, 0.0), **needed}
-    soft = {**stiff, "E/E of the ball": (0.5, 0.5)}
-    assert applicability(soft, stiff, tilted=False)["verdict"] == "does not apply"
-    assert (comparators.range_text((0.12345, 0.12345)), comparators.range_text((1.0, 2.5))) == ("0.123", "1 to 2.5")
+    two = {"ν": (0.4, 0.4), "E/E of the ball": (0.0, 0.0)}  # half of the numbers outside, and those of a soft ball
+    assert applicability({**two, "ν": (0.3, 0.3)}, two, tilted=False)["verdict"] == "applies in part"
+    assert applicability({**two, "E/E of the ball": (0.5, 0.5)}, two, tilted=False)["verdict"] == "does not apply"
 
 
 def test_ranges_of_a_question_include_its_tolerances(pack):
@@ -124,35 +117,22 @@ def test_ranges_of_a_question_include_its_tolerances(pack):
     assert high == pytest.approx(4000.0 / (675.0 * radius**2), rel=0.06)
 
 
-def ends(values):
-    return pytest.approx((min(values), max(values)), rel=1e-9)
-
-
 def test_resurfacing_has_the_published_pressure_and_a_smaller_area(published):
     """Wall 3.5 to 4.5 mm of cobalt-chromium on bone of 0.3 to 1 GPa, head 50 mm, bore 50.145 mm, 3200 N."""
-    shell = Joint(ball_radius=25.0, clearance=0.0725, liner_thickness=4.0, liner=COCR, ball=COCR)
-    bones = [Layer(thickness=math.inf, material=Material(young=young, poisson=0.3)) for young in (300.0, 1000.0)]
-    joints = [shell.replace(liner_thickness=wall, backing=(bone,)) for wall in (3.5, 4.0, 4.5) for bone in bones]
-    contacts = [Exact().press(joint, force=3200) for joint in joints]
     durom = published["durom"]
-    titles = ("largest pressure, MPa", "pole pressure, MPa", "contact area, mm²")
-    for quantity, title in zip(("max_pressure", "pole_pressure", "area"), titles, strict=True):
-        assert durom.ours[title] == ends([float(getattr(contact, quantity)) for contact in contacts])
     assert_reaches(durom, COCR, 3200.0, radii=(25.0, 25.0), clearances=(0.0725, 0.0725), walls=(3.5, 4.5))
     low, high = durom.ours["largest pressure, MPa"]
     assert low < 22 < high
     small, large = (area / 237 for area in durom.ours["contact area, mm²"])
     assert (small, large) == (pytest.approx(2 / 3, abs=0.02), pytest.approx(7 / 8, abs=0.02))
+    bone = Layer(thickness=math.inf, material=Material(young=300.0, poisson=0.3))  # the softest bone, the thickest wall
+    shell = Joint(ball_radius=25.0, clearance=0.0725, liner_thickness=4.5, liner=COCR, ball=COCR, backing=(bone,))
+    assert low < Exact().press(shell, force=3200.0).max_pressure < high
 
 
 def test_pressure_of_the_inlay_depends_on_its_wall(published):
     """Wall 2 to 4 mm on 3 to 5 mm of polyethylene, head 28 mm, bore 28.12 mm, 3200 N."""
-    inlay = Joint(ball_radius=14.0, clearance=0.06, liner_thickness=3.0, liner=COCR, ball=COCR)
-    layers = [Layer(thickness=behind, material=UHMWPE) for behind in (3.0, 5.0)]
-    joints = [inlay.replace(liner_thickness=wall, backing=(layer,)) for wall in (2.0, 3.0, 4.0) for layer in layers]
-    pressures = [float(Exact().press(joint, force=3200.0).max_pressure) for joint in joints]
     low, high = published["metasul"].ours["largest pressure, MPa"]
-    assert (low, high) == ends(pressures)
     assert low < 47 < high
     assert high > 2 * low
     assert published["metasul"].reaches["R1/L"] == pytest.approx((3.5, 7.0))

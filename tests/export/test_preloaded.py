@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 import ballsocket as bs
 from ballsocket.dynamics import Damping, Friction, PreloadedElement
 from ballsocket.export.fmu import Fmu, write_cross_check
+from ballsocket.export.targets import TARGETS, ExportJob
 
 from ..cli.command import run
 from ..extent import some
@@ -88,12 +89,22 @@ def test_fmpy_validates_and_simulates_the_unit(element, fmpy, tmp_path):
     assert_allclose(loads["force[3]"], reference["force[3]"], rtol=1e-10, atol=1e-6)
 
 
+def test_a_table_has_the_forces_of_the_solver_along_two_axes(element):
+    (text,) = TARGETS["table"].texts(ExportJob(element=element, name="rod", depth=0.1)).values()
+    rows = np.genfromtxt(text.splitlines(), delimiter=",", names=True)[20::80]
+    for name, column in (("along", 2), ("across", 0)):  # of the cup's frame, in which the solver has its forces
+        centres = element.rest_position + rows["displacement_mm"][:, None] * np.array(element.model.cup.frame[column])
+        solved = -element.model.press(JOINT, displacement=centres).force_vector[:, column]  # on the ball
+        assert_allclose(rows[f"force_N_{name}"], solved, rtol=0.001, atol=0.01)
+        assert solved[0] > 1e3 > -1e3 > solved[-1]
+
+
 @pytest.mark.long
-def test_the_commands_export_an_interference_but_not_as_a_table(tmp_path):
+def test_the_commands_export_an_interference_but_not_as_a_central_force(tmp_path):
     finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
     assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
     assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
-    refused = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "adams", folder=tmp_path)
-    assert not (tmp_path / "adams").exists()
+    refused = run("export", "opensim", *PRELOADED, "--arc-of-cover", "240", "--out", "hip", folder=tmp_path)
+    assert not (tmp_path / "hip").exists()
     assert refused.returncode == 2
     assert re.fullmatch("ballsocket: .*export c, drake, modelica or mujoco.*\n", refused.stderr)

@@ -64,6 +64,8 @@ FORMS = [  # text, encoding, number of lines that are left out
     (HEADS + POINTS + "mean of all,see page 2,\n1,2,3\n", "utf-8", 2),
     ("Name: A, B\nDate 2024-05-06 10:00\n\n" + HEADS + POINTS, "utf-8", 2),
     ("Test 7\nspecimen,area\n1,2\n" + HEADS + POINTS, "utf-8", 3),
+    ("Zeit [s];Kraft [N];Weg\n;;\u00b5m\n" + COMMAS, "cp1252", 0),
+    ("time_s;force_N;indentation\nsec;N;[um]\n" + COMMAS, "utf-8", 0),
     ("Force [N];Compressive extension [mm];Test time\n300;0,01;0\n1250,5;0,0255;0,25\n2000;0,04;0,5\n", "utf-8", 0),
 ]  # fmt: skip
 
@@ -106,6 +108,11 @@ REFUSED = [  # text, choice, message
     ("K1 [kN]\n3\n", {"columns": {"K1": "force_N"}}, "'force_N' for 'K1 .kN.', but the file has the unit kN"),
     ("K1 [kN]\n3\n", {"columns": {"K1": "fors_N"}}, "columns names 'fors_N' for 'K1 .kN.'; did you mean 'force'"),
     (TWO + "1;2\n", {"skip": ["Zeit"]}, "skip names 'Zeit', but the columns are 'force_N', 'indentation_mm'"),
+    ("Kraft [N];Weg [mm]\nkN;mm\n1;2\n", {}, "column 'Kraft .N.' has the unit kN in the line below: correct one"),
+    ("force_N;Weg\nkN;mm\n1;2\n", {}, "column 'force_N' has the unit kN in the line below: correct one"),
+    ("Force 1 [N];Force 2 [N]\n1;2\n", {}, "column 'Force 1 .N.' is not known; did you mean 'force'"),
+    ("-Force [N]\n1\n", {}, "column '-Force .N.' is not known"),
+    ("Nr.;force_N\n1;2\n2;4\nMean;3\n", {"skip": ["Nr."]}, "line 4 begins with 'Mean', and other lines with a numb"),
     (";force_N\n1;300\n", {}, "a column of numbers has no head: name it, or skip it with skip = "),
     (TWO + "1;2\n" + "s;N\n" + "3;4\n" * 2, {}, "line 3 has text, and more numbers are below it than above"),
     ("", {}, "it has no line of column heads above lines of numbers"),
@@ -142,7 +149,18 @@ def test_an_excel_file_is_read_from_the_sheet_with_the_columns(tmp_path, monkeyp
     for row in (["Zeit", "Kraft", "Weg"], ["s", "N", "mm"], *zip(*TRUTH.values(), strict=True), [], ["Ende"]):
         sheet.append(row)
     book.save(tmp_path / "press.xlsx")
-    check_truth(read_columns(tmp_path / "press.xlsx", NAMES))
+    read = read_columns(tmp_path / "press.xlsx", NAMES)
+    check_truth(read)
+    assert read.remark() == "press.xlsx: 3 rows read, left out 1 line of text"
+    book.create_sheet("mean of 5").append([1250])
+    book.save(tmp_path / "press.xlsx")
+    remark = "press.xlsx, sheet 'curve': 3 rows read, left out 1 line of text, 1 line in other sheets"
+    assert read_columns(tmp_path / "press.xlsx", NAMES).remark() == remark
+    book.copy_worksheet(sheet).title = "second"
+    book.save(tmp_path / "press.xlsx")
+    with pytest.raises(ValueError, match="the sheets 'curve' and 'second' have such columns: keep one of them"):
+        read_columns(tmp_path / "press.xlsx", NAMES)
+    del book["second"]
     sheet["B3"].number_format = "0.0%"  # Excel shows 30000.0 %
     book.save(tmp_path / "press.xlsx")
     assert np.isnan(read_columns(tmp_path / "press.xlsx", NAMES).columns[1]).tolist() == [True, False, False]

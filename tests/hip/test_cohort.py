@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Distributed, Processes, Serial
+from ballsocket.core.executors import Processes, Serial
 from ballsocket.hip import population, read_hip
 from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, table_columns, write_csv
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
@@ -192,10 +192,9 @@ def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("engine", [Processes(workers=2), Distributed(workers=2)], ids=["processes", "dask"])
-def test_results_do_not_depend_on_the_executor(engine):
+def test_results_do_not_depend_on_the_executor():
     run = cohort_run(40)
-    np.testing.assert_array_equal(run.simulate().table, run.simulate(engine).table)
+    np.testing.assert_array_equal(run.simulate().table, run.simulate(Processes(workers=2)).table)
 
 
 @pytest.mark.long

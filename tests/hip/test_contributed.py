@@ -1,19 +1,11 @@
 """A new cycle and new laws, as docs/contributing describes them, in a copy of the package."""
 
 import json
-import os
-import re
-import shutil
-import subprocess
-import sys
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
-import ballsocket as bs
-
-from ..places import CONTRIBUTING
+from ..extended_package import extend_package, page_code, run_python
 
 HIP = """
 joint = "hip-28"
@@ -77,40 +69,25 @@ ADDED = {
 """Page, new module, registry, new name, and the lines of the registry before which it is imported and listed."""
 
 
-@pytest.fixture
-def package(tmp_path):
-    """Copy the package into a folder with hip files, and add the code of the pages with two lines in a registry."""
-    room = tmp_path / "ballsocket" / "hip"
-    shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
-    for page, (module, registry, name, before_import, entry) in ADDED.items():
-        text = (CONTRIBUTING / f"{page}.md").read_text("utf-8")
-        code = re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
-        assert code.count("\n") <= 21
-        (room / f"{module}.py").write_text(code, "utf-8")
-        listing = (room / f"{registry}.py").read_text("utf-8")
-        assert before_import in listing
-        assert entry in listing
-        listing = listing.replace(before_import, f"from .{module} import {name}\n{before_import}", 1)
-        (room / f"{registry}.py").write_text(listing.replace(entry, f"{entry}    {name},\n", 1), "utf-8")
-    (tmp_path / "hip.toml").write_text(HIP, "utf-8")
-    (tmp_path / "uncertain.toml").write_text(HIP + UNCERTAINTY, "utf-8")
-    return tmp_path
-
-
-def run(package, *words):
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    environment |= {"PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"}
-    process = subprocess.run(
-        [sys.executable, *words], cwd=package, capture_output=True, encoding="utf-8", check=False, env=environment
-    )
-    assert process.returncode == 0, process.stderr
-    return process.stdout
+def checked_run(*words):
+    done = run_python(*words)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 @pytest.mark.long
-def test_a_new_cycle_and_new_laws_work_in_python_files_uncertainty_explorer_and_on_the_command_line(package):
-    run(package, "-c", PYTHON + (EXPLORER if find_spec("tornado") else ""))
-    answer = json.loads(run(package, "-m", "ballsocket", "hip", "hip.toml", "--json"))
+def test_a_new_cycle_and_new_laws_work_in_python_files_uncertainty_explorer_and_on_the_command_line(tmp_path):
+    files, changes = {}, {}
+    for page, (module, registry, name, before_import, entry) in ADDED.items():
+        files[f"hip/{module}.py"] = page_code(page)[0]
+        assert files[f"hip/{module}.py"].count("\n") <= 21
+        lines = {before_import: f"from .{module} import {name}\n{before_import}", entry: f"{entry}    {name},\n"}
+        changes[f"hip/{registry}.py"] = lines
+    extend_package(tmp_path, files, changes)
+    (tmp_path / "hip.toml").write_text(HIP, "utf-8")
+    (tmp_path / "uncertain.toml").write_text(HIP + UNCERTAINTY, "utf-8")
+    checked_run(tmp_path, "-c", PYTHON + (EXPLORER if find_spec("tornado") else ""))
+    answer = json.loads(checked_run(tmp_path, "-m", "ballsocket", "hip", "hip.toml", "--json"))
     assert answer["laws"]["wear"] == {"law": "threshold", "coefficient_mm3_per_Nm": 1e-6, "threshold_MPa": 0.5}
     assert answer["laws"]["creep"] == {"law": "exponential", "compliance_per_MPa": 1e-3, "time_s": 3600.0}
     assert answer["history"][-1]["creep_depth"] > 0

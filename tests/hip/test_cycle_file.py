@@ -255,10 +255,15 @@ def test_orthoload_forces_act_on_the_ball_and_rotate_with_it(tmp_path, separator
     assert cycle.rotations == pytest.approx(ISO.rotations, abs=0)
     mirrored = orthoload(tmp_path / "left.csv", -in_femur(FORCE) * [[-1.0], [1.0], [1.0]])
     assert read_cycle(mirrored, options=LEFT).forces == pytest.approx(read_cycle(file).forces, abs=1e-3)
+    (note,) = (note for note in read_cycle(file).notes if "force" in note)
+    assert note.startswith("the force acts on the ball and is in the frame of the femur")
     on_cup = read_cycle(orthoload(tmp_path / "cup.csv", FORCE), options=TableOptions(frame="cup", force_on="socket"))
+    assert not any("force" in note for note in on_cup.notes)
     assert on_cup.frame is Frame.CUP
     assert on_cup.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
     assert read_cycle(tmp_path / "cup.csv").forces == pytest.approx(-on_cup.forces, abs=1e-9)
+    with pytest.raises(ValueError, match="other body, socket or ball, state this by force_on"):
+        hip(cycle=read_cycle(orthoload(tmp_path / "reversed.csv", FORCE), options=TableOptions(frame="cup")))
 
 
 def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):

@@ -82,18 +82,16 @@ def test_walking_refreshes_a_part_of_the_contact_and_its_core_settles():
 
 
 @pytest.mark.long
-def test_films_on_cells_of_several_widths_agree_within_their_stated_errors():
-    films = [hip(ring_width=radians(width)).film() for width in (3.0, 2.0, 1.0)]
-    finest = films[-1]
-    for film in films[:-1]:
-        errors = film.error + finest.error
-        for name in ("central", "least"):
-            assert (np.abs(getattr(film, name) / getattr(finest, name) - 1) < errors).all()
-        error = film.refreshed_mean_error + finest.refreshed_mean_error
-        assert film.refreshed_mean.mean() == pytest.approx(finest.refreshed_mean.mean(), rel=error)
-        # cells add but a small part to the error of the wave: their own error is tested here
-        assert film.central.mean() == pytest.approx(finest.central.mean(), rel=0.02)
-        assert film.core_mean.mean() == pytest.approx(finest.core_mean.mean(), rel=0.03)
+def test_films_on_cells_of_two_widths_agree_within_their_stated_errors():
+    film, finest = (hip(ring_width=radians(width)).film() for width in (3.0, 1.5))
+    errors = film.error + finest.error
+    for name in ("central", "least"):
+        assert (np.abs(getattr(film, name) / getattr(finest, name) - 1) < errors).all()
+    error = film.refreshed_mean_error + finest.refreshed_mean_error
+    assert film.refreshed_mean.mean() == pytest.approx(finest.refreshed_mean.mean(), rel=error)
+    # cells add but a small part to the error of the wave: their own error is tested here
+    assert film.central.mean() == pytest.approx(finest.central.mean(), rel=0.02)
+    assert film.core_mean.mean() == pytest.approx(finest.core_mean.mean(), rel=0.03)
 
 
 def test_uniform_wear_has_the_film_of_a_larger_clearance():

@@ -268,6 +268,8 @@ UNCERTAIN = [
     ("coefficient = { median = 1e-6, factor = 0.5 }", "coefficient.factor = 0.5 is not allowed: a factor of one"),
     ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
     ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),
+    ("wear = { low = 1, high = 2 }", "separate table, .wear.; of its keys this table has 'coefficient'"),
+    ("viscosty = { low = 1, high = 2 }", "did you mean 'viscosity' in .film."),
     ("body_weight = { low = '70 kg', high = '90 kg' }", "body_weight.low = '70 kg' is not a force"),
     ("cycles_per_year = { low = -2, high = 1 }", "the median of cycles_per_year = -0.5 is not allowed"),
     ("inclination = { low = 70, high = 80 }", "inclination = .* lies outside its tolerance"),
@@ -280,7 +282,7 @@ UNCERTAIN = [
 VALUES = 'values = "38 mm^3/Mc"\n'
 STATION_TABLES = {
     "cycles,A\n1,2\n": r"the column 'A' has no unit: write 'A \[mg\]'",
-    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "row 2 has 'x' under 'A ",
+    "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "line 3 has 'x' under 'A ",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
 MEASURED = [

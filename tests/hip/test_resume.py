@@ -3,10 +3,11 @@
 import json
 import os
 import random
+import subprocess
 import sys
 from dataclasses import fields, replace
 from math import radians
-from subprocess import DEVNULL, Popen, TimeoutExpired
+from subprocess import DEVNULL, PIPE, Popen, TimeoutExpired
 from time import monotonic
 
 import numpy as np
@@ -34,6 +35,7 @@ KINDS = {
     "creeping shell": {"surface": bs.ClosedShell(), "creep": logarithmic()},
     "cup": {"surface": bs.RealCup()},
 }
+QUICK_KINDS = list(KINDS)[:4]
 CYCLES, REPORTS = 1e5, [2e4]
 
 
@@ -60,9 +62,10 @@ def interrupted(use, store, blocks):
     raise AssertionError("the run did not end")
 
 
-@pytest.mark.parametrize("blocks", [3, pytest.param(1, marks=pytest.mark.long)])
 @pytest.mark.parametrize(
-    "kind", [*list(KINDS)[:4], *(pytest.param(kind, marks=pytest.mark.long) for kind in list(KINDS)[4:])]
+    ("kind", "blocks"),
+    [(kind, 3) for kind in QUICK_KINDS]
+    + [pytest.param(kind, 1 + number % 2, marks=pytest.mark.long) for number, kind in enumerate(KINDS)],
 )
 def test_an_interrupted_run_equals_an_uninterrupted_one(kind, blocks, tmp_path):
     use = hip(**WIDE | KINDS[kind])
@@ -127,15 +130,14 @@ KILLS = int(os.environ.get("BALLSOCKET_KILLS", "8"))
 def test_a_process_killed_at_random_times_gives_the_same_json(tmp_path):
     reports = ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]")
     file = str(write_edited_file(tmp_path, reports, ("instants = 100", "instants = 60")))
-    expected, draw = numbers(run("hip", file, "--json")), random.Random(20)
     words = [sys.executable, "-m", "ballsocket", "hip", file, "--json", "--store"]
     begun = monotonic()
-    Popen([*words, str(tmp_path / "timed")], stdout=DEVNULL, stderr=DEVNULL).wait(600)
-    duration, kills, number = monotonic() - begun, 0, 0
+    expected = numbers(subprocess.run([*words, str(tmp_path / "timed")], stdout=PIPE, check=True))
+    duration, kills, number, draw = monotonic() - begun, 0, 0, random.Random(20)
     while kills < KILLS and number < 4 * KILLS:
         number += 1
         store = str(tmp_path / f"store{number}")
-        for _ in range(6):  # each resumes what the one before has stored
+        for _ in range(4):  # each resumes what the one before has stored
             process = Popen([*words, store], stdout=DEVNULL, stderr=DEVNULL)
             try:
                 process.wait(draw.uniform(0.5, 1.0) * duration)

@@ -315,4 +315,4 @@ def test_ball_and_socket_have_the_same_work_in_each_instant():
 def test_report_page_has_a_map_of_the_ball_wear(tmp_path):
     page = write_hip_report(hip(**QUICK, **BOTH).after(1e4), tmp_path / "ball.html").read_text(encoding="utf-8")
     assert "Wear of the ball" in page
-    assert page.count("data:image/png;base64") == 7
+    assert page.count("data:image/png;base64") == 6

@@ -9,8 +9,10 @@ import pytest
 import ballsocket as bs
 from ballsocket.identification import Estimate, HeavyTailed, Machine, Measured, NormalScatter
 from ballsocket.identification.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
+from ballsocket.identification.result import von_neumann_ratio
 from ballsocket.identification.sensitivity import Sensitivity
 from ballsocket.identification.synthetic import Trials, draw_data_sets, trials
+from ballsocket.reports.identify_results import corner_figure
 from ballsocket.studies import Normal
 
 from .rigid import JOINT, MODEL
@@ -81,6 +83,25 @@ def test_good_data_have_no_notes_on_the_fit():
     result = identified(offset, free={})  # the machine alone is unknown
     assert result.point == pytest.approx({"machine.offset": 0.004}, rel=1e-6)
     assert (result.joint, "would move" in " ".join(result.notes)) == (JOINT, False)
+
+
+def test_residuals_that_follow_the_load_are_noted_with_their_ratio():
+    rising = np.array([-1.1, -1.0, -0.4, 0.5, 1.2])  # squared differences 0.01 + 0.36 + 0.81 + 0.49
+    ratio, probability = von_neumann_ratio(np.array([5.0, 4.0, 3.0, 2.0, 1.0]), rising)
+    assert ratio == pytest.approx(1.67 / (rising @ rising - 5 * rising.mean() ** 2))
+    assert probability == pytest.approx(2 / 120, abs=0.003)  # two of 120 orders, by 20 000 draws
+    shallow = measured(values=MODEL.press(JOINT.replace(clearance=0.03), force=FORCE).indentation)
+    assert [note for note in identified(shallow, free={"liner.young": (200.0, 5000.0)}).notes if "trend" in note]
+    assert not [note for note in identified(shallow).notes if "trend" in note]  # with the clearance free
+
+
+def test_the_corner_figure_draws_the_printed_bands():
+    noise = np.array([3.0, -2.0, 1.0, 2.0, -3.0, 1.0])
+    result = identified(measured(values=CONTACT.indentation + 2e-4 * noise, uncertainty=None))
+    (panel,) = corner_figure(result).axes
+    estimate = result["clearance"]
+    assert [line.get_xdata()[0] for line in panel.lines] == pytest.approx([estimate.low, estimate.high])
+    assert np.ptp(panel.patches[0].xy[:, 0]) > 1.2 * (estimate.high - estimate.low)  # Student's quantile: 2.57
 
 
 def test_the_best_value_at_the_end_of_a_range_is_noted():

@@ -128,14 +128,15 @@ def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
 
 @pytest.mark.long
 def test_reynolds_equation_confirms_the_core_of_another_joint():
-    """Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles. Without drift 20 cycles leave 121 nm."""
+    """Reynolds' equation has 164 and 168 nm after 10 and 20 cycles. Without drift 20 cycles leave 121 nm."""
     joint = bs.Joint(ball_radius=14.0, clearance=0.06, liner_thickness=8.0, liner=LINER)
     case = {"joint": joint, "modulus": 250.0, "force": 800.0, "amplitude": 0.45, "tilt": 45.0, "count": 20}
     mesh, instants = rocking(**case)
-    judge = 1e6 * solve_in_frame_of_the_film(**case, cycles=20, viscosity=1e-8)
-    for cycles in (3, 10, 20):
+    judge = 1e6 * solve_in_frame_of_the_film(**case, cycles=3, viscosity=1e-8)[-1]
+    assert judge == pytest.approx(315.0, rel=0.01)
+    for cycles, expected in ((3, judge), (10, 164.0), (20, 168.0)):
         film = carry_over_cycle(mesh, 1e-8, instants, cycles)
-        assert 1e6 * film.central[-1] == pytest.approx(judge[cycles - 1], rel=film.error[-1])
+        assert 1e6 * film.central[-1] == pytest.approx(expected, rel=film.error[-1])
 
 
 REVERSING_PARTS = np.array([0.0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.35, 0.4, 0.45, 0.475])
@@ -267,7 +268,7 @@ def test_an_elastic_start_up_ends_at_the_steady_film():
     """An axial load in a real cup, whose motion begins at once."""
     model, oil = bs.Sphere(), bs.Lubricant(viscosity=1e-2)
     steady = bs.film(model.press(JOINT, force=1500.0), spin=(5.0, 0, 0), lubricant=oil, method="reynolds")
-    steps = {"forces": np.full(15, 1500.0), "spins": np.full((15, 3), (5.0, 0, 0)), "durations": 0.06}
+    steps = {"forces": np.full(8, 1500.0), "spins": np.full((8, 3), (5.0, 0, 0)), "durations": 0.12}
     film = film_over_steps(model, JOINT, **steps, lubricant=oil)
     assert film.film.converged
     assert film.central[-1] == pytest.approx(steady.central, rel=0.01)
@@ -276,11 +277,11 @@ def test_an_elastic_start_up_ends_at_the_steady_film():
 
 @pytest.mark.long
 def test_reynolds_equation_confirms_the_carried_film():
-    """The third cycle from a flooded bore. The front of fresh lubricant arrives up to two instants earlier."""
+    """The second cycle from a flooded bore. The front of fresh lubricant arrives up to two instants earlier."""
     problem, start = springs_problem(0.4, 3.0, 16)
     instants = swing(1.5)
     steps = [LoadStep(force=problem.force, spin=each.spin, duration=each.duration) for each in instants]
-    film = solve_cycle(problem, start, steps, cycles=3)
+    film = solve_cycle(problem, start, steps, cycles=2)
     assert film.converged
     judge = film.thickness[:, :16].mean(axis=1)
     wave = carry_over_cycle(MESH, VISCOSITY, instants)

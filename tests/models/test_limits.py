@@ -164,6 +164,10 @@ def test_adhesive_socket_without_adhesion_is_hess_forsbach():
     sticky, paper = (model.press(HIP, force=3000.0) for model in models)
     for name in ("indentation", "half_angle", "max_pressure", "stiffness", "energy"):
         assert getattr(sticky, name) == pytest.approx(getattr(paper, name), rel=1e-10), name
+    for clearance in (0.5, 3.0):
+        sticky, paper = (model.press(HIP.replace(clearance=clearance), force=3000.0) for model in models)
+        linear = ["sin²φ" in " ".join(contact.notes) for contact in (sticky, paper)]
+        assert linear == [clearance == 3.0] * 2
 
 
 def test_custom_moduli_are_accepted():

@@ -9,9 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
-from ballsocket.models.refined import RefinedSolution
-from ballsocket.models.refined_inverse import solve_contact
-from ballsocket.models.refined_state import NUMBERS
+from ballsocket.models.refined import FIT, RefinedSolution
 
 from ..joints import HIP, random_joint
 from ..places import DATA
@@ -54,11 +52,9 @@ def test_new_random_points_agree_with_the_exact_model():
     angle = np.radians(rng.uniform(15.0, 60.0, 20))
     exact = bs.Exact(tolerance=1e-7).press(joint_of(poisson, ratio), half_angle=angle)
     contact = MODEL.press(joint_of(poisson, ratio), half_angle=angle)
-    valid = contact.valid
-    assert valid.sum() > 10
     for name in (*QUANTITIES, "stiffness", "energy"):
         rtol = WITHIN if name in QUANTITIES else 0.05
-        found, known = getattr(contact, name)[valid], getattr(exact, name)[valid]
+        found, known = getattr(contact, name), getattr(exact, name)
         np.testing.assert_allclose(found, known, rtol=rtol, err_msg=f"{poisson} {ratio}")
 
 
@@ -96,7 +92,7 @@ def test_a_small_contact_is_hertzian():
 
 @pytest.mark.parametrize(("low", "high", "within"), [(-2, -2, 2.3e-3), (1, 1, 2.4e-4), (0, 1, 0.01), (-2, 0, 0.032)])
 def test_cubic_of_the_plane_bed_has_the_stated_error(low, high, within):
-    scale, square, cube = NUMBERS["plane"]
+    scale, square, cube = FIT["plane"]
     for s in np.linspace(low, high, 51):
         true = mpmath.log(mpmath.gamma(1 - s / 2) * mpmath.gamma(2 - s / 2) / mpmath.mpf(2) ** s)
         assert abs(-s * np.log(scale) + square * s**2 + cube * s**3 - true) < within
@@ -192,7 +188,7 @@ def test_validity_is_the_measured_range_of_width_and_poisson_ratio():
 @pytest.mark.parametrize(("coefficient", "position"), [(0.3, 0.0), (0.5, 0.0), (0.8, 0.25), (2.0, 0.5)])
 def test_largest_pressure_of_a_full_profile_lies_on_a_ring(coefficient, position):
     """sqrt(1 - y)(1 + β y) is largest at y = (2β - 1)/(3β) for β above 1/2, which no fit has reached."""
-    solution = RefinedSolution(joint=HIP, edge=0.9)
+    solution = RefinedSolution(joint=HIP, half_angle=0.9, indentation=0.1)
     vars(solution)["_shape_coefficient"] = coefficient
     angles = np.linspace(0.0, 0.9, 20_001)
     profile = solution.pressure(angles)
@@ -216,7 +212,6 @@ def test_a_solution_is_a_jax_tree():
 
 @pytest.mark.parametrize("kind", ["force", "indentation"])
 def test_half_angles_of_loads_are_those_that_the_loads_follow_from(kind):
-    """Inside and outside the range of the fitted start; the last correction leaves its square."""
     random = np.random.default_rng(8)
     poisson, ratio = random.uniform(-0.5, 0.495, 2000), np.exp(random.uniform(np.log(0.05), np.log(50.0), 2000))
     angle = np.radians(random.uniform(0.1, 84.0, 2000))
@@ -228,6 +223,3 @@ def test_half_angles_of_loads_are_those_that_the_loads_follow_from(kind):
     found = MODEL.press(joint, **{kind: load})
     np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-11)
     assert set(found.status[reached]) == {bs.Status.OK}
-    scaled = load / (1e-3 if kind == "indentation" else 1e-3 * 1.0 * 1.0)
-    shift = solve_contact(kind, scaled, liner_coefficients(poisson, 1 + 1 / ratio), ratio)[1]
-    assert np.max(abs(shift[reached])) < 1.5e-6

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from ballsocket.problem.gaps import CircularGap, LinearGap, check_gap
+from ballsocket.evidence.question import read_question
+from ballsocket.identification.file import read_identify
+from ballsocket.problem.gaps import GAP_KINDS, CircularGap, LinearGap, check_gap
+from ballsocket.studies.file import read_study
 
 ANGLES = np.array([0.05, 0.4, 0.9, 1.3])
 GAPS = [LinearGap(clearance=0.3, socket_radius=18.0), CircularGap(clearance=0.3, socket_radius=18.0)]
@@ -79,3 +82,31 @@ def test_other_gaps_are_rejected():
     for value in (GAPS[0], "linear"):
         with pytest.raises(TypeError, match="gap must be LinearGap or CircularGap, or None .*, got "):
             check_gap(value)
+
+
+QUESTION = """question = "May it be?"
+context_of_use = "A test."
+risk = { influence = "low", consequence = "low" }
+required = { accuracy = "5 %" }
+matrix = { force = "1 kN" }"""
+FILES = {
+    read_study: 'model = "exact"\naxes = { force = ["1 kN", "2 kN"] }',
+    read_identify: 'model = "exact"\ndata = [{ quantity = "indentation", values = "20 um", force = "1 kN" }]',
+    read_question: QUESTION,
+}
+
+
+@pytest.mark.parametrize(("read", "text"), FILES.items(), ids=["study", "identify", "evidence"])
+def test_files_choose_the_gap_of_their_model(read, text, tmp_path):
+    path = tmp_path / "file.toml"
+    for name, gap in {**GAP_KINDS, None: None}.items():
+        chosen = "" if name is None else f'gap = "{name}"'
+        path.write_text(f'joint = "hip-36"\n{chosen}\n{text}', encoding="utf-8")
+        assert read(path).model.gap is gap
+    path.write_text(path.read_text("utf-8").replace("exact", "hertz").replace("\n\n", '\ngap = "round"\n'), "utf-8")
+    with pytest.raises(ValueError, match="gap 'round' is not known; known: linear, circular"):
+        read(path)
+    path.write_text(path.read_text("utf-8").replace("round", "linear"), "utf-8")
+    if read is not read_question:
+        with pytest.raises(ValueError, match="hertz has no choice of the gap; models with one: exact, fem, sphere"):
+            read(path)

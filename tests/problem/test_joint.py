@@ -212,6 +212,8 @@ def test_a_changed_joint_keeps_the_lengths_that_it_was_made_from(lengths, change
     joint = bs.Joint(**lengths, liner=bs.UHMWPE).replace(**changes)
     assert (joint.ball_radius, joint.clearance, joint.liner_thickness) == pytest.approx(expected, rel=1e-13)
     assert joint.replace(liner=bs.POM).given_lengths == joint.given_lengths
+    several = bs.Joint(head_diameter=np.array([28.0, 32.0]), clearance=0.1, liner_thickness=5.0, liner=bs.POM)
+    assert not several.given_lengths["head_diameter"].flags.writeable
 
 
 @pytest.mark.parametrize(

@@ -91,10 +91,19 @@ def test_files_keep_what_they_give_through_the_shell_and_the_explorer(tmp_path):
     assert "held: radial clearance 0.1 mm, outer diameter 52 mm" in printed
     rows = np.genfromtxt(out, delimiter=",", names=True)
     np.testing.assert_allclose(rows["outer_diameter_mm"], 52.0)
+    np.testing.assert_allclose(rows["liner_thickness_mm"], [7.9, 1.9])  # which follows
     np.testing.assert_allclose(rows["max_pressure_MPa"], pressures(bs.Exact(), (BY_HAND[1], BY_HAND[-1])), rtol=1e-6)
     pressed = run("press", "cup.toml", "--head-diameter=40", "--force=3 kN", folder=tmp_path).stdout
     assert "liner 1.9 mm" in pressed
     assert "outer diameter 52 mm" in pressed
+
+
+def test_a_study_of_a_preloaded_joint_holds_its_interference():
+    fitted = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=np.radians(240.0)), ring_width=np.radians(6.0))
+    pressures = bs.study(model, fitted, quantities=["max_pressure"], liner_thickness=[2.0, 3.0], force=0.0)
+    alone = [model.press(fitted.replace(liner_thickness=value), force=0.0).max_pressure for value in (2.0, 3.0)]
+    np.testing.assert_allclose(pressures.max_pressure.values.ravel(), alone, rtol=1e-9)
 
 
 def test_a_shell_that_follows_from_the_outside_leaves_the_wall_open():

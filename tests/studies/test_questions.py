@@ -338,6 +338,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
         ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
+        ('"1 kN"', '"-1 kN"', r"s.toml: axes.force\[0\] = '-1 kN' is not allowed: a force \(N\) is 0 or more"),
         ("seed = 3", "correlation = ['clearance: 0.5']", "s.toml: .*is not a correlation, such as 'clearance, liner_y"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
         ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
@@ -349,7 +350,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
-    ids=range(17),
+    ids=range(18),
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)

@@ -98,7 +98,10 @@ def test_a_material_keeps_its_strength_while_its_elastic_constants_vary():
     assert "utilisation is that of the ball alone" in study_summary(unknown)["notes"][-1]
     rigid = bs.study(bs.Hertz(), replace(hip, ball=None), quantities=["utilisation"], force=1.0, liner=bs.ALUMINA)
     assert np.isnan(rigid.utilisation.item())
-    assert study_summary(rigid)["notes"][-1] == "utilisation: strength not checked: the liner has no yield stress"
+    assert (
+        study_summary(rigid)["notes"][-1]
+        == "utilisation: strength not checked: the liner has no yield stress, give yield_stress in its table"
+    )
 
 
 def test_each_point_that_is_not_valid_has_its_reason(tmp_path):

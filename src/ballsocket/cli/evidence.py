@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 from rich.console import Console
@@ -19,19 +19,14 @@ from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
 from ..evidence.credibility_levels import Record
-from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
-from ..evidence.pack import Listener, gather_evidence
-from ..evidence.plan import count_stored_pieces, remove_stored_pieces
+from ..evidence.folder import SUMS, WORK, check_folder, digest, write
+from ..evidence.pack import Listener, count_stored_pieces, gather_evidence, remove_stored_pieces
 from ..evidence.question import Question, read_question
-from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
 from ..reports.evidence_page import conclusions, evidence_page
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson
 from .root import FAILURE, app, echo_path
-
-if TYPE_CHECKING:
-    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 
 @app.command()
@@ -44,18 +39,6 @@ def evidence(
             help="Folder of an evidence pack: compute everything again and list the differences. Default: write a pack."
         ),
     ] = None,
-    sign: Annotated[
-        Path | None,
-        typer.Option(
-            help="File of an OpenSSH private key (Ed25519) that signs the checksums of the pack. Default: no signature."
-        ),
-    ] = None,
-    verify: Annotated[
-        Path | None,
-        typer.Option(
-            help="With --check: public key file that must match the signature of the pack. Default: not verified."
-        ),
-    ] = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="End with exit status 1 unless every limit of the question is kept.")
     ] = False,
@@ -65,25 +48,19 @@ def evidence(
     """Write or check an evidence pack for a computed number.
 
     The pack is a page and JSON with verification, comparison with published results, and uncertainty. The same command
-    resumes a stopped run; a signed pack is computed in one run.
+    resumes a stopped run.
 
-    Exit status: 0 success, 1 with --strict: a limit is not kept, 2 wrong input, 3 the pack differs from the computation
-    or has an invalid signature.
+    Exit status: 0 success, 1 with --strict: a limit is not kept, 2 wrong input, 3 the pack differs from the results.
     """
     needs("study", "xarray")
     if (question is None) == (check is None):
         raise ValueError("a question file is needed, or --check with the folder of a pack")
-    if verify is not None and check is None:
-        raise ValueError("--verify needs --check with the folder that is signed")
-    if verify is not None and sign is not None:
-        raise ValueError("--verify and --sign exclude each other: one reads the signature, one replaces it")
-    key = None if sign is None else read_private_key(sign)
     engine = Processes(workers=workers)
     if check is not None:
-        record = _check(check, engine, as_json, key, None if verify is None else read_public_key(verify))
+        record = _check(check, engine, as_json)
     else:
         assert question is not None
-        record = _gather(read_question(question), out, engine, as_json, key)
+        record = _gather(read_question(question), out, engine, as_json)
     if strict and not all(limit["verdict"] == Verdict.KEPT.word for limit in record["limits"]):
         raise typer.Exit(_LIMIT_NOT_KEPT)
 
@@ -92,100 +69,65 @@ _LIMIT_NOT_KEPT = 1
 """Exit status with --strict if a limit is not kept, or if that is not known."""
 
 
-def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> Record:
-    """Compute and write the pack of a question, signed if there is a key; return its record."""
+def _gather(question: Question, out: Path, engine: Engine, as_json: bool) -> Record:
+    """Compute and write the pack of a question; return its record."""
     check_folder(out, question)
-    resumed = 0 if key is not None else count_stored_pieces(question, out / WORK)
-    with _show_progress() as progress, tempfile.TemporaryDirectory() as temporary:
-        work = out / WORK if key is None else Path(temporary)
-        record = gather_evidence(question, work, progress, engine)
+    resumed = count_stored_pieces(question, out / WORK)
+    with _show_progress() as progress:
+        record = gather_evidence(question, out / WORK, progress, engine)
         path = write(question, record, evidence_page, out)
     remove_stored_pieces(out / WORK)
-    signed = None if key is None else Signed(public_key_of(key), None)
-    if key is not None:
-        sign_pack(out, key)
-    notes = [*conclusions(record), *([_RESUMED.format(resumed)] if resumed else [])]
-    if as_json:
-        more = {"digest": digest_of(out), "signature": None if signed is None else signed.summary()}
-        echo_json({**record, "folder": str(out), **more, "valid": record["accurate"]["holds"], "notes": notes})
-        return record
-    for conclusion in conclusions(record):
-        typer.echo(conclusion)
-    echo_path(path)
-    typer.echo(f"digest of the pack {digest_of(out)}")
-    if signed is not None:
-        typer.echo(f"signed with {signed.key.fingerprint}")
+    notes = conclusions(record)
     if resumed:
-        typer.echo(_RESUMED.format(resumed))
+        notes.append(
+            f"{resumed} results were read from an earlier, stopped run and not computed: --check computes all of them "
+            "again"
+        )
+    identifier = digest((out / SUMS).read_bytes())
+    if as_json:
+        more = {"folder": str(out), "digest": identifier, "valid": record["accurate"]["holds"], "notes": notes}
+        echo_json({**record, **more})
+        return record
+    for note in notes:
+        typer.echo(note)
+    echo_path(path)
+    typer.echo(f"digest of the pack {identifier}")
     return record
 
 
-_RESUMED = "{} results were read from an earlier, stopped run and not computed: --check computes all of them again"
-
-
-def _check(
-    folder: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None, expected: PublicKey | None
-) -> Record:
-    """Compute a pack again, print the differences and its signature, and sign it if it is equal and there is a key.
-
-    Return its record.
-    """
+def _check(folder: Path, engine: Engine, as_json: bool) -> Record:
+    """Compute a pack again and print the differences; return its record."""
     with _show_progress() as progress:
-        comparison = compare(folder, evidence_page, progress, engine)
-    signed, defect = (None, "") if key is not None else _signature(folder, expected, comparison.sums)
-    good = not comparison.differences and not defect
-    if key is not None and good:
-        sign_pack(folder, key, comparison.sums)
-        signed = Signed(public_key_of(key), None)
+        comparison = compare(folder, progress, engine)
+    record, differences = comparison.record, comparison.differences
     if as_json:
         echo_json(
             {
                 "version": __version__,
-                "valid": good,
-                "made_by": comparison.made_by,
+                "valid": not differences,
+                "made_by": record.get("version"),
+                "made_on": record.get("made_on"),
                 "compared": comparison.count,
-                "differences": [difference.summary() for difference in comparison.differences],
+                "differences": list(map(asdict, differences)),
                 "digest": comparison.digest,
-                "signature": {"error": defect} if defect else None if signed is None else signed.summary(),
+                "notes": comparison.notes,
             }
         )
     else:
-        for difference in comparison.differences:
-            typer.echo(str(difference))
-        equal = max(0, comparison.count - len(comparison.differences))
-        typer.echo(f"{equal} of {comparison.count} numbers, words and files are unchanged")
-        typer.echo(f"written by ballsocket {comparison.made_by}, computed again by {fingerprint()}")
-        typer.echo(f"digest of the pack {comparison.digest}")
-        typer.echo(_describe_signature(signed, defect, key is not None))
-    if not good:
+        equal, made = max(0, comparison.count - len(differences)), f"{record.get('version')} on {record.get('made_on')}"
+        for line in (
+            *map(str, differences),
+            f"{equal} of {comparison.count} numbers, words and files are unchanged",
+            f"written by ballsocket {made}, computed again by {fingerprint()}",
+            *(f"note: {note}" for note in comparison.notes),
+            f"digest of the pack {comparison.digest}",
+            "author, question and date are not confirmed by a computation: sign checksums.txt with ssh-keygen or gpg",
+            *(() if differences else conclusions(record)),
+        ):
+            typer.echo(line)
+    if differences:
         raise typer.Exit(FAILURE)
-    if not as_json:
-        for conclusion in conclusions(comparison.record):
-            typer.echo(conclusion)
-    return comparison.record
-
-
-def _signature(folder: Path, expected: PublicKey | None, sums: bytes) -> tuple[Signed | None, str]:
-    """Return the signature of a pack and an error message, which is empty for a valid signature."""
-    try:
-        return signature_of(folder, expected, sums), ""
-    except SignatureError as error:
-        return None, str(error)
-
-
-def _describe_signature(signed: Signed | None, defect: str, signed_now: bool) -> str:
-    """Return the state of a signature as text."""
-    if defect:
-        return f"signature: {defect}"
-    if signed is None:
-        return (
-            "not signed: the pack differs" if signed_now else "not signed: author, question and date are not confirmed"
-        )
-    if signed_now:
-        return f"signed with {signed.key.fingerprint}"
-    if signed.expected:
-        return f"signature verified: by {signed.key.fingerprint}"
-    return f"signed with {signed.key.fingerprint}, a key that was not compared: compare it with --verify KEY.pub"
+    return record
 
 
 @contextmanager

@@ -290,6 +290,11 @@ def deck(
     if out.suffix.lower() in _FILE_ENDINGS:
         checked_path(out, ".inp")
     file = joint_options.read(joint)
+    if file.joint.clearance < 0:
+        raise ValueError(
+            f"a deck needs a clearance of 0 or more, got interference = {file.joint.interference:g} mm: press solves a "
+            "preloaded joint (model sphere), and export table has its forces"
+        )
     load = load_options.read(file)
     if tilt is not None:
         angle = read_aim({"tilt": tilt})["tilt"]

@@ -1,4 +1,4 @@
-"""Compiled loops over arrays of contacts for radial foundations and for the model `Refined`."""
+"""Compiled loop over arrays of contacts for radial foundations."""
 
 from __future__ import annotations
 
@@ -10,20 +10,15 @@ from typing import Any
 import numpy
 from numba.extending import overload
 
-from ..contact import roots
-from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..core.validity import Status
-from ..models import kinematics, liner_compliance, refined_inverse, refined_state
+from ..models import kinematics
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
 from ..models.modulus import Formula
-from ..models.refined import RefinedSolution, square_tolerance
-from ..models.refined_state import ScaledContact
 from ..models.table_3 import scaled_modulus
 from ..problem import Joint
-from .overloads import VECTOR_FUNCTIONS, as_row, compile_loop, inline_formula, pick_element, vector_formula
-from .table_kernel import LANES, copy_inputs, sum_series
+from .overloads import as_row, compile_loop, inline_formula, pick_element
 
 
 def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -114,207 +109,3 @@ for _formula in (
     kinematics.circular_stiffness,
 ):
     inline_formula(_formula)
-
-
-_FORMULAS = (
-    liner_compliance.liner_coefficients,
-    liner_compliance._evaluate_polynomial,
-    liner_compliance._scaled_polynomial,
-    liner_compliance.log_compliance,
-    liner_compliance._decay_means,
-    liner_compliance._reduced_polynomial,
-    liner_compliance.log_compliance_any_wave,
-    refined_state.log_compliances,
-    refined_state.log_slopes,
-    refined_state._log_compliance,
-    refined_state._edge_displacement,
-    refined_state._pressure_exponent,
-    refined_state.angle_derivative,
-    refined_state.scaled_contact,
-    refined_state.shift_contact,
-    refined_state.shape_coefficient,
-    refined_state.peak_position,
-    refined_state.pressure_ratio,
-    refined_inverse.half_angle_of_root,
-    refined_inverse.last_shift,
-    refined_inverse.masked_half_angle,
-    refined_inverse.start_ratio,
-    refined_inverse.start_log_estimate,
-    refined_inverse.start_coordinate,
-    refined_inverse.start_root,
-    refined_inverse.force_product,
-    refined_inverse.indentation_product,
-    roots.bracketed_update,
-)
-"""Formulas of the model, each after those that it calls."""
-
-_VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
-"""Elementary functions and formulas, by name, that compile to vector instructions."""
-
-for _refined_formula in _FORMULAS:
-    _VECTOR_FORMULAS[_refined_formula.__name__] = vector_formula(_refined_formula, _VECTOR_FORMULAS)
-
-
-_BLOCK = 16384
-"""Number of contacts whose series of the start are computed at once."""
-
-_MAX_STEPS = 60
-"""Largest number of Newton steps."""
-
-_LOAD, _RADIUS, _CLEARANCE, _THICKNESS, _YOUNG, _POISSON = range(6)
-"""Rows of the inputs."""
-
-_ROOT, _LOW, _HIGH, _FRESH, _SCALED, _PRODUCT, _SLOPE = range(6, 13)
-"""Rows of the iteration: unknown, bracket, whether its upper end is new, load, and the values of a trial contact."""
-
-_SHARE, _SHARE_RATE, _GAP, _GAP_SLOPE, _COMPLIANCE, _SECANT, _SECANT_RATE, _COMPLIANCE_RATE = range(13, 21)
-"""Rows of the trial contact: the fields of `ScaledContact`."""
-
-_X, _WAVE, _NEXT_WAVE, _CORRECTION = range(21, 25)
-"""Rows of the series of the start."""
-
-_ROW_COUNT = 25
-
-
-def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
-    shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
-    liner = joint.liner
-    numbers = (load, joint.socket_radius, joint.clearance, joint.liner_thickness, liner.young, liner.poisson)
-    inputs = tuple(as_row(number, shape) for number in numbers)
-    outputs, converged = numpy.empty((3, math.prod(shape))), numpy.empty(math.prod(shape), dtype=bool)
-    for first in range(0, len(converged), _BLOCK):
-        block = slice(first, min(first + _BLOCK, len(converged)))
-        _solve_block(kind, tuple(take_block(row, block) for row in inputs), outputs[:, block], converged[block])
-    edge, answer, max_pressure = (output.reshape(shape) for output in outputs)
-    solution = RefinedSolution(joint=joint, edge=edge)
-    vars(solution)["max_pressure"] = max_pressure
-    loads = numpy.broadcast_to(load, shape)
-    force, indentation = (loads, answer) if kind == "force" else (answer, loads)
-    failures = {Status.NOT_CONVERGED: ~converged.reshape(shape)}
-    return SolverResult(laws=solution, force=force, indentation=indentation, failures=failures)
-
-
-def take_block(row: Any, block: slice) -> Any:
-    """Take a block of an array; return a number itself."""
-    return row if isinstance(row, float) else row[block]
-
-
-def _solve_block(kind: str, inputs: tuple[Any, ...], outputs: Numbers, converged: Numbers) -> None:
-    """Solve a block of contacts; write half angle, the quantity that is not the load, and pressure to `outputs`."""
-    ratio = numpy.atleast_1d(inputs[_RADIUS] / inputs[_THICKNESS])
-    start = refined_inverse.start_series(kind, numpy.atleast_1d(inputs[_POISSON]), ratio)
-    series = start[:, 0].copy() if start.shape[1] == 1 else start
-    limits = refined_inverse.start_constants(kind)
-    _kernel(kind)(inputs, series, limits, square_tolerance(outputs), outputs, converged)
-
-
-@cache
-def _kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts for given forces or indentations."""
-    formulas = _VECTOR_FORMULAS
-    half_angle_of_root, masked_half_angle = formulas["half_angle_of_root"], formulas["masked_half_angle"]
-    last_shift, bracketed_update = formulas["last_shift"], formulas["bracketed_update"]
-    start_log_estimate, start_root = formulas["start_log_estimate"], formulas["start_root"]
-    start_coordinate, start_ratio = formulas["start_coordinate"], formulas["start_ratio"]
-    liner_coefficients, scaled_contact = formulas["liner_coefficients"], formulas["scaled_contact"]
-    shift_contact, shape_coefficient = formulas["shift_contact"], formulas["shape_coefficient"]
-    peak_position, pressure_ratio = formulas["peak_position"], formulas["pressure_ratio"]
-    product_of, is_force = formulas[f"{kind}_product"], kind == "force"
-    exp, log, end, tolerance = formulas["exp"], formulas["log"], refined_inverse.END, refined_inverse.TOLERANCE
-
-    @inline_formula
-    def write_start(series, limits, first, lanes, rows):  # type: ignore[no-untyped-def]
-        """Write dimensionless loads, first values of the unknown, and brackets of a block of contacts."""
-        power, small, large, widest = limits
-        for j in range(lanes):
-            load = rows[_LOAD, j] if rows[_LOAD, j] > 0.0 else 1.0
-            scale = rows[_CLEARANCE, j] * (rows[_YOUNG, j] * rows[_RADIUS, j] if is_force else 1.0)
-            rows[_SCALED, j] = load / scale
-            rows[_ROOT, j] = start_log_estimate(rows[_SCALED, j], power, small, large, widest)
-            ratio = start_ratio(rows[_RADIUS, j] / rows[_THICKNESS, j])
-            rows[_X, j] = start_coordinate(exp(rows[_ROOT, j]), ratio, widest)
-        sum_series(series, first, lanes, rows, _X, _CORRECTION, _WAVE, _SHARE)
-        for j in range(lanes):
-            root = start_root(rows[_ROOT, j], rows[_CORRECTION, j])
-            rows[_ROOT, j], rows[_LOW, j], rows[_HIGH, j] = root, root - 6.0, end
-            rows[_FRESH, j] = 1.0 if root < end else 0.0
-
-    @inline_formula
-    def evaluate_contacts(lanes, rows):  # type: ignore[no-untyped-def]
-        """Write the trial contacts of a block, and their products with the slopes."""
-        for j in range(lanes):
-            liner = liner_coefficients(rows[_POISSON, j], 1.0 + rows[_THICKNESS, j] / rows[_RADIUS, j])
-            contact = scaled_contact(half_angle_of_root(rows[_ROOT, j]), liner)
-            rows[_PRODUCT, j], rows[_SLOPE, j] = product_of(contact, rows[_SCALED, j])
-            rows[_SHARE, j], rows[_SHARE_RATE, j] = contact.share, contact.share_rate
-            rows[_GAP, j], rows[_GAP_SLOPE, j] = contact.gap, contact.gap_slope
-            rows[_COMPLIANCE, j], rows[_COMPLIANCE_RATE, j] = contact.compliance, contact.compliance_rate
-            rows[_SECANT, j], rows[_SECANT_RATE, j] = contact.secant, contact.secant_rate
-
-    @inline_formula
-    def update_roots(lanes, rows):  # type: ignore[no-untyped-def]
-        """Take a bracketed Newton step in a block; return the number of contacts that have not converged."""
-        moving = 0
-        for j in range(lanes):
-            difference, slope, root = log(rows[_PRODUCT, j]), rows[_SLOPE, j], rows[_ROOT, j]
-            next_root, low, high, fresh, has_moved = bracketed_update(
-                difference, slope, tolerance, root, rows[_LOW, j], rows[_HIGH, j], rows[_FRESH, j] > 0.0
-            )
-            rows[_ROOT, j], rows[_LOW, j], rows[_HIGH, j] = next_root, low, high
-            rows[_FRESH, j] = 1.0 if fresh else 0.0
-            moving += 1 if has_moved else 0
-        return moving
-
-    @inline_formula
-    def write_results(square, first, lanes, rows, outputs, converged):  # type: ignore[no-untyped-def]
-        """Correct the contacts of a block linearly, and write half angle, depth or force, and largest pressure."""
-        for j in range(lanes):
-            shift = last_shift(rows[_PRODUCT, j], rows[_SLOPE, j])
-            contact = shift_contact(
-                ScaledContact(
-                    rows[_SHARE, j],
-                    rows[_SHARE_RATE, j],
-                    rows[_GAP, j],
-                    rows[_GAP_SLOPE, j],
-                    rows[_COMPLIANCE, j],
-                    rows[_SECANT, j],
-                    rows[_SECANT_RATE, j],
-                    rows[_COMPLIANCE_RATE, j],
-                ),
-                shift,
-            )
-            load, R2, E = rows[_LOAD, j], rows[_RADIUS, j], rows[_YOUNG, j]
-            edge = masked_half_angle(rows[_ROOT, j], shift) if load > 0.0 else 0.0
-            stiffness = E * R2 * contact.secant
-            beta = shape_coefficient(contact)
-            ratio = pressure_ratio(peak_position(beta), beta)
-            answer = load / stiffness if is_force else load * stiffness
-            depth = rows[_CLEARANCE, j] * (2 * contact.share / contact.gap)
-            pressure = E / (R2 * contact.compliance) * depth * ratio
-            rows[_X, j] = 1.0 if (shift * shift <= square) | (edge == 0.0) else 0.0
-            rows[_SHARE, j] = edge
-            rows[_GAP, j] = answer if edge > 0.0 else 0.0 * edge
-            rows[_SECANT, j] = pressure if edge > 0.0 else 0.0 * edge
-        for j in range(lanes):
-            outputs[0, first + j] = rows[_SHARE, j]
-            outputs[1, first + j] = rows[_GAP, j]
-            outputs[2, first + j] = rows[_SECANT, j]
-            converged[first + j] = rows[_X, j] > 0.0
-
-    def solve_contacts(inputs, series, limits, square, outputs, converged):  # type: ignore[no-untyped-def]
-        """Solve each contact for its load; write half angle, indentation or force, and largest pressure."""
-        rows = numpy.empty((_ROW_COUNT, LANES))
-        for first in range(0, outputs.shape[1], LANES):
-            lanes = min(LANES, outputs.shape[1] - first)
-            copy_inputs(inputs, first, lanes, rows)
-            write_start(series, limits, first, lanes, rows)
-            moving = lanes
-            for step in range(_MAX_STEPS + 1):
-                evaluate_contacts(lanes, rows)
-                if moving == 0 or step == _MAX_STEPS:
-                    break
-                moving = update_roots(lanes, rows)
-            write_results(square, first, lanes, rows, outputs, converged)
-
-    return compile_loop(solve_contacts)

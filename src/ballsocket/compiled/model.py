@@ -17,7 +17,6 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..models.closed_form import ClosedFormSolution
 from ..models.foundation import RadialFoundation
 from ..models.modulus import FunctionModulus
-from ..models.refined import Refined
 from ..problem import Joint
 from . import kernels
 from .law import CompiledLaw, compiled_law
@@ -35,7 +34,7 @@ class Compiled(ModelWrapper):
 
     Parameters
     ----------
-    model : RadialFoundation, Refined or Tabulated
+    model : RadialFoundation or Tabulated
         Wrapped model, for instance `HessForsbach()`.
 
     Examples
@@ -48,12 +47,14 @@ class Compiled(ModelWrapper):
     array([ 5.921, 11.27 ])
     """
 
-    model: RadialFoundation | Refined | Tabulated
+    model: RadialFoundation | Tabulated
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, RadialFoundation | Refined | Tabulated):
-            kinds = "a RadialFoundation, such as HessForsbach(), Refined() or Tabulated()"
-            raise TypeError(f"model must be {kinds}, got {shown(self.model)}")
+        if not isinstance(self.model, RadialFoundation | Tabulated):
+            raise TypeError(
+                f"model must be a RadialFoundation, such as HessForsbach(), or Tabulated(), got {shown(self.model)}; "
+                "use Tabulated() for the exact solution"
+            )
 
     def press(
         self,
@@ -99,12 +100,10 @@ class Compiled(ModelWrapper):
         return contact
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of `Refined` or `Tabulated` in a compiled loop, if all arrays are float64."""
-        if kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load))):
-            if isinstance(self.model, Refined):
-                return kernels.solve_refined(joint, kind, load)
-            if isinstance(self.model, Tabulated):
-                return solve_tabulated(self.model, joint, kind, load)
+        """Solve the contacts of `Tabulated` in a compiled loop, if all arrays are float64."""
+        is_compilable = kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load)))
+        if is_compilable and isinstance(self.model, Tabulated):
+            return solve_tabulated(self.model, joint, kind, load)
         return super()._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> CompiledLaw:

@@ -47,6 +47,6 @@ _register_pytree(
 )
 _register_pytree(TableSolution, ("joint", "angle", "values"), ("file",))
 _register_pytree(LayerSolution, ("joint", "width"), ("widest",))
-_register_pytree(RefinedSolution, ("joint", "edge"), ())
+_register_pytree(RefinedSolution, ("joint", "half_angle", "indentation"), ())
 _register_pytree(ClosedFormSolution, ("joint", "indentation"), ("model",))
 _register_pytree(Contact, ("laws", "joint", "force", "indentation", "status"), ("model",))

@@ -18,6 +18,7 @@ from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from . import describe, strength
+from .bounded import Bounded
 from .outcome import Outcome
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class Contact(Outcome):
     indentation: Array
 
     stress_error: ClassVar[float | None] = None
-    """Relative error of a von Mises stress that is solved for; None for a stress between `von_mises_bounds`."""
+    """Relative error of a von Mises stress that is solved for; None if it is that of `quick_von_mises`."""
 
     half_angle = _quantity_property("half_angle")
     max_pressure = _quantity_property("max_pressure")
@@ -128,9 +129,8 @@ class Contact(Outcome):
         From 1 on the material yields somewhere. A linear result is invalid above 1.38
         (`strength.MAXELASTIC_UTILISATION`).
         """
-        materials = (self.joint.liner, self.joint.ball)
-        has_limit = any(material is not None and material.yield_stress is not None for material in materials)
-        return self._compute_utilisation(self.von_mises if has_limit else self.max_pressure)
+        is_liner_checked = self.joint.liner.yield_stress is not None
+        return self._compute_utilisation(self.von_mises if is_liner_checked else self.max_pressure)
 
     def utilisation_at(self, mask: Array) -> Array:
         """Compute the ratio of von Mises to yield stress at the points of a mask; other points may be NaN.
@@ -144,34 +144,18 @@ class Contact(Outcome):
         return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound in MPa of the largest von Mises stress in the liner, at the largest pressure.
+    def quick_von_mises(self) -> Bounded:
+        """Largest von Mises stress in the liner in MPa with its bounds, from the table instead of solved stresses.
 
-        No stresses are solved for. An error of the pressure comes on top.
+        An error of the largest pressure comes on top, see `verdict.error_bar`.
         """
-        low, high = strength.von_mises_bounds(self, Contact._compute_von_mises(self))
-        return self._mask_failed(lambda: low), self._mask_failed(lambda: high)
-
-    @property
-    def quick_von_mises(self) -> Array:
-        """Largest von Mises stress in the liner in MPa without a solution for stresses: the mean of its bounds."""
-        low, high = self.von_mises_bounds
-        return (low + high) / 2
+        stress = self._mask_failed(lambda: Contact._compute_von_mises(self))
+        return Bounded(*map(self._match_load, strength.bounded_von_mises(self, stress)))
 
     @property
     def error(self) -> dict[str, Array]:
         """Estimated relative errors as of `Outcome`, and that of the von Mises stress at the largest pressure."""
         return {**super().error, "von_mises": self._mask_failed(lambda: strength.von_mises_error(self))}
-
-    @property
-    def utilisation_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of the ratio of largest von Mises stress to yield stress.
-
-        No stresses are solved for.
-        """
-        low, high = self.von_mises_bounds
-        pressure = self.max_pressure
-        return strength.utilisation(self.joint, low, pressure), strength.utilisation(self.joint, high, pressure)
 
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa from the tabulated ratio."""

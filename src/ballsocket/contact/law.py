@@ -125,18 +125,13 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
     last_indentation = _deepest_indentation(force, shallowest, deepest)
     for piece_count in _PIECE_COUNTS:
         chebyshev_coefficients = _chebyshev_coefficients(force, shallowest, last_indentation, piece_count)
-        if numpy.nanmax(abs(chebyshev_coefficients[:, -1])) <= _SERIES_TOLERANCE:
+        if numpy.max(abs(chebyshev_coefficients[:, -1])) <= _SERIES_TOLERANCE:
             break
-    density = piece_count / math.log(last_indentation / shallowest)
-    if numpy.isnan(chebyshev_coefficients).any():  # single loads without a solution near the end
-        complete = int(numpy.isnan(chebyshev_coefficients).any(axis=1).argmax())
-        chebyshev_coefficients = chebyshev_coefficients[:complete]
-        last_indentation = shallowest * math.exp(complete / density)
     return CurveLaw(
         shallowest=shallowest,
         deepest=last_indentation,
         first=math.log(shallowest),
-        density=density,
+        density=piece_count / math.log(last_indentation / shallowest),
         pieces=numpy.ascontiguousarray((chebyshev_coefficients @ _chebyshev_to_power_matrix())[:, ::-1]),
     )
 

@@ -126,10 +126,14 @@ class Outcome(ABC):
         Solvers estimate the error of each point. Other models have the measured error of their promise, relative to the
         elastic solution at equal force, and NaN at points that are not valid. Without a promise it is empty.
         """
-        if self.model.promise is None:
-            return {}
-        within = self._match_load(arrays.where(self.valid, self.model.promise.within, numpy.nan + 0.0 * self._load))
-        return dict.fromkeys(self.model.promise.quantities, within)
+        nan, errors = numpy.nan + 0.0 * self._load, self.stated_error.items()
+        return {name: self._match_load(arrays.where(self.valid, error, nan)) for name, error in errors}
+
+    @property
+    def stated_error(self) -> dict[str, Array]:
+        """Relative errors as in `error`, also at points that are not valid: these can exceed a limit."""
+        promise = self.model.promise
+        return {} if promise is None else dict.fromkeys(promise.quantities, promise.within)
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:

@@ -247,6 +247,11 @@ class SolvedContact(Contact):
         """Estimated relative errors, one array for each quantity name."""
         return {name: self._match_load(error) for name, error in self.laws.error.items()}
 
+    @property
+    def stated_error(self) -> dict[str, Array]:
+        """Relative errors of the solver, the same at points that are not valid."""
+        return self.error
+
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa by solving for the stresses."""
         return self.laws.combine_by_index(self._joint_von_mises)

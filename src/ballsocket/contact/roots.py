@@ -174,13 +174,7 @@ def bracketed_newton_step(
         x, low, high, fresh, and the mask of the elements that moved by more than the tolerance.
     """
     value, slope = law(x, *arguments)
-    return bracketed_update(value - target, slope, tolerance, x, low, high, fresh)
-
-
-def bracketed_update(
-    difference: Array, slope: Array, tolerance: float, x: Array, low: Array, high: Array, fresh: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute one step of `bracketed_newton_step` from the difference between law and target at x, and its slope."""
+    difference = value - target
     low = where(difference <= 0, x, low)
     high = where(difference >= 0, x, high)
     fresh = fresh & (x < high)

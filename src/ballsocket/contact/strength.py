@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy
 
-from ..core.arrays import Array, all_true, clip, isfinite, logical_not, sqrt, to_numpy, where
+from ..core.arrays import Array, all_true, clip, exp, logical_not, sqrt, to_numpy, where
 from ..core.quantities import LINEARITY, STRENGTH
-from ..core.validity import RIGID_BACKING, Range, is_missing
+from ..core.validity import RIGID_BACKING, Range
 from ..problem import Joint, Material, elementwise_maximum
+from .bounded import Bounded
 from .coordinates import LIMIT
 from .stress_ratio import MAX_THICKNESS_RATIO, POISSON, liner_stress_ratio
 
@@ -27,17 +28,14 @@ The force of a ball on an elastic, perfectly plastic flat follows Hertz up to 1.
 TABLE_ERROR = 0.005
 """Relative error of the tabulated ratio of von Mises stress to pressure, for a rigid ball on a rigid backing."""
 
-OFF_AXIS_ERROR = 0.2
-"""Relative error of the stress of a tilted, worn or rimmed contact, estimated by that of the axial contact.
+_RIM_ERRORS, _RIM_REACH = (0.04, 0.35), 0.9
+"""Errors below and above at the rim, for ν of 0.5, and the arc over the thickness that leaves 37 % of them."""
 
-Finite elements of nine cups with a rim have 0 to 6 % more stress, and 7 to 19 % if the contact reaches the rim.
-"""
+_AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15, 0.3
+"""Errors beyond the table: over -ν below 0, for ν above 0.4993, R2/L above 20.5, and, not measured, ε above 85°."""
 
-_BEYOND_ERROR = 0.3
-"""Relative error of the ratio beyond the range of the table."""
-
-_BALL_ERROR = 0.06
-"""Error by an elastic ball over E/E_ball R2/(L sqrt(1 - 2ν)), which is small unless the liner hardly yields."""
+_BALL_ERRORS = (0.02, 0.05, 0.01)
+"""Errors by an elastic ball: over E/E_ball (R2/L)^1.5/sqrt(1 - 2ν), at most over R2/L; over E/E_ball up to 1."""
 
 _BACKING_ERROR = 0.5
 """Error by an elastic backing over the ratio E/E_backing of a backing that counts as rigid."""
@@ -69,16 +67,25 @@ def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -
 def von_mises_error(contact: Any) -> Array:
     """Compute the relative error of the ratio of largest von Mises stress to largest pressure in the liner.
 
-    It is `TABLE_ERROR` within the table, larger beyond it, for an elastic ball on a thin liner that is nearly
+    It is `TABLE_ERROR` within the table, larger beyond it and for a soft ball on a thin liner that is nearly
     incompressible, and infinite for an elastic backing.
     """
     joint = contact.joint
-    nu, ratio = joint.liner.poisson, joint.thickness_ratio
-    outside = (nu < POISSON[0]) | (nu > POISSON[1]) | (ratio > MAX_THICKNESS_RATIO) | (contact.half_angle > LIMIT)
-    ball = _BALL_ERROR * joint.modulus_ratio * ratio / sqrt(1 - 2 * clip(nu, *POISSON))
+    nu, ratio, softness = joint.liner.poisson, joint.thickness_ratio, joint.modulus_ratio
+    growth, most, massive = _BALL_ERRORS
+    ball = growth * softness * ratio**1.5 / sqrt(1 - 2 * clip(nu, *POISSON))
+    ball = where(ball < most * ratio, ball, most * ratio)
+    stiff = TABLE_ERROR + massive * clip(softness, 0.0, 1.0) + 0.0 * contact.half_angle
+    error = elementwise_maximum(stiff, ball)
+    for is_beyond, extra in (
+        (nu < POISSON[0], -_AUXETIC_ERROR * nu),
+        (nu > POISSON[1], _INCOMPRESSIBLE_ERROR),
+        (ratio > MAX_THICKNESS_RATIO, _THIN_ERROR),
+        (contact.half_angle > LIMIT, _WIDE_ERROR),
+    ):
+        error = error + where(is_beyond, extra, 0.0 * error)
     backing = where(joint.backing_ratio <= RIGID_BACKING.high, _BACKING_ERROR * joint.backing_ratio, inf)
-    within = TABLE_ERROR + 0.0 * contact.half_angle
-    return where(outside, _BEYOND_ERROR, within) + ball + backing
+    return error + backing
 
 
 def ball_stress_ratio(poisson: Array) -> Array:
@@ -92,20 +99,30 @@ def ball_stress_ratio(poisson: Array) -> Array:
     return 1.2191 - 0.4608 * (1 + poisson)
 
 
-def von_mises_bounds(contact: Any, von_mises: Array) -> tuple[Array, Array]:
-    """Compute a lower and an upper bound in MPa of the largest von Mises stress in the liner.
-
-    `von_mises` is its tabulated value.
-    """
+def bounded_von_mises(contact: Any, von_mises: Array) -> Bounded:
+    """Return the largest von Mises stress in the liner in MPa, from the table, with its bounds."""
     error = von_mises_error(contact)
     known = error < inf
-    high = where(known, (1 + where(known, error, 0.0)) * von_mises, inf)
-    return clip(1 - error, 0.0, 1.0) * von_mises, where(von_mises == von_mises, high, von_mises)
+    high = where(known, (1 + where(known, error, 0.0)) * von_mises, inf + 0.0 * von_mises)
+    return Bounded(von_mises, clip(1 - error, 0.0, 1.0) * von_mises, high)
 
 
-def off_axis_bounds(von_mises: Array) -> tuple[Array, Array]:
-    """Compute a lower and an upper bound in MPa of a von Mises stress estimated from the axial contact."""
-    return (1 - 2 * TABLE_ERROR) * von_mises, (1 + OFF_AXIS_ERROR) * von_mises
+def rim_errors(joint: Joint, edge_distance: Array) -> tuple[Array, Array]:
+    """Compute the relative errors, below and above, of the stress of the axial contact near the rim of a cup.
+
+    Finite elements of 251 axial and 250 tilted contacts have 99.3 % of the stresses within, and no bound where the
+    contact reaches the rim. A quarter of the thickness around its corners is omitted: there the stress is unbounded.
+
+    Parameters
+    ----------
+    joint : Joint
+    edge_distance : float or array
+        Arc in mm from the edge of the contact to the rim.
+    """
+    L, R2, (low, high) = joint.liner_thickness, joint.socket_radius, _RIM_ERRORS
+    near = exp(-edge_distance / (_RIM_REACH * where(L < R2, L, R2)))
+    above = where(edge_distance > 0, high * (2 * clip(joint.liner.poisson, 0.0, 0.5)) ** 8 * near, inf)
+    return clip(TABLE_ERROR + low * near, 0.0, 1.0), TABLE_ERROR + above
 
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
@@ -154,7 +171,8 @@ class ElasticLimit(Range):
 
         The stresses are solved for only where their bounds do not decide.
         """
-        low, high = contact.utilisation_bounds
+        stress, pressure = contact.quick_von_mises, contact.max_pressure
+        low, high = (utilisation(contact.joint, end, pressure) for end in (stress.low, stress.high))
         undecided = (high > self.high) & logical_not(low > self.high)
         if all_true(logical_not(undecided)) is not False:
             return logical_not(low > self.high)
@@ -168,19 +186,19 @@ def unchecked_strength_reason(joint: Joint) -> str:
         return ""
     missing_check = "yield" if liner.strengths else "strength"
     ball_note = "" if ball is None or ball.yield_stress is None else "; the utilisation is that of the ball alone"
-    return f"{missing_check} not checked: the liner has no yield stress{ball_note}"
+    return f"{missing_check} not checked: the liner has no yield stress, give yield_stress in its table{ball_note}"
 
 
 def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     """Yield a mask and a note for each strength limit; the note applies to points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:
-        stress, is_estimate = _quick_von_mises(contact)
-        name = "estimated von Mises stress" if is_estimate else "von Mises stress"
-        yield from _linearity_remarks("liner", joint.liner, stress, name)
+        bar = contact.quick_von_mises
+        name = "estimated von Mises stress" if bar.is_estimate else "von Mises stress"
+        yield from _linearity_remarks("liner", joint.liner, bar.value, name)
     if joint.liner.strengths:
         yield from _exceeded_strength_remarks(
-            "liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure
+            "liner", joint.liner, contact.quick_von_mises.high, lambda: contact.von_mises, pressure
         )
     if joint.ball is not None:
         stress = joint_ball_stress_ratio(joint) * pressure
@@ -189,21 +207,6 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
         yield from _exceeded_strength_remarks("ball", joint.ball, stress, lambda: stress, pressure)
         if not joint.ball.strengths:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
-
-
-def _quick_von_mises(contact: Any) -> tuple[Array, bool]:
-    """Compute the largest von Mises stress in the liner in MPa from its bounds; True if they are wide.
-
-    The stress is solved for only where a bound is infinite.
-    """
-    low, high = contact.von_mises_bounds
-    if all_true(isfinite(high) | is_missing(contact.status)) is False:
-        return contact.von_mises, False
-    return contact.quick_von_mises, all_true(logical_not(high - low > _ESTIMATE_WIDTH * high)) is False
-
-
-_ESTIMATE_WIDTH = 0.02
-"""Relative width of the bounds above which a stress is an estimate."""
 
 
 def _exceeded_strength_remarks(

@@ -10,16 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from enum import IntEnum
 from math import inf, nextafter
 from math import isfinite as is_finite_number
-from typing import Any, NamedTuple
 
-from ..core.arrays import Array, all_true, isfinite, where
+from ..core.arrays import isfinite, where
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
+from .bounded import Bounded as Bounded
+from .bounded import Verdict as Verdict
+from .bounded import exact_number as exact_number
 from .contact import Contact
-from .strength import joint_ball_stress_ratio, unchecked_strength_reason
+from .strength import joint_ball_stress_ratio, unchecked_strength_reason, utilisation
 
 EDGE_DISTANCE = "edge_distance"
 """Arc from the edge of the contact to the rim; its error is that of the `edge_margin`."""
@@ -30,76 +31,13 @@ _BALL_STRESS_ERROR = 0.02
 _AREA_ERRORS = 2.0
 """Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
 
-_ESTIMATE_WIDTH = 0.05
-"""Width of an error bar, relative to its value, above which the value is an estimate."""
-
-
-class Verdict(IntEnum):
-    """Result of the comparison of a number and its error bar with a limit.
-
-    Arrays of verdicts have the integer codes. The largest of several verdicts holds for all limits together.
-    """
-
-    KEPT = 0
-    UNDECIDED = 1
-    EXCEEDED = 2
-
-    @property
-    def word(self) -> str:
-        """Verdict in one word."""
-        return self.name.lower()
-
-    @property
-    def sign(self) -> str:
-        """Sign that stands before the word, for readers without colours."""
-        return "✓?✗"[self]
-
-
-class Bounded(NamedTuple):
-    """Number, or array of numbers, with a lower and an upper bound: its error bar."""
-
-    value: Any
-    low: Any
-    high: Any
-
-    @property
-    def is_estimate(self) -> bool:
-        """True for a single number whose bar is wider than 5 % of it."""
-        return not self.high - self.low <= _ESTIMATE_WIDTH * abs(self.value)
-
-    def verdict(self, *, low: float = -inf, high: float = inf) -> Verdict:
-        """Compare a single number with a closed range, limits included."""
-        return Verdict(int(self.decide(low=low, high=high)))
-
-    def decide(self, *, low: Any = -inf, high: Any = inf) -> Any:
-        """Compare numbers with a closed range, limits included.
-
-        Returns
-        -------
-        int or array
-            Codes of `Verdict`: kept if the whole bar lies inside the range, exceeded if it lies outside, else
-            undecided. A missing number is undecided.
-        """
-        kept = (self.low >= low) & (self.high <= high)
-        exceeded = (self.high < low) | (self.low > high)
-        return (1 - kept) + exceeded
-
-    def scaled(self, factor: float, error: float = 0.0) -> Bounded:
-        """Multiply a number that is not negative by a positive factor with a relative error."""
-        return Bounded(factor * self.value, factor * (1 - error) * self.low, factor * (1 + error) * self.high)
-
-
-def exact_number(value: Any) -> Bounded:
-    """Return a number without an error, such as a dimension."""
-    return Bounded(value, value, value)
-
 
 def error_bar(contact: Contact, name: str) -> Bounded:
     """Return a quantity of a contact with its error bar, in internal units.
 
-    The bar of the von Mises stress and the utilisation comes from their bounds, with the error of the pressure. Other
-    quantities have the relative error that the solver states in `contact.error`, else the promise of the model. A
-    quantity without a stated error has no width.
+    The bar of the von Mises stress and the utilisation is that of `contact.quick_von_mises`, or the error of a solved
+    stress, with the error of the pressure. A utilisation of the ball alone has no upper end. Other quantities have the
+    error that solver or model state; without one the bar has no width.
 
     Parameters
     ----------
@@ -107,37 +45,23 @@ def error_bar(contact: Contact, name: str) -> Bounded:
     name : str
         Name of a quantity of the contact, such as "max_pressure", "utilisation", "edge_distance".
     """
-    value = getattr(contact, name)
-    if name == "von_mises":
-        return von_mises_bar(contact, value)
+    errors, value = contact.stated_error, getattr(contact, name)
     if name == "utilisation":
-        return _stress_bar(contact, value, contact.utilisation_bounds)
+        stress = "max_pressure" if contact.joint.liner.yield_stress is None else "von_mises"
+        ends = zip(error_bar(contact, stress), error_bar(contact, "max_pressure"), strict=True)
+        bar = Bounded(*(utilisation(contact.joint, *stresses) for stresses in ends))
+        return bar if stress == "von_mises" else bar._replace(high=inf + 0.0 * bar.high)
+    if name in ("von_mises", "quick_von_mises"):
+        is_solved = name == "von_mises" and contact.stress_error is not None
+        bar = exact_number(value).scaled(1.0, contact.stress_error or 0.0) if is_solved else contact.quick_von_mises
+        return bar.scaled(1.0, errors.get("max_pressure", 0.0))
     if name == EDGE_DISTANCE:
-        error = contact.error["edge_margin"] * contact.joint.socket_radius
+        error = errors["edge_margin"] * contact.joint.socket_radius
+    elif name == "area":
+        error = _AREA_ERRORS * errors.get("half_angle", 0.0) * value
     else:
-        error = relative_error(contact, name) * abs(value)
+        error = errors.get(name, 0.0) * abs(value)
     return Bounded(value, *(where(isfinite(value), value + sign * error, value) for sign in (-1, 1)))
-
-
-def von_mises_bar(contact: Contact, solved: Array | None = None) -> Bounded:
-    """Return the largest von Mises stress in the liner in MPa with its error bar.
-
-    Without a `solved` value a model that solves for the stresses has the mean of the bounds, without a solution.
-    """
-    low, high = bounds = contact.von_mises_bounds
-    if solved is None and (contact.stress_error is None or not all_true(isfinite(high))):
-        solved = contact.von_mises
-    if solved is not None:
-        return _stress_bar(contact, solved, bounds)
-    error = relative_error(contact, "max_pressure")
-    return Bounded((low + high) / 2, (1 - error) * low, (1 + error) * high)
-
-
-def _stress_bar(contact: Contact, value: Array, bounds: tuple[Array, Array]) -> Bounded:
-    """Return the bar of a stress that is solved for, or lies between bounds; with the error of the pressure."""
-    low, high = bounds if contact.stress_error is None else (value, value)
-    error = relative_error(contact, "max_pressure") + (contact.stress_error or 0.0)
-    return Bounded(value, (1 - error) * low, (1 + error) * high)
 
 
 def rim_verdict(contact: Contact) -> Verdict:
@@ -148,19 +72,6 @@ def rim_verdict(contact: Contact) -> Verdict:
     if not contact.half_angle > 0:
         return Verdict.UNDECIDED
     return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded
-
-
-def relative_error(contact: Contact, name: str) -> Array:
-    """Return the relative error of a quantity: the promise of the model, else that of its solver, else 0.
-
-    The promise also holds for the bar of an invalid result, which can exceed a limit but not keep it.
-    """
-    if name == "area":
-        return _AREA_ERRORS * relative_error(contact, "half_angle")
-    promise = contact.model.promise
-    if promise is not None and name in promise.quantities:
-        return promise.within
-    return contact.error.get(name, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -100,7 +100,11 @@ def check_numeric(name: str, value: Any) -> Array:
     if isinstance(value, list | tuple):
         value = _list_to_array(name, value)
     if is_plain_number(value) and not isinstance(value, bool):
-        return _check_integer(name, value)
+        try:
+            float(value)
+        except OverflowError as error:
+            raise ValueError(f"{name} is not allowed: the integer is too large for a floating-point number") from error
+        return value
     if (
         not hasattr(value, "dtype")
         or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
@@ -150,15 +154,6 @@ def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> 
     if _array_shape(value) not in allowed:
         shapes = " or ".join(dict.fromkeys(map(str, allowed)))
         raise ValueError(f"{name} of shape {_array_shape(value)} is not allowed: its shape is {shapes}")
-    return value
-
-
-def _check_integer(name: str, value: float) -> float:
-    """Return an integer as a float; raise ValueError if it is too large for a float."""
-    try:
-        float(value)
-    except OverflowError as error:
-        raise ValueError(f"{name} is not allowed: the integer is too large for a floating-point number") from error
     return value
 
 
@@ -247,7 +242,12 @@ def nearest(name: Any, known: Iterable[str]) -> str:
     """
     names = list(known)
     close = closest(name, names)
-    return f"; did you mean {close!r}?" if close else f"; known: {_join_names(names)}"
+    if close:
+        return f"; did you mean {close!r}?"
+    text = ", ".join(names)
+    return "; known: " + (
+        text if len(text) <= _MAX_LIST_LENGTH else f"{text[: text.rindex(', ', 0, _MAX_LIST_LENGTH)]}, ..."
+    )
 
 
 def closest(name: Any, known: Iterable[str]) -> str:
@@ -258,12 +258,6 @@ def closest(name: Any, known: Iterable[str]) -> str:
     close = close or [candidate for candidate in names if len(text) > 2 and candidate.startswith(text)]
     close = close or get_close_matches(text, names, n=1, cutoff=0.5)
     return names[close[0]] if close else ""
-
-
-def _join_names(names: list[str]) -> str:
-    """Join names by commas, and shorten a long list."""
-    text = ", ".join(names)
-    return text if len(text) <= _MAX_LIST_LENGTH else f"{text[: text.rindex(', ', 0, _MAX_LIST_LENGTH)]}, ..."
 
 
 def normalise_name(text: str) -> str:

@@ -18,7 +18,6 @@ from .kinds import Kind, Unit
 
 
 def _is_not_nan(x: Array) -> Array:
-    """Return a mask of the elements that are not NaN."""
     return x == x
 
 
@@ -27,7 +26,6 @@ _MIN_THICKNESS = 1e-300
 
 
 def _is_positive(x: Array) -> Array:
-    """Return a mask of the elements that are positive and finite."""
     return (x > 0) & (x < inf)
 
 
@@ -37,7 +35,6 @@ def _is_positive_or_infinite(x: Array) -> Array:
 
 
 def _is_not_negative(x: Array) -> Array:
-    """Return a mask of the elements that are 0 or more and finite."""
     return (x >= 0) & (x < inf)
 
 

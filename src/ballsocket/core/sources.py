@@ -115,7 +115,9 @@ def _list_entries(item: Any) -> list[str]:
     if isinstance(item, Source):
         return [item.entry]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
-        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_format_item(item)}")
+        name = getattr(item, "__name__", "")
+        text = f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
+        raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {text}")
     entries = list(_yield_entries(item))
     if not entries and hasattr(item, "source"):
         raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
@@ -137,7 +139,6 @@ def _yield_entries(item: Any) -> Iterator[str]:
 
 
 def _own_entry(item: Any, text: str) -> str:
-    """Return the BibTeX entry of a custom model or modulus from the text of its source."""
     if text.lstrip().startswith("@"):
         return text.strip()
     key = re.sub(r"[^a-z0-9-]+", "-", str(getattr(item, "name", "model")).lower()).strip("-")
@@ -151,12 +152,6 @@ def find_cited_keys(text: str) -> Iterator[str]:
         source = Source(key)
         if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.authors_and_year)}\b", text):
             yield key
-
-
-def _format_item(item: Any) -> str:
-    """Format an item that cannot be cited, for a message."""
-    name = getattr(item, "__name__", "")
-    return f"the class or function {name}; use {name}()" if name and callable(item) else f"{item!r:.60}"
 
 
 def _read_field(entry: str, name: str) -> str:

@@ -182,12 +182,7 @@ class Promise:
     quantities: tuple[str, ...] = ("indentation", "max_pressure")
 
     def __str__(self) -> str:
-        return f"within {100 * self.within:g} % in {' and '.join(map(_symbol_of, self.quantities))}"
-
-
-def _symbol_of(name: str) -> str:
-    """Return the symbol of a quantity."""
-    return QUANTITIES[name].symbol
+        return f"within {100 * self.within:g} % in {' and '.join(QUANTITIES[name].symbol for name in self.quantities)}"
 
 
 @dataclass(frozen=True, kw_only=True)

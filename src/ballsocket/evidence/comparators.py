@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from itertools import product
 from math import inf, sin
 from types import MappingProxyType
@@ -33,14 +33,10 @@ WITHIN, IN_PART, OUTSIDE = "within", "in part", "outside"
 Ranges = Mapping[str, Sequence[float]]
 """Smallest and largest value of each similarity number."""
 
-_RIGID_BALL_RATIO = 0.02
-"""Ratio of the moduli of liner and ball below which the ball counts as rigid."""
-
 
 def _modulus_ratio(joint: Joint) -> Array:
-    """Compute the ratio of the moduli of liner and ball; 0 for a rigid ball."""
     ratio = 0.0 if joint.ball is None else joint.liner.young / joint.ball.young
-    return where(ratio < _RIGID_BALL_RATIO, 0.0, ratio)
+    return where(ratio < 0.02, 0.0, ratio)
 
 
 SIMILARITY: Mapping[str, Callable[[Joint, Array], Array]] = MappingProxyType(
@@ -82,31 +78,18 @@ class Comparator:
     name: str
     title: str
     source: str
-    read: str
-    kind: str
     inputs: Mapping[str, str]
-    assumed: Mapping[str, str]
     published: Mapping[str, str]
     agreement: str
+    assumed: Mapping[str, str] = field(default_factory=dict)
+    read: str = "abstract"
+    kind: str = "computed by others"
     ours: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     reaches: Ranges = field(default_factory=dict)
 
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON."""
-        return {
-            "name": self.name,
-            "title": self.title,
-            "source": self.source,
-            "read": self.read,
-            "kind": self.kind,
-            "inputs": dict(self.inputs),
-            "assumed": dict(self.assumed),
-            "published": dict(self.published),
-            "ours": {name: list(ends) for name, ends in self.ours.items()},
-            "reaches": {name: list(ends) for name, ends in self.reaches.items()},
-            "agreement": self.agreement,
-            "call": f"ballsocket.evidence.comparators.PUBLISHED[{self.name!r}]()",
-        }
+        return {**asdict(self), "call": f"ballsocket.evidence.comparators.PUBLISHED[{self.name!r}]()"}
 
 
 _DUROM = (
@@ -123,14 +106,7 @@ _QUANTITIES = {
 def _result_ranges(joints: Sequence[Joint], force: float) -> dict[str, tuple[float, float]]:
     """Compute the ranges of our results over joints at a force in N."""
     contacts = [reference.press(joint, force=force) for joint in joints]
-    return {
-        title: _value_range([getattr(contact, name) for contact in contacts]) for title, name in _QUANTITIES.items()
-    }
-
-
-def _value_range(values: Sequence[Any]) -> tuple[float, float]:
-    """Return the smallest and the largest value."""
-    return float(min(values)), float(max(values))
+    return {title: _range(getattr(contact, name) for contact in contacts) for title, name in _QUANTITIES.items()}
 
 
 def durom() -> Comparator:
@@ -150,8 +126,6 @@ def durom() -> Comparator:
         name="durom",
         title="DUROM resurfacing, metal on metal",
         source=_DUROM,
-        read="abstract",
-        kind="computed by others",
         inputs={"head": "50 mm", "bore": "50.145 mm", "wall": "around 4 mm", "load": "3200 N", "material": "CoCr"},
         assumed={
             "wall": "3.5 to 4.5 mm",
@@ -183,8 +157,6 @@ def metasul() -> Comparator:
         name="metasul",
         title="METASUL inlay, metal on metal in polyethylene",
         source=_DUROM,
-        read="abstract",
-        kind="computed by others",
         inputs={"head": "28 mm", "bore": "28.12 mm", "load": "3200 N", "material": "CoCr"},
         assumed={"wall of the inlay": "2 to 4 mm", "polyethylene behind": "3 to 5 mm", "CoCr": str(COCR)},
         published={"largest pressure": "about 47 MPa", "contact area": "74 mm²"},
@@ -202,17 +174,12 @@ def mak() -> Comparator:
         for radius, gap, backing in product((14.0, 18.0), (0.02, 0.04, 0.08), backings)
     ]
     pairs = [(reference.press(joint, force=force), Hertz().press(joint, force=force)) for joint in joints]
-    width = [
-        float(joint.socket_radius) * sin(exact.half_angle) / 5.0
-        for joint, (exact, _) in zip(joints, pairs, strict=True)
-    ]
+    width = [float(exact.joint.socket_radius) * sin(exact.half_angle) / 5.0 for exact, _ in pairs]
     return Comparator(
         name="mak",
         title="Ceramic insert on a ceramic head",
         source="Mak & Jin 2002, Proc. IMechE H, from page 231: Analysis of contact mechanics in ceramic-on-ceramic hip "
         "joint replacements",
-        read="abstract",
-        kind="computed by others",
         inputs={"insert": "at least 5 mm of ceramic", "material": "ceramic on ceramic"},
         assumed={
             "insert": "5 mm",
@@ -224,11 +191,11 @@ def mak() -> Comparator:
         },
         published={"contact": "small against head and insert", "largest pressure and area": "as Hertz estimates them"},
         ours={
-            "largest pressure of Hertz over ours": _value_range(
-                [hertz.max_pressure / exact.max_pressure for exact, hertz in pairs]
+            "largest pressure of Hertz over ours": _range(
+                hertz.max_pressure / exact.max_pressure for exact, hertz in pairs
             ),
-            "area of Hertz over ours": _value_range([hertz.area / exact.area for exact, hertz in pairs]),
-            "radius of the contact over the insert's thickness": _value_range(width),
+            "area of Hertz over ours": _range(hertz.area / exact.area for exact, hertz in pairs),
+            "radius of the contact over the insert's thickness": _range(width),
         },
         reaches=similarity_ranges((joint, force) for joint in joints),
         agreement="Hertz is an estimate: up to a seventh low in pressure and a tenth high in area with a rigid "
@@ -239,21 +206,17 @@ def mak() -> Comparator:
 
 def kurtz() -> Comparator:
     """Compare our results with published liners of 3 to 12 mm in a metal shell."""
-    force, thick = 2500.0, (3.0, 12.0)
-    sets = [
-        [
-            Joint(ball_radius=radius, clearance=gap, liner_thickness=thickness, liner=UHMWPE, ball=COCR)
-            for thickness in thick
-        ]
-        for radius, gap in product((11.0, 14.0, 16.0), (0.05, 0.1, 0.2))
+    force = 2500.0
+    joints = [
+        Joint(ball_radius=radius, clearance=gap, liner_thickness=thickness, liner=UHMWPE, ball=COCR)
+        for radius, gap, thickness in product((11.0, 14.0, 16.0), (0.05, 0.1, 0.2), (3.0, 12.0))
     ]
-    pressures = [[float(reference.press(joint, force=force).max_pressure) for joint in pair] for pair in sets]
+    pressures = [float(reference.press(joint, force=force).max_pressure) for joint in joints]
+    ratios = [thin / thick for thin, thick in zip(pressures[::2], pressures[1::2], strict=True)]
     return Comparator(
         name="kurtz",
         title="Liner of 3 to 12 mm in a metal shell",
         source="Kurtz, Edidin & Bartel 1997, doi 10.1016/S0021-9290(96)00181-9",
-        read="abstract",
-        kind="computed by others",
         inputs={"liner": "3 to 12 mm of polyethylene", "load": "36 to 63° from the dome"},
         assumed={
             "head": "22 to 32 mm",
@@ -266,8 +229,8 @@ def kurtz() -> Comparator:
             "stress by direction of the load": "varies by about 20 %",
             "stress by friction of the shell": "varies by 1 to 10 %",
         },
-        ours={"largest pressure of 3 mm over that of 12 mm": _value_range([thin / full for thin, full in pressures])},
-        reaches=similarity_ranges((joint, force) for pair in sets for joint in pair),
+        ours={"largest pressure of 3 mm over that of 12 mm": _range(ratios)},
+        reaches=similarity_ranges((joint, force) for joint in joints),
         agreement="Thickness has the largest influence in both; ours varies by less, 41 to 69 %. Head, clearance, "
         "load and moduli are not in the abstract, and their load is tilted: no agreement in numbers is claimed.",
     )
@@ -279,10 +242,8 @@ def anderson() -> Comparator:
         name="anderson",
         title="Natural hip: cartilage on bone, pressure film",
         source="Anderson et al. 2008, J. Biomech. Eng. 130, 051008, doi 10.1115/1.2953472",
-        read="abstract",
         kind=f"{MEASURED}, and computed by others",
         inputs={"hip": "one cadaver, its own shape", "loads": "walking, stairs up and down, after loads in vivo"},
-        assumed={},
         published={
             "largest pressure, measured": "10.0 MPa, where the film saturates",
             "mean pressure, measured": "4.4 to 5.0 MPa",
@@ -298,6 +259,7 @@ def anderson() -> Comparator:
 
 def ptfe() -> Comparator:
     """State the limits of a bearing with a PTFE liner: a permanent set."""
+    young = 4.5e5 * 6.894757e-3  # MPa, from psi
     return Comparator(
         name="ptfe",
         title="Spherical bearings lined with PTFE: static limit loads",
@@ -306,16 +268,12 @@ def ptfe() -> Comparator:
         read="web pages",
         kind="stated by makers",
         inputs={"radial limit": "482 or 541 MPa on the projected area", "modulus": "4.5e5 psi, 3100 MPa"},
-        assumed={},
         published={"permanent set at the radial limit": "at most 0.076 mm", "at the axial limit": "at most 0.127 mm"},
-        ours={"nominal strain at the radial limit, %": (100 * 482 / _PTFE, 100 * 541 / _PTFE)},
+        ours={"nominal strain at the radial limit, %": (100 * 482 / young, 100 * 541 / young)},
         agreement="Not comparable: a permanent set is not elastic, and at that load the strain of a linear liner would "
         "be a sixth. The limit shows the end of the range of our models, not their accuracy within it.",
     )
 
-
-_PTFE = 4.5e5 * 6.894757e-3
-"""Young's modulus of PTFE in MPa."""
 
 PUBLISHED: Mapping[str, Callable[[], Comparator]] = MappingProxyType(
     {make.__name__: make for make in (durom, metasul, mak, kurtz, anderson, ptfe)}
@@ -330,9 +288,8 @@ def claim(name: str) -> dict[str, Any]:
     """Judge a claim of other authors, with the ranges of its joints; return one dictionary for JSON."""
     row = CLAIMS[name]
     assert row.joints is not None
-    ranges = {group: list(ends) for group, ends in similarity_ranges([row.joints()]).items()}
     call = f"ballsocket.evidence.comparators.claim({name!r})"
-    return {**judge(row, reference).summary(), "reaches": ranges, "call": call}
+    return {**judge(row, reference).summary(), "reaches": similarity_ranges([row.joints()]), "call": call}
 
 
 def similarity_ranges(loaded: Iterable[tuple[Joint, Any]]) -> Ranges:
@@ -376,24 +333,17 @@ def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted
     ]
     gaps += ["a tilted load against one along the axis"] if tilted else []
     gaps += [] if positions else ["no joint of one lined socket is behind it"]
-    verdict = _verdict(positions, bool(gaps))
+    outside = [name for name, position in positions.items() if position == OUTSIDE]
+    if not positions or "E/E of the ball" in outside or len(outside) > len(positions) / 2:
+        verdict = DOES_NOT_APPLY
+    else:
+        verdict = APPLIES_IN_PART if gaps else APPLIES
     return {"verdict": verdict, "where": positions, "text": ": ".join(filter(None, [verdict, "; ".join(gaps)]))}
 
 
-def _verdict(positions: Mapping[str, str], gaps: bool) -> str:
-    """Return the verdict on applicability from the positions of the ranges and the existence of gaps."""
-    outside = [name for name, position in positions.items() if position == OUTSIDE]
-    if not positions or "E/E of the ball" in outside or len(outside) > len(positions) / 2:
-        return DOES_NOT_APPLY
-    return APPLIES_IN_PART if gaps else APPLIES
-
-
-_RELATIVE_TOLERANCE = 1e-9
-
-
 def _position(needed: Sequence[float], reached: Sequence[float]) -> str:
-    """Return the position of a needed range in a reached range: within, in part or outside."""
-    low, high = reached[0] * (1 - _RELATIVE_TOLERANCE), reached[1] * (1 + _RELATIVE_TOLERANCE)
+    """Return the position of a needed range in a reached range, apart from rounding."""
+    low, high = reached[0] * (1 - 1e-9), reached[1] * (1 + 1e-9)
     if low <= needed[0] and needed[1] <= high:
         return WITHIN
     return IN_PART if needed[0] <= high and low <= needed[1] else OUTSIDE

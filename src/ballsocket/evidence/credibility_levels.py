@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -25,8 +25,7 @@ class ReachedLevel:
     missing: str
 
 
-def software_level(record: Record) -> ReachedLevel:
-    """Assess the software quality assurance."""
+def _software_level(record: Record) -> ReachedLevel:
     run = [check for check in record["code_verification"] if check["passed"] is not None]
     failed = [check["name"] for check in run if not check["passed"]]
     supported = f"ballsocket {record['version']}, its libraries and {len(run)} checks run on this machine"
@@ -36,8 +35,7 @@ def software_level(record: Record) -> ReachedLevel:
     return ReachedLevel("b", supported, missing)
 
 
-def code_level(record: Record) -> ReachedLevel:
-    """Assess the numerical code verification."""
+def _code_level(record: Record) -> ReachedLevel:
     checks = {check["name"]: check["passed"] for check in record["code_verification"]}
     passed, failed, absent = ([name for name, state in checks.items() if state is s] for s in (True, False, None))
     supported = f"{len(passed)} of {len(passed) + len(failed)} checks passed on this machine"
@@ -49,15 +47,11 @@ def code_level(record: Record) -> ReachedLevel:
     if off_axis or not checks.get(OWN_TOLERANCE):
         missing.append("an order of convergence of the solver in use, against an exact solution")
         return ReachedLevel("b", supported, "; ".join(missing))
-    if not (checks.get(ORDER_OF_ELEMENTS) and _has_elements(record)):
+    elements = any(method["name"].startswith("finite elements") for method in _valid_methods(record))
+    if not (checks.get(ORDER_OF_ELEMENTS) and elements):
         missing.append("the observed order of a second method that solves the worst cases (finite elements)")
         return ReachedLevel("c", supported, "; ".join(missing))
     return ReachedLevel("d", supported, "; ".join(missing))
-
-
-def _has_elements(record: Record) -> bool:
-    """Check that finite elements solved a worst case."""
-    return any(method["name"].startswith("finite elements") for method in _valid_methods(record))
 
 
 def error_margins(record: Record) -> list[dict[str, Any]]:
@@ -65,29 +59,26 @@ def error_margins(record: Record) -> list[dict[str, Any]]:
 
     The share is None where the number has no error bar, or no value. Above 1 the error could change a verdict.
     """
-    return [_margin(limit, record) for limit in record["limits"] if limit["name"] in NAMES]
-
-
-def _margin(limit: Mapping[str, Any], record: Record) -> dict[str, Any]:
-    """Compute the largest error bar of one limited number as a share of its margin."""
-    key, ratios = NAMES[limit["name"]].key, []
-    for row in record["matrix"]:
-        value, error = row["numbers"].get(key), row["errors"].get(key)
-        if value is None or error is None:
-            return {"limit": limit_text(limit), "name": limit["name"], "share": None}
-        ends = [abs(value - end) for end in (limit["low"], limit["high"]) if end is not None]
-        ratios.append(error * abs(value) / min(ends) if min(ends) else inf)
-    largest = max(ratios, default=None)
-    return {"limit": limit_text(limit), "name": limit["name"], "share": None if largest == inf else largest}
+    margins = []
+    for limit in (limit for limit in record["limits"] if limit["name"] in NAMES):
+        key, ratios = NAMES[limit["name"]].key, []
+        for row in record["matrix"]:
+            value, error = row["numbers"].get(key), row["errors"].get(key)
+            if value is None or error is None:
+                ratios = [inf]
+                break
+            margin = min(abs(value - end) for end in (limit["low"], limit["high"]) if end is not None)
+            ratios.append(error * abs(value) / margin if margin else inf)
+        share = max(ratios, default=inf)
+        margins.append({"limit": limit_text(limit), "name": limit["name"], "share": None if share == inf else share})
+    return margins
 
 
 def _titles(names: Sequence[str]) -> str:
-    """Join the titles of numbers."""
     return ", ".join(NAMES[name].title for name in names)
 
 
-def discretization_level(record: Record) -> ReachedLevel:
-    """Assess the discretization error."""
+def _discretization_level(record: Record) -> ReachedLevel:
     errors = [error for row in record["matrix"] for error in row["errors"].values()]
     required, margins = record["required"]["accuracy"], error_margins(record)
     if not errors:
@@ -107,32 +98,27 @@ def discretization_level(record: Record) -> ReachedLevel:
     return ReachedLevel("d", supported, "")
 
 
-def solver_level(record: Record) -> ReachedLevel:
-    """Assess the numerical solver error."""
+def _solver_level(record: Record) -> ReachedLevel:
     calculations, required = record["calculation"], record["required"]["accuracy"]
     largest = max((max(calculation["deviation"].values(), default=0.0) for calculation in calculations), default=0.0)
     alone = [calculation["worst_of"] for calculation in calculations if not calculation["deviation"]]
     count = len(calculations)
     supported = f"other methods of the same body differ by {_percent(largest)} at most, at {count} worst cases"
     if len(alone) == count:
-        return ReachedLevel(
-            "a", "one method only", "a second method or other settings of the solver at the worst cases"
-        )
+        missing = "a second method or other settings of the solver at the worst cases"
+        return ReachedLevel("a", "one method only", missing)
     if alone or largest > required:
         return ReachedLevel("b", supported, f"agreement within the required {_percent(required)} at every worst case")
-    names = [method["name"] for method in _valid_methods(record)]
-    if not any(name.startswith("CalculiX") for name in names):
+    if not any(method["name"].startswith("CalculiX") for method in _valid_methods(record)):
         return ReachedLevel("c", supported, "another program at the worst case (CalculiX, with finite_elements = true)")
     return ReachedLevel("d", supported, "")
 
 
 def _valid_methods(record: Record) -> Iterator[Mapping[str, Any]]:
-    """Yield the valid methods of all worst cases."""
     return (method for calculation in record["calculation"] for method in calculation["methods"] if method["valid"])
 
 
-def use_level(record: Record) -> ReachedLevel:
-    """Assess the use error."""
+def _use_level(record: Record) -> ReachedLevel:
     without = [item["name"] for item in record["inputs"] if not item["source"]]
     supported = "the question file, which is checked on reading, and the call for every number"
     missing = "a second person who compares drawing, inputs and the text of the question"
@@ -142,12 +128,10 @@ def use_level(record: Record) -> ReachedLevel:
 
 
 def _input_titles(names: Sequence[str]) -> str:
-    """Join the titles of inputs."""
     return ", ".join(map(input_title, names))
 
 
-def form_level(record: Record) -> ReachedLevel:
-    """Assess the model form."""
+def _form_level(record: Record) -> ReachedLevel:
     bodies = {method["name"].split(" (")[0].split(",")[0] for method in _valid_methods(record)} - {"tabulated"}
     rows = record["matrix"]
     utilisations = [row["numbers"].get("utilisation") for row in rows]
@@ -172,8 +156,7 @@ def form_level(record: Record) -> ReachedLevel:
 _KEY_INPUTS = ("ball_radius", "clearance", "liner_thickness", "liner_young", "liner_poisson")
 
 
-def inputs_level(record: Record) -> ReachedLevel:
-    """Assess the model inputs."""
+def _inputs_level(record: Record) -> ReachedLevel:
     known = {item["name"]: item for item in record["inputs"]}
     fixed = [name for name in _KEY_INPUTS if name in known and not known[name]["tolerance"]]
     without = [name for name, item in known.items() if not item["source"]]
@@ -187,45 +170,34 @@ def inputs_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c", supported, "measured distributions, and the correlation of the inputs")
 
 
-def _comparators(record: Record) -> Sequence[Mapping[str, Any]]:
-    """Return the claims of other authors and the comparators."""
-    return [*record["claims"], *record["comparators"]]
-
-
 def _applying(record: Record, *verdicts: str) -> list[Mapping[str, Any]]:
-    """Return the comparators with one of the verdicts on their applicability; by default all that apply in part."""
-    verdicts = verdicts or (APPLIES, APPLIES_IN_PART)
-    return [comparator for comparator in _comparators(record) if comparator["applicability"]["verdict"] in verdicts]
+    """Return claims of others and comparators with a verdict on their applicability; by default all that apply."""
+    verdicts, compared = verdicts or (APPLIES, APPLIES_IN_PART), [*record["claims"], *record["comparators"]]
+    return [comparator for comparator in compared if comparator["applicability"]["verdict"] in verdicts]
 
 
-def samples_level(record: Record) -> ReachedLevel:
-    """Assess the test samples of the comparators."""
+def _samples_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     measured = [comparator for comparator in applying if MEASURED in comparator.get("kind", "")]
-    supported = f"{len(_comparators(record))} published results, {len(measured)} of them measured on joints like these"
+    count = len(record["claims"]) + len(record["comparators"])
+    supported = f"{count} published results, {len(measured)} of them measured on joints like these"
     missing = "measurements of the device itself"
     return ReachedLevel("b" if measured else "a", supported, missing)
 
 
-_FORCE = "F/(E R1²)"
-
-
-def conditions_level(record: Record) -> ReachedLevel:
-    """Assess the test conditions of the comparators."""
-    where = [comparator["applicability"]["where"].get(_FORCE) for comparator in _applying(record)]
+def _conditions_level(record: Record) -> ReachedLevel:
+    where = [comparator["applicability"]["where"].get("F/(E R1²)") for comparator in _applying(record)]
     count = {reach: where.count(reach) for reach in (WITHIN, IN_PART)}
     supported = f"the loads of the question lie within those of {count[WITHIN]} comparators that apply"
     supported += f", in part within those of {count[IN_PART]}" if count[IN_PART] else ""
     missing = "conditions of the device's own use, measured with their uncertainty"
     if count[WITHIN]:
         return ReachedLevel("c", supported, missing)
-    return ReachedLevel(
-        "b" if count[IN_PART] else "a", supported, f"a comparator at the loads of the question; {missing}"
-    )
+    missing = f"a comparator at the loads of the question; {missing}"
+    return ReachedLevel("b" if count[IN_PART] else "a", supported, missing)
 
 
-def equivalency_level(record: Record) -> ReachedLevel:
-    """Assess the equivalency of input parameters."""
+def _equivalency_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     assumed = [comparator for comparator in applying if comparator.get("assumed")]
     supported = f"{len(applying) - len(assumed)} of {len(applying)} comparators that apply state all of their inputs"
@@ -236,8 +208,7 @@ def equivalency_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c", supported, "")
 
 
-def outputs_level(record: Record) -> ReachedLevel:
-    """Assess the output comparison."""
+def _outputs_level(record: Record) -> ReachedLevel:
     compared = [comparator for comparator in _applying(record) if comparator.get("numbers") or comparator.get("ours")]
     supported = f"differences of {len(compared)} published results that apply, as numbers"
     missing = "an experiment with stated uncertainty at the loads of the question"
@@ -248,8 +219,7 @@ _COMPARED = ("max_pressure", "half_angle", "area", "indentation")
 """Quantities that comparators publish."""
 
 
-def quantities_level(record: Record) -> ReachedLevel:
-    """Assess the relevance of the quantities of interest."""
+def _quantities_level(record: Record) -> ReachedLevel:
     limited = [limit["name"] for limit in record["limits"] if limit["name"] in NAMES] or list(record["worst"])
     names = list(dict.fromkeys(name for name in limited if name not in LOADS))
     shared = [name for name in names if name in _COMPARED]
@@ -259,8 +229,7 @@ def quantities_level(record: Record) -> ReachedLevel:
     return ReachedLevel("c" if not unpublished and shared else "b" if shared else "a", supported, missing)
 
 
-def relevance_level(record: Record) -> ReachedLevel:
-    """Assess the relevance of the validation activities to the context of use."""
+def _relevance_level(record: Record) -> ReachedLevel:
     full, partial = _applying(record, APPLIES), _applying(record, APPLIES_IN_PART)
     foreign = [_name(comparator) for comparator in _applying(record, DOES_NOT_APPLY)]
     applying = [f"{_name(comparator)} ({comparator['applicability']['verdict']})" for comparator in (*full, *partial)]
@@ -275,10 +244,26 @@ def relevance_level(record: Record) -> ReachedLevel:
 
 
 def _name(comparator: Mapping[str, Any]) -> str:
-    """Return the title of a comparator, or the source of a claim."""
     return str(comparator.get("title") or comparator["where"])
 
 
 def _percent(share: float) -> str:
-    """Format a share in percent."""
     return f"{100 * share:.2g} %"
+
+
+LEVELS_REACHED: Mapping[str, Callable[[Record], ReachedLevel]] = {
+    "software quality assurance": _software_level,
+    "numerical code verification": _code_level,
+    "discretization error": _discretization_level,
+    "numerical solver error": _solver_level,
+    "use error": _use_level,
+    "model form": _form_level,
+    "model inputs": _inputs_level,
+    "test samples": _samples_level,
+    "test conditions": _conditions_level,
+    "equivalency of input parameters": _equivalency_level,
+    "output comparison": _outputs_level,
+    "relevance of the quantities of interest": _quantities_level,
+    "relevance of the validation activities to the context of use": _relevance_level,
+}
+"""Assessments by factor."""

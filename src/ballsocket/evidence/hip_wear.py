@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import radians
 from types import MappingProxyType
-from typing import Any
 
 import numpy
 
@@ -26,7 +25,7 @@ from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Published:
     """Published wear or penetration.
 
@@ -66,58 +65,40 @@ _RSA = "10-year radiostereometry, 10.1080/17453674.2021.1932140"
 _MCCALDEN = "McCalden et al. 2009, 10.2106/JBJS.H.00244"
 _RATE = "mm3/Mc"
 
+_CALLARY = "Callary et al. 2015, 10.3109/17453674.2014.972890"
 _LACHIEWICZ = "Lachiewicz et al. 2009, 10.1007/s11999-009-1038-9"
-
-
-def _published(description: str, value: float, unit: str, source: str, **details: Any) -> Published:
-    """Create one row of the table of published numbers."""
-    return Published(description=description, value=value, unit=unit, source=source, **details)
 
 
 PUBLISHED: Mapping[str, Published] = MappingProxyType(
     {
-        "clarke-22": _published("22 mm, serum, 2 kN", 23, _RATE, _CLARKE),
-        "clarke-28": _published("28 mm, serum, 2 kN", 32, _RATE, _CLARKE),
-        "ali-45": _published("36 mm, cup at 45°", 12.8, _RATE, _ALI, half_width=3.8, spread="95 %"),
-        "ali-65": _published("36 mm, cup at 65°", 15.4, _RATE, _ALI, half_width=5.0, spread="95 %"),
-        "ali-45-off": _published("36 mm, 45°, centres 4 mm off", 21.5, _RATE, _ALI, half_width=5.5, spread="95 %"),
-        "ali-65-off": _published("36 mm, 65°, centres 4 mm off", 23.0, _RATE, _ALI, half_width=5.7, spread="95 %"),
+        "clarke-22": Published("22 mm, serum, 2 kN", 23, _RATE, _CLARKE),
+        "clarke-28": Published("28 mm, serum, 2 kN", 32, _RATE, _CLARKE),
+        "ali-45": Published("36 mm, cup at 45°", 12.8, _RATE, _ALI, 3.8, "95 %"),
+        "ali-65": Published("36 mm, cup at 65°", 15.4, _RATE, _ALI, 5.0, "95 %"),
+        "ali-45-off": Published("36 mm, 45°, centres 4 mm off", 21.5, _RATE, _ALI, 5.5, "95 %"),
+        "ali-65-off": Published("36 mm, 65°, centres 4 mm off", 23.0, _RATE, _ALI, 5.7, "95 %"),
         **{
-            f"ali-{angle[:-1]}-separation": _published(
-                f"medial-lateral separation, 36 mm, {angle}, centres 4 mm off",
-                value,
-                "mm",
-                _ALI,
-                half_width=interval,
-                spread="as stated",
+            f"ali-{angle[:-1]}-separation": Published(
+                f"medial-lateral separation, 36 mm, {angle}, centres 4 mm off", value, "mm", _ALI, interval, "as stated"
             )
             for angle, (value, interval) in MEASURED_SEPARATIONS.items()
         },
-        "cooper": _published("ISO 14242-1", 12.5, _RATE, _COOPER),
-        "cooper-off": _published("then ISO 14242-4", 22.3, _RATE, _COOPER),
-        "walking": _published("ISO walking", 15.24, _RATE, _JOGGING, half_width=0.55, spread="deviation"),
-        "jogging": _published("a patient's jogging", 28.68, _RATE, _JOGGING, half_width=0.88, spread="deviation"),
-        "saikko": _published("32 mm zirconia, distilled water", 4.1, "mg/Mc", "Saikko 1994, Wear 176, 207"),
-        "rsa-bedding": _published("conventional, first 3 months", 0.39, "mm", _RSA),
-        "rsa-rate": _published("conventional, 3 months to 10 years", 0.12, "mm/year", _RSA),
-        "rsa-bedding-linked": _published("cross-linked, first 3 months", 0.21, "mm", _RSA),
-        "rsa-rate-linked": _published("cross-linked, 3 months to 10 years", 0.02, "mm/year", _RSA),
-        "mccalden-linked": _published(
-            "cross-linked, years 1 to 5", 0.003, "mm/year", _MCCALDEN, half_width=0.027, spread="95 %"
-        ),
-        "teeter": _published(
+        "cooper": Published("ISO 14242-1", 12.5, _RATE, _COOPER),
+        "cooper-off": Published("then ISO 14242-4", 22.3, _RATE, _COOPER),
+        "walking": Published("ISO walking", 15.24, _RATE, _JOGGING, 0.55, "deviation"),
+        "jogging": Published("a patient's jogging", 28.68, _RATE, _JOGGING, 0.88, "deviation"),
+        "saikko": Published("32 mm zirconia, distilled water", 4.1, "mg/Mc", "Saikko 1994, Wear 176, 207"),
+        "rsa-bedding": Published("conventional, first 3 months", 0.39, "mm", _RSA),
+        "rsa-rate": Published("conventional, 3 months to 10 years", 0.12, "mm/year", _RSA),
+        "rsa-bedding-linked": Published("cross-linked, first 3 months", 0.21, "mm", _RSA),
+        "rsa-rate-linked": Published("cross-linked, 3 months to 10 years", 0.02, "mm/year", _RSA),
+        "mccalden-linked": Published("cross-linked, years 1 to 5", 0.003, "mm/year", _MCCALDEN, 0.027, "95 %"),
+        "teeter": Published(
             "conventional 28 mm, after bedding-in", 0.051, "mm/year", "Teeter 2017", read="second hand"
         ),
-        "callary": _published(
-            "cross-linked, 12 cohorts",
-            0.03,
-            "mm/year",
-            "Callary et al. 2015, 10.3109/17453674.2014.972890",
-            half_width=0.03,
-            spread="range",
-        ),
-        "lachiewicz": _published("cross-linked, median", 0.028, "mm/year", _LACHIEWICZ),
-        "lachiewicz-volume": _published("cross-linked, median", 25.6, "mm3/year", _LACHIEWICZ),
+        "callary": Published("cross-linked, 12 cohorts", 0.03, "mm/year", _CALLARY, 0.03, "range"),
+        "lachiewicz": Published("cross-linked, median", 0.028, "mm/year", _LACHIEWICZ),
+        "lachiewicz-volume": Published("cross-linked, median", 25.6, "mm3/year", _LACHIEWICZ),
     }
 )
 """Published numbers by name. The test conditions are those of the sources."""
@@ -142,7 +123,6 @@ INPUTS = (
 """Assumed inputs: the sources state only a few."""
 
 _LINERS = {22.225: 10.9, 28.0: 8.0, 32.0: 7.0, 36.0: 6.0}
-_K = LogNormal(median=1.0, factor=1.5)
 _CLEARANCE = Rectangular(low=0.05, high=0.2)
 PATIENTS = 64
 
@@ -200,22 +180,22 @@ def ratios() -> Iterator[Ratio]:
     """Compute ratios of the wear rates of unworn bores."""
     walk, off = iso_14242_1(), iso_14242_4()
     area = ContactAreaWear(coefficient=1e-6)
-    rocking_hips = [make_hip(28.0, rocking(), 0.0), make_hip(22.225, rocking(), 0.0)]
+    large, small = (make_hip(diameter, rocking(), 0.0) for diameter in (28.0, 22.225))
     yield Ratio(
         numerator="clarke-28",
         denominator="clarke-22",
-        archard=_rate(rocking_hips[0]) / _rate(rocking_hips[1]),
-        area=_rate(replace(rocking_hips[0], wear=area)) / _rate(replace(rocking_hips[1], wear=area)),
+        archard=large.first.volume / small.first.volume,
+        area=replace(large, wear=area).first.volume / replace(small, wear=area).first.volume,
     )
-    for numerator, denominator, cycles, tilts in (
-        ("ali-65", "ali-45", (walk, walk), (50.0, 30.0)),
-        ("ali-45-off", "ali-45", (off, walk), (30.0, 30.0)),
-        ("ali-65-off", "ali-65", (off, walk), (50.0, 50.0)),
-        ("cooper-off", "cooper", (off, walk), (30.0, 30.0)),
-        ("jogging", "walking", (named_cycle("jogging", body_weight=780.0), walk), (30.0, 30.0)),
+    for numerator, denominator, first, second in (
+        ("ali-65", "ali-45", (walk, 50.0), (walk, 30.0)),
+        ("ali-45-off", "ali-45", (off, 30.0), (walk, 30.0)),
+        ("ali-65-off", "ali-65", (off, 50.0), (walk, 50.0)),
+        ("cooper-off", "cooper", (off, 30.0), (walk, 30.0)),
+        ("jogging", "walking", (named_cycle("jogging", body_weight=780.0), 30.0), (walk, 30.0)),
     ):
-        hips = [make_hip(36.0, cycle, tilt) for cycle, tilt in zip(cycles, tilts, strict=True)]
-        yield Ratio(numerator=numerator, denominator=denominator, archard=_rate(hips[0]) / _rate(hips[1]))
+        ratio = make_hip(36.0, *first).first.volume / make_hip(36.0, *second).first.volume
+        yield Ratio(numerator=numerator, denominator=denominator, archard=ratio)
 
 
 def separations() -> Iterator[tuple[str, float, float]]:
@@ -224,11 +204,6 @@ def separations() -> Iterator[tuple[str, float, float]]:
         apart = make_hip(36.0, iso_14242_4(), tilt).separation
         assert apart is not None
         yield f"ali-{angle[:-1]}-separation", apart.medial_lateral, apart.centre_distance
-
-
-def _rate(hip: HipSimulation) -> float:
-    """Return the wear rate of the first cycle in mm³ per million cycles."""
-    return hip.first.volume
 
 
 def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
@@ -242,7 +217,11 @@ def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
         ("ali-65-off", 36.0, iso_14242_4(), 50.0, LINKED),
     ):
         hip = make_hip(diameter, cycle, tilt, Archard(coefficient=k))
-        table = _results(hip, {"coefficient": _wear_factor(k), "clearance": _CLEARANCE}, [1e6, 3e6], count)
+        distributions: Mapping[str, Distribution] = {
+            "coefficient": LogNormal(median=k, factor=1.5),
+            "clearance": _CLEARANCE,
+        }
+        table = _results(hip, distributions, [1e6, 3e6], count)
         volume = table[:, :, list(RESULT_UNITS).index("volume")]
         yield _band(name, (volume[:, 1] - volume[:, 0]) / 2)
 
@@ -258,7 +237,14 @@ def patients(count: int = PATIENTS) -> Iterator[Predicted]:
             creep=logarithmic(),
             seconds_per_cycle=YEAR / STEPS,
         )
-        table = _results(hip, _patient_distributions(k), [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
+        distributions: Mapping[str, Distribution] = {
+            "coefficient": LogNormal(median=k, factor=1.5),
+            "clearance": _CLEARANCE,
+            "tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0)),
+            "body_weight": Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0),
+            "cycles_per_year": LogNormal(median=STEPS, factor=1.5),
+        }
+        table = _results(hip, distributions, [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
         penetration = table[:, :, list(RESULT_UNITS).index("penetration")]
         rate = dict.fromkeys(names, (penetration[:, 3] - penetration[:, 0]) / 9.75)
         rate |= {names[0]: penetration[:, 0]}
@@ -269,29 +255,12 @@ def patients(count: int = PATIENTS) -> Iterator[Predicted]:
             yield _band("lachiewicz-volume", table[:, 2, list(RESULT_UNITS).index("volume")] / 5)
 
 
-def _patient_distributions(k: float) -> dict[str, Distribution]:
-    """Return the distributions of the patients for a wear factor."""
-    return {
-        "coefficient": _wear_factor(k),
-        "clearance": _CLEARANCE,
-        "tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0)),
-        "body_weight": Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0),
-        "cycles_per_year": LogNormal(median=STEPS, factor=1.5),
-    }
-
-
-def _wear_factor(k: float) -> LogNormal:
-    """Return the distribution of a wear factor with median k."""
-    return LogNormal(median=k * _K.median, factor=_K.factor)
-
-
-def _results(hip: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
+def _results(hip: HipSimulation, distributions: Mapping[str, Distribution], counts: list[float], count: int) -> Numbers:
     """Simulate patients and return their results, shape (patients, cycle counts, quantities)."""
     return population(PatientVariability(use=hip, distributions=distributions), counts, patients=count)[1].cohort.table
 
 
 def _band(name: str, values: Numbers) -> Predicted:
-    """Compute the band of predicted values."""
     tail = (1 - DEFAULT_LEVEL) / 2
     low, median, high = (float(value) for value in numpy.nanquantile(values, [tail, 0.5, 1 - tail]))
     return Predicted(name=name, low=low, median=median, high=high)

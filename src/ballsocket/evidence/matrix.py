@@ -47,7 +47,6 @@ LIMITED: Mapping[str, Quantity] = {**QUANTITIES, **PARAMETERS, **NAMES}
 KEYS: Mapping[str, Quantity] = {quantity.key: quantity for quantity in LIMITED.values()}
 """Quantities that can be limited, by their key in JSON."""
 
-_SMALLEST_IS_WORST = ("edge_distance",)
 _WORST = ("max_pressure", "half_angle", "area", "utilisation", "edge_distance", TORQUE.name, WEAR.name)
 
 Case = dict[str, float]
@@ -102,33 +101,20 @@ class Row:
     @staticmethod
     def of(summary: Mapping[str, Any]) -> Row:
         """Create a row from its summary."""
-        case, numbers, errors, bars = (summary[name] for name in ("case", "numbers", "errors", "bars"))
+
+        def known(part: str, quantities: Mapping[str, Quantity] = NAMES) -> list[tuple[str, float, Any]]:
+            return [
+                (n, q.written.factor, summary[part][q.key]) for n, q in quantities.items() if q.key in summary[part]
+            ]
+
         return Row(
-            {name: case[p.key] / p.written.factor for name, p in PARAMETERS.items() if p.key in case},
-            {
-                name: _to_internal_unit(quantity, numbers[quantity.key])
-                for name, quantity in NAMES.items()
-                if quantity.key in numbers
-            },
-            {name: errors[quantity.key] for name, quantity in NAMES.items() if quantity.key in errors},
-            {
-                name: (bars[quantity.key][0] / quantity.written.factor, _upper_bound(quantity, bars[quantity.key][1]))
-                for name, quantity in NAMES.items()
-                if quantity.key in bars
-            },
+            {name: value / factor for name, factor, value in known("case", PARAMETERS)},
+            {name: numpy.nan if value is None else value / factor for name, factor, value in known("numbers")},
+            {name: value for name, _, value in known("errors")},
+            {name: (low / f, inf if high is None else high / f) for name, f, (low, high) in known("bars")},
             summary["status"],
             summary["valid"],
         )
-
-
-def _to_internal_unit(quantity: Quantity, value: float | None) -> float:
-    """Convert a number of a file to internal units; NaN for None."""
-    return numpy.nan if value is None else value / quantity.written.factor
-
-
-def _upper_bound(quantity: Quantity, value: float | None) -> float:
-    """Convert an upper bound of a file to internal units; infinity for None."""
-    return inf if value is None else value / quantity.written.factor
 
 
 def to_file_unit(quantity: Quantity, value: float) -> float | None:
@@ -143,54 +129,36 @@ def list_cases(question: Question) -> list[Case]:
 
 def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     """Compute several cases in one call."""
-    count = len(cases)
     values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
     joint, load, possible = press_arguments(question.file.joint, values)
     contact = question.model.press(joint, **load)
-    numbers = {name: _column(value, count) for name, value in _contact_numbers(question, contact).items()}
-    errors = {name: _column(value, count) for name, value in known_errors(contact).items() if name in NAMES}
-    bars = {name: [_column(end, count) for end in bar[1:]] for name, bar in _error_bars(question, contact).items()}
-    status, valid, made = (_column(value, count) for value in (contact.status, contact.valid, possible))
+    if question.model.off_axis:
+        edge_distance = error_bar(contact, EDGE_DISTANCE)
+    else:  # a round contact under a vertical load
+        angle, cup = error_bar(contact, "half_angle"), question.file.cup
+        ends = (cup.edge_distance(joint.socket_radius, end, UP) for end in (angle.value, angle.high, angle.low))
+        edge_distance = Bounded(*ends)
+    numbers = {name: getattr(contact, name) for name in COMPUTED} | {EDGE_DISTANCE: edge_distance.value}
+    if question.friction is not None and question.model.off_axis:  # an upper bound: the ball radius is every lever
+        numbers[TORQUE.name] = question.friction * joint.ball_radius * contact.pressure_integral
+    elif question.friction is not None:
+        numbers[TORQUE.name] = contact.friction_torque(question.friction)
+    bars = {**{name: error_bar(contact, name) for name in COMPUTED}, EDGE_DISTANCE: edge_distance}
+    columns = {name: _column(value, cases) for name, value in numbers.items() if value is not None}
+    errors = {name: _column(value, cases) for name, value in known_errors(contact).items() if name in NAMES}
+    bounds = {name: (_column(bar.low, cases), _column(bar.high, cases)) for name, bar in bars.items()}
+    status, valid, made = (_column(value, cases) for value in (contact.status, contact.valid, possible))
     return [
         Row(
             case,
-            {name: float(value[i]) if made[i] else numpy.nan for name, value in numbers.items()},
+            {name: float(value[i]) if made[i] else numpy.nan for name, value in columns.items()},
             {name: float(value[i]) for name, value in errors.items()},
-            {name: (float(low[i]), float(high[i])) for name, (low, high) in bars.items() if made[i]},
+            {name: (float(low[i]), float(high[i])) for name, (low, high) in bounds.items() if made[i]},
             Status(int(status[i]) if made[i] else Status.NO_JOINT).name,
             bool(valid[i] and made[i]),
         )
         for i, case in enumerate(cases)
     ]
-
-
-def _contact_numbers(question: Question, contact: Contact) -> dict[str, Any]:
-    """Return the numbers of a contact, by name."""
-    numbers = {name: getattr(contact, name) for name in COMPUTED}
-    numbers[EDGE_DISTANCE] = _edge_distance(question, contact).value
-    if question.friction is not None:
-        numbers[TORQUE.name] = _friction_torque(question, contact, question.friction)
-    return {name: value for name, value in numbers.items() if value is not None}
-
-
-def _edge_distance(question: Question, contact: Contact) -> Bounded:
-    """Compute the edge distance in mm: of the off-axis contact, or of a round contact under a vertical load."""
-    if question.model.off_axis:
-        return error_bar(contact, EDGE_DISTANCE)
-    angle, radius = error_bar(contact, "half_angle"), contact.joint.socket_radius
-    return Bounded(*(question.file.cup.edge_distance(radius, end, UP) for end in (angle.value, angle.high, angle.low)))
-
-
-def _error_bars(question: Question, contact: Contact) -> dict[str, Bounded]:
-    """Return the numbers of a contact with their error bars, by name."""
-    return {**{name: error_bar(contact, name) for name in COMPUTED}, EDGE_DISTANCE: _edge_distance(question, contact)}
-
-
-def _friction_torque(question: Question, contact: Contact, friction: float) -> Any:
-    """Compute the friction torque in N mm; off the axis an upper bound, with the ball radius as every lever."""
-    if question.model.off_axis:
-        return friction * contact.joint.ball_radius * contact.pressure_integral
-    return contact.friction_torque(friction)
 
 
 def known_errors(contact: Contact) -> Mapping[str, Any]:
@@ -200,9 +168,8 @@ def known_errors(contact: Contact) -> Mapping[str, Any]:
     return known if known or tolerance is None else dict.fromkeys(COMPUTED, tolerance)
 
 
-def _column(value: Any, count: int) -> Numbers:
-    """Broadcast a number to all cases."""
-    return numpy.broadcast_to(to_numpy(value), count)
+def _column(value: Any, cases: Sequence[Case]) -> Numbers:
+    return numpy.broadcast_to(to_numpy(value), len(cases))
 
 
 def worst_rows(rows: Sequence[Row]) -> dict[str, Row]:
@@ -211,7 +178,7 @@ def worst_rows(rows: Sequence[Row]) -> dict[str, Row]:
     for name in _WORST:
         known = [row for row in rows if isfinite(row.numbers.get(name, numpy.nan))]
         if known:
-            worst[name] = (min if name in _SMALLEST_IS_WORST else max)(known, key=lambda row: row.numbers[name])
+            worst[name] = (min if name == EDGE_DISTANCE else max)(known, key=lambda row: row.numbers[name])
     return worst
 
 
@@ -229,6 +196,8 @@ class LimitCheck:
         required accuracy.
     row : Row or None
         Row with the smallest margin.
+    missing : str
+        Reason why the limited number is not known; empty if it is.
     """
 
     limit: Limit
@@ -237,6 +206,7 @@ class LimitCheck:
     unknown: int
     marginal: int
     row: Row | None
+    missing: str = ""
 
     @property
     def verdict(self) -> Verdict:
@@ -247,7 +217,9 @@ class LimitCheck:
 
     @property
     def reason(self) -> str:
-        """Numbers of cases that do not keep the limit, in words; empty if it is kept."""
+        """Numbers of cases that do not keep the limit, in words, or the missing strength; empty if it is kept."""
+        if self.missing and not self.beyond:
+            return self.missing
         counts = {
             "beyond the limit": self.beyond,
             f"nearer than the error bar or the required accuracy of {100 * self.accuracy:.3g} %": self.marginal,
@@ -256,17 +228,14 @@ class LimitCheck:
         parts = [f"{count} case{'s' * (count > 1)} {words}" for words, count in counts.items() if count]
         return ", ".join(parts) if parts or self.row is not None else "no case has a result"
 
-    def _in_file_unit(self, end: float) -> float | None:
-        """Convert an end of the limit to the unit of files."""
-        return to_file_unit({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
-
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return one dictionary for JSON, with the units of files."""
+        low, high = (to_file_unit(LIMITED[self.limit.name], end) for end in (self.limit.low, self.limit.high))
         return {
             "limit": str(self.limit),
             "name": self.limit.name,
-            "low": self._in_file_unit(self.limit.low),
-            "high": self._in_file_unit(self.limit.high),
+            "low": low,
+            "high": high,
             "verdict": self.verdict.word,
             "reason": self.reason,
             "beyond": self.beyond,
@@ -276,13 +245,17 @@ class LimitCheck:
         }
 
 
-def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitCheck:
-    """Check a limit over the matrix.
+def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float, missing: str = "") -> LimitCheck:
+    """Check a limit over the matrix; `missing` is the reason of an unknown number.
 
     A case is beyond the limit if the whole error bar of its number is. It keeps the limit if the bar does so, widened
     to the required relative accuracy, and if the result is valid.
     """
-    bars = Bounded(*numpy.array([_limited_number(limit, row) for row in rows], dtype=float).reshape(-1, 3).T)
+    numbers = []
+    for row in rows:
+        value = row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan))
+        numbers.append((value, *row.bars.get(limit.name, (value, value))))
+    bars = Bounded(*numpy.array(numbers, dtype=float).reshape(-1, 3).T)
     widened = Bounded(
         bars.value,
         numpy.minimum(bars.low, bars.value - accuracy * abs(bars.value)),
@@ -302,25 +275,16 @@ def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitChec
         unknown=int((~exceeded & ~(known & valid)).sum()),
         marginal=int((known & valid & ~exceeded & ~kept).sum()),
         row=rows[int(order.argmin())] if known.any() else None,
+        missing=missing,
     )
-
-
-def _limited_number(limit: Limit, row: Row) -> Bounded:
-    """Return the limited number of a row with its error bar, or the parameter of its case."""
-    value = float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
-    return Bounded(value, *row.bars.get(limit.name, (value, value)))
 
 
 # Titles and texts of the record and the page
 
-_LARGEST_INTEGER = 1e9
-_LONG_TITLES = {"utilisation": "utilisation (von Mises stress over yield stress)"}
-_LIMIT_ENDS = (("low", "at least"), ("high", "at most"))
-
 
 def title_of(name: str) -> str:
     """Return the title of a number by its name."""
-    return _LONG_TITLES.get(name) or LIMITED[name].title
+    return "utilisation (von Mises stress over yield stress)" if name == "utilisation" else LIMITED[name].title
 
 
 def number(value: Any) -> str:
@@ -328,15 +292,15 @@ def number(value: Any) -> str:
     if value is None or isinstance(value, str):
         return value or "–"
     text = f"{value:.5g}"
-    return f"{float(text):.0f}" if "e+" in text and abs(value) < _LARGEST_INTEGER else text
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
 def limit_text(limit: Mapping[str, Any]) -> str:
     """Format a limit with the title and the unit of its number: "largest pressure at most 15 MPa"."""
     quantity = KEYS.get(limit["name"]) or LIMITED[limit["name"]]
-    unit = quantity.written.text
-    ends = [f"{word} {number(limit[end])} {unit}".strip() for end, word in _LIMIT_ENDS if limit[end] is not None]
-    return f"{title_of(limit['name'])} {' and '.join(ends)}"
+    words = {"low": "at least", "high": "at most"}.items()
+    ends = [f"{word} {number(limit[end])} {quantity.written.text}" for end, word in words if limit[end] is not None]
+    return f"{title_of(limit['name'])} {' and '.join(end.strip() for end in ends)}"
 
 
 def verdict_text(limit: Mapping[str, Any]) -> str:

@@ -1,29 +1,42 @@
-"""Record of an evidence pack: the results of its plan, the inputs, and the assessment."""
+"""Record of an evidence pack: the plan of its pieces, their results, the inputs, and the assessment."""
 
 from __future__ import annotations
 
 import platform
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from datetime import date
+from functools import partial
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from math import degrees, inf
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
+from ..contact.strength import unchecked_strength_reason
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.storage.pieces import Results, fingerprint
+from ..core.storage.pieces import Piece, Plan, Results, Summary, fingerprint
 from ..problem import Material
-from ..problem.dimensions import DIAMETERS, EQUIVALENTS, STORED_LENGTHS
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS, canonical
 from ..studies.parameters import hold, press_arguments
-from .comparators import applicability, question_ranges
+from .code_checks import CHECKS
+from .comparators import CLAIMS, PUBLISHED, applicability, claim, question_ranges
 from .credibility import assess, model_risk
 from .credibility_levels import Record
-from .matrix import WEAR, Row, check_limit, worst_rows
-from .plan import distinct_cases, plan, plan_worst_cases
+from .matrix import WEAR, Case, Row, check_limit, compute_rows, list_cases, worst_rows
 from .question import Question
-from .worst_case import largest_deviation
+from .worst_case import (
+    compare_methods,
+    largest_deviation,
+    propagate_tolerances,
+    solve_with_calculix,
+    wear_history,
+    wear_rates,
+)
 
 _SERIAL = Serial()
 
@@ -31,12 +44,8 @@ Listener = Callable[[str], None]
 """Function that is called with the name of each completed piece."""
 
 
-def ignore_progress(name: str) -> None:
-    """Ignore the name of a completed piece."""
-
-
 def gather_evidence(
-    question: Question, folder: Path, progress: Listener = ignore_progress, engine: Engine = _SERIAL
+    question: Question, folder: Path, progress: Listener = lambda name: None, engine: Engine = _SERIAL
 ) -> dict[str, Any]:
     """Compute the record of a pack, as one dictionary for JSON.
 
@@ -63,11 +72,94 @@ def gather_evidence(
     return _record(question, rows, worst, {**first, **second})
 
 
+# Pieces of work with stored results, so that a stopped run is resumed
+
+_STORE_NAME = re.compile(r"(first|later)-[0-9a-f]{12}")
+
+
+def plan(question: Question) -> Plan:
+    """Return the plan of the pieces that do not depend on the worst cases."""
+    cases = list_cases(question)
+    first = next(iter(question.axes))
+    blocks = [tuple(case for case in cases if case[first] == value) for value in question.axes[first]]
+    return Plan(
+        name=_store_names(question)[0],
+        parts={
+            "matrix": {
+                f"block {number}": partial(_summaries, compute_rows, question, block)
+                for number, block in enumerate(blocks)
+            },
+            "wear_rates": {
+                f"block {number}": partial(wear_rates, question, block)
+                for number, block in enumerate(blocks)
+                if question.hip is not None
+            },
+            "code_verification": {name: Summary(check) for name, check in CHECKS.items()},
+            "claims": {name: partial(claim, name) for name in CLAIMS},
+            "comparators": {name: Summary(comparator) for name, comparator in PUBLISHED.items()},
+        },
+    )
+
+
+def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
+    """Return the plan of the pieces for the worst cases."""
+    row = worst.get("max_pressure", next(iter(worst.values()), None))
+    parts: dict[str, Mapping[str, Piece]] = {
+        "rival": {} if row is None else {"": partial(_summaries, solve_with_calculix, question, row.case)},
+        "calculation": {
+            f"case {number}": partial(_summaries, compare_methods, question, case)
+            for number, case in enumerate(distinct_cases(worst))
+        },
+        "uncertainty": {},
+        "wear": {},
+    }
+    if question.tolerances and row is not None:
+        parts["uncertainty"] = {"": partial(propagate_tolerances, question, row.case)}
+    if WEAR.name in worst:
+        parts["wear"] = {"": partial(wear_history, question, worst[WEAR.name].case)}
+    return Plan(name=_store_names(question)[1], parts=parts)
+
+
+def distinct_cases(worst: Mapping[str, Row]) -> list[Case]:
+    """Return the cases in which some number of a contact is worst, without repetition."""
+    cases = [row.case for name, row in worst.items() if name != WEAR.name]
+    return list({tuple(case.items()): case for case in cases}.values())
+
+
+def _summaries(compute: Callable[[Question, Any], Sequence[Any]], question: Question, cases: Any) -> list[Any]:
+    return [result.summary() for result in compute(question, cases)]
+
+
+def count_stored_pieces(question: Question, folder: Path) -> int:
+    """Count the stored results of a question from a stopped run."""
+    return sum(1 for name in _store_names(question) for path in (folder / name).glob("*.json"))
+
+
+def remove_stored_pieces(folder: Path) -> None:
+    """Remove the stored results of all questions from a folder, and the empty folder."""
+    for path in folder.glob("*-*"):
+        if _STORE_NAME.fullmatch(path.name):
+            rmtree(path, ignore_errors=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _store_names(question: Question) -> tuple[str, str]:
+    """Return the folder names of both plans, with a digest of the question and of the files that it names."""
+    digest = sha256()
+    for path in question.files:
+        digest.update(path.read_bytes())
+    text = digest.hexdigest()[:12]
+    return f"first-{text}", f"later-{text}"
+
+
 def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
     """Assemble the record from the results of all pieces, and assess it."""
+    call = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
+    missing = {"utilisation": unchecked_strength_reason(question.file.joint)}
     record: dict[str, Any] = {
         "version": fingerprint(),
-        "made_with": made_with(),
+        "made_with": _made_with(),
         "made_on": date.today().isoformat(),
         "question": question.text,
         "context_of_use": question.context,
@@ -76,11 +168,14 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         "inputs": list_inputs(question),
         "held": hold(question.file.joint, (*question.axes, *question.tolerances)),
         "recentred": [entry.summary() for entry in question.recentred],
-        "model": {"name": question.model.name, "call": _CALL},
+        "model": {"name": question.model.name, "call": call},
         "matrix": [row.summary() for row in rows],
         "worst": {name: row.summary() for name, row in worst.items()},
         "drawn": _drawn_joint(question, worst),
-        "limits": [check_limit(limit, rows, question.accuracy).summary() for limit in question.limits],
+        "limits": [
+            check_limit(limit, rows, question.accuracy, missing.get(limit.name, "")).summary()
+            for limit in question.limits
+        ],
         "code_verification": results["code_verification"],
         "calculation": _calculations(worst, results),
         "claims": [dict(entry) for entry in results["claims"]],
@@ -93,9 +188,6 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
         entry["applicability"] = applicability(entry["reaches"], ranges, question.model.off_axis)
     record["accurate"] = _accuracy(record)
     return {**record, **assess(record)}
-
-
-_CALL = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
 
 
 def _calculations(worst: Mapping[str, Row], results: Results) -> list[dict[str, Any]]:
@@ -134,17 +226,14 @@ def _accuracy(record: Record) -> dict[str, Any]:
     return {"largest": largest, "required": required, "holds": largest is not None and largest <= required}
 
 
-FOLLOWS = "follows from the other lengths"
-"""Source of a length that the joint does not give."""
-
-
 def list_inputs(question: Question) -> list[dict[str, Any]]:
     """List every number of the input, with unit, tolerance and source."""
     joint = question.file.joint
-    given = {EQUIVALENTS.get(name, name) for name in joint.given_lengths}
+    follows = "follows from the other lengths"
+    given = {canonical(name) for name in joint.given_lengths}
     lengths = dict.fromkeys((*STORED_LENGTHS, *(name for name in JOINT if name in given)))
     rows = [
-        ("joint" if name in given else "", name, getattr(joint, name), "mm", joint.source if name in given else FOLLOWS)
+        ("joint" if name in given else "", name, getattr(joint, name), "mm", joint.source if name in given else follows)
         for name in lengths
     ]
     rows += _material_inputs("liner", joint.liner) + _material_inputs("ball", joint.ball)
@@ -153,13 +242,17 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
         rows += _material_inputs("backing", layer.material, f"backing[{number}].")
     if question.friction is not None:
         rows.append(("friction", "friction.coefficient", question.friction, "", ""))
+    recentred = {canonical(entry.name) for entry in question.recentred}
     return [
         {
             "name": name,
             "value": value if abs(value) < inf else "inf",
             "unit": unit,
             "tolerance": _tolerance_text(question, name),
-            "source": _source_text(question, name, body) or source,
+            "source": question.sources.get(name)
+            or ("nominal value of its tolerance in the question" if name in recentred else "")
+            or question.sources.get(body)
+            or source,
         }
         for body, name, value, unit, source in rows
     ]
@@ -177,18 +270,11 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
     ]
 
 
-def _source_text(question: Question, name: str, body: str) -> str:
-    """Return the source that the question states for an input; empty without one."""
-    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
-    by_tolerance = "nominal value of its tolerance in the question" if name in recentred else ""
-    return question.sources.get(name) or by_tolerance or question.sources.get(body, "")
-
-
 def _tolerance_text(question: Question, name: str) -> str:
     """Format the tolerance of an input; empty without one."""
-    spreads = {DIAMETERS.get(stated, stated): (stated, spread) for stated, spread in question.tolerances.items()}
+    spreads = {canonical(stated): (stated, spread) for stated, spread in question.tolerances.items()}
     if name not in spreads:
-        varied = {DIAMETERS.get(axis, axis) for axis in question.axes}
+        varied = {canonical(axis) for axis in question.axes}
         return "varied in the matrix" if name in varied else ""
     stated, spread = spreads[name]
     factor = 0.5 if stated in DIAMETERS else 1.0
@@ -196,25 +282,15 @@ def _tolerance_text(question: Question, name: str) -> str:
     return f"{low:g} to {high:g}"
 
 
-_LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib", "pillow")
-DRAWING = ("matplotlib", "pillow", "freetype", "zlib")
-"""Libraries that decide the bytes of a figure."""
-
-STATED = ("python", "system", *_LIBRARIES, "freetype", "zlib")
+_LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib")
+STATED = ("python", "system", *_LIBRARIES)
 """Names of the entries in `made_with`."""
 
 
-def made_with() -> dict[str, str]:
-    """Return the machine and the versions of the libraries that compute and draw."""
-    from matplotlib.ft2font import __freetype_version__
-    from PIL import features
-
-    versions = {}
+def _made_with() -> dict[str, str]:
+    """Return the machine and the versions of the installed libraries that compute and draw."""
+    versions = {"python": platform.python_version(), "system": f"{sys.platform} {platform.machine()}"}
     for name in _LIBRARIES:
-        try:
+        with suppress(PackageNotFoundError):
             versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    drawing = {"freetype": __freetype_version__, "zlib": str(features.version("zlib"))}
-    machine = f"{sys.platform} {platform.machine()}"
-    return {"python": platform.python_version(), "system": machine, **versions, **drawing}
+    return versions

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Self
 from unicodedata import category
 
 from ..contact import Model
-from ..core.checks import check_filled, check_names, check_text, number_of_percent, require, shown
+from ..core.checks import check_filled, check_names, number_of_percent, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
@@ -32,10 +32,11 @@ from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
-from ..model_catalogue import off_axis, reference
+from ..model_catalogue import off_axis, reference, with_gap
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit
+from ..studies.file import ModelGap
 from ..studies.limits import Limit
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, nominal_value, vary_joint
 
@@ -62,17 +63,6 @@ class MatrixValues(Parsed):
         return values
 
 
-class Tolerance(Parsed):
-    """Tolerance or range, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45'."""
-
-    schema: ClassVar[Mapping[str, Any]] = Text.schema
-
-    @classmethod
-    def parse(cls, name: str, value: Any) -> str:
-        """Return the text of a tolerance."""
-        return check_text(name, value)
-
-
 class Share(Value, float):
     """Share, such as '10 %' or 0.1."""
 
@@ -82,7 +72,7 @@ class Share(Value, float):
     def read(cls, name: str, value: Any) -> Self:
         """Convert a share above 0, at most 1."""
         percent = number_of_percent(value)
-        share = parse(name, value, Kind.NUMBER) if percent is None else parse(name, percent, Kind.NUMBER) / 100
+        share = parse(name, value if percent is None else percent, Kind.NUMBER) / (1 if percent is None else 100)
         require(name, share, 0 < share <= 1, "above 0, at most 100 %")
         return cls(share)
 
@@ -124,9 +114,9 @@ class MatrixTable(Table, frozen=True, kw_only=True):
     """Values of the matrix of cases, by parameter."""
 
 
-@with_keys(quantity_keys(PARAMETERS, Tolerance))
+@with_keys(quantity_keys(PARAMETERS, Text))
 class TolerancesTable(Table, frozen=True, kw_only=True):
-    """Tolerances of inputs, by parameter."""
+    """Tolerances or ranges of inputs, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45', by parameter."""
 
 
 _QUESTION = "decision that the evidence is for, in a sentence"
@@ -139,6 +129,7 @@ class QuestionTable(JointTables, frozen=True, kw_only=True):
     question: Annotated[Text, meaning(_QUESTION)]
     context_of_use: Annotated[Text, meaning(_CONTEXT)]
     finite_elements: Annotated[bool, meaning("check of the worst cases with finite elements")] = False
+    gap: ModelGap = None
     risk: Annotated[RiskTable, meaning("risk of a wrong decision")]
     required: Annotated[RequiredTable, meaning("requirements on the numbers")]
     matrix: MatrixTable | None = None
@@ -192,6 +183,8 @@ class Question:
         File of a hip simulation, whose wear belongs to the evidence.
     finite_elements : bool
         True for a check of the worst cases by finite elements.
+    gap : str, optional
+        Gap of all models that have a choice, "linear" or "circular".
     path : Path
         The file.
     files : tuple of Path
@@ -212,6 +205,7 @@ class Question:
     friction: float | None
     hip: Path | None
     finite_elements: bool
+    gap: str | None
     path: Path
     files: tuple[Path, ...]
 
@@ -219,7 +213,7 @@ class Question:
     def model(self) -> Model:
         """Model of the matrix: `Exact`, or the off-axis solver for tilted loads or cups."""
         chosen = off_axis if any(name in AIMS for name in self.axes) else reference
-        return chosen.in_cup(self.file.cup)
+        return with_gap(chosen, self.gap).in_cup(self.file.cup)
 
 
 def read_question(path: str | Path) -> Question:
@@ -240,7 +234,8 @@ def read_question(path: str | Path) -> Question:
         question = read_toml(path, "question", lambda content: _question(content, path))
     files = packed_files(path, opened)
     for file in files:
-        _check_visible(file)
+        if file.suffix == ".toml":
+            _check_visible(file)
     return replace(question, files=files)
 
 
@@ -248,9 +243,23 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
     """Create the question of a file."""
     tables = read_table(content, QuestionTable)
     axes = parsed_values(tables.matrix, content.get("matrix", {}))
-    _check_axes(axes)
-    tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
+    check_contradictions(axes)
+    if not any(name in axes for name in LOADS):
+        raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
+    count = prod(map(len, axes.values()))
+    require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
+    check_values(grid(**{name: list(values) for name, values in axes.items()}))
+    tolerances = _tolerances({name: str(getattr(tables.tolerances, name)) for name in content.get("tolerances", {})})
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
+    sources, friction = tables.sources or {}, tables.friction.coefficient
+    check_names(sources, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
+    if friction is not None:
+        require("coefficient", float(friction), 0 <= float(friction) <= 2, "a coefficient of friction is 0 to 2")
+    hip = None if tables.wear.file is None else path.parent / tables.wear.file
+    if hip is not None:
+        if not resolve_input(hip).is_file():
+            raise ValueError(f"[wear] file = {shown(str(tables.wear.file))} is not there")
+        read_hip(hip)
     return Question(
         text=check_filled("question", tables.question, _QUESTION),
         context=check_filled("context_of_use", tables.context_of_use, _CONTEXT),
@@ -262,22 +271,14 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         limits=tuple(map(parse_limit, tables.required.limits or ())),
         tolerances=tolerances,
         recentred=recentred,
-        sources=_sources(tables.sources or {}),
-        friction=_friction(tables.friction),
-        hip=_hip(tables.wear, path.parent),
+        sources={name: str(text) for name, text in sources.items()},
+        friction=None if friction is None else float(friction),
+        hip=hip,
         finite_elements=tables.finite_elements,
+        gap=tables.gap,
         path=path,
         files=(path,),
     )
-
-
-def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
-    check_contradictions(axes)
-    if not any(name in axes for name in LOADS):
-        raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
-    count = prod(map(len, axes.values()))
-    require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
-    check_values(grid(**{name: list(values) for name, values in axes.items()}))
 
 
 def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
@@ -315,44 +316,14 @@ def _recentred(
 
 def _check_visible(path: Path) -> None:
     """Raise ValueError for an invisible character, which can change the text of a page."""
-    if path.suffix != ".toml":
-        return
+    joiners = "\u200c\u200d"  # which some scripts need between letters
     with open_input(path) as stream:
         text = stream.read().decode("utf-8-sig")
     for number, line in enumerate(text.splitlines(), 1):
         for character in line:
-            if category(character) == "Cf" and character not in _JOINERS:
+            if category(character) == "Cf" and character not in joiners:
                 raise ValueError(f"{path.name} has the invisible character U+{ord(character):04X} in line {number}")
 
 
-_JOINERS = "\u200c\u200d"
-"""Invisible characters that some scripts need between letters."""
-
 ALMOST_ALL = (0.001, 0.999)
 """Quantiles that count as the ends of a distribution."""
-
-
-def _sources(texts: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the sources of inputs as plain texts."""
-    check_names(texts, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
-    return {name: str(text) for name, text in texts.items()}
-
-
-def _friction(table: FrictionTable) -> float | None:
-    """Return the coefficient of friction; None if the file does not state it."""
-    if table.coefficient is None:
-        return None
-    coefficient = float(table.coefficient)
-    require("coefficient", coefficient, 0 <= coefficient <= 2, "a coefficient of friction is 0 to 2")
-    return coefficient
-
-
-def _hip(table: WearFileTable, folder: Path) -> Path | None:
-    """Return the path of the hip file, which is read once as a check; None if the file names none."""
-    if table.file is None:
-        return None
-    path = folder / table.file
-    if not resolve_input(path).is_file():
-        raise ValueError(f"[wear] file = {shown(str(table.file))} is not there")
-    read_hip(path)
-    return path

@@ -14,7 +14,7 @@ from typing import Any
 import numpy
 
 from ..contact import Model
-from ..core.arrays import to_list
+from ..core.arrays import Numbers, to_list
 from ..core.validity import Promise
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..model_catalogue import catalogue
@@ -25,8 +25,6 @@ SHARE, EXCESS = 0.99, 1.3
 
 TRUTH = Tabulated()
 """Reference solution, with an error of 2e-4; fast enough for large populations."""
-
-Numbers = numpy.ndarray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +91,6 @@ def population(size: int, seed: int = 1) -> tuple[Joint, Numbers]:
 
 
 def _log_uniform(rng: numpy.random.Generator, low: float, high: float, size: int) -> Numbers:
-    """Sample a log-uniform distribution."""
     return numpy.exp(rng.uniform(log(low), log(high), size))
 
 

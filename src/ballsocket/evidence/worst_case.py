@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from math import isfinite
@@ -23,7 +24,7 @@ from ..elasticity.off_axis.model import Sphere
 from ..hip.config import HipFile, read_hip
 from ..hip.simulation import HipSimulation
 from ..hip.wear_uncertainty import uncertainty
-from ..model_catalogue import reference
+from ..model_catalogue import reference, with_gap
 from ..problem import Joint
 from ..studies.axes import Method
 from ..studies.design import sample
@@ -39,7 +40,6 @@ ALONG = " (along the axis)"
 _COMPARED = ("max_pressure", "half_angle", "area", "indentation", "force")
 _BANDED = ("max_pressure", "half_angle", "area", "indentation")
 
-_PERCENTILES = (2.5, 50.0, 97.5)
 _TABULATED_SAMPLES, _EXACT_SAMPLES = 1024, 64
 _SEED = 1
 
@@ -84,46 +84,36 @@ class CalculationMethod:
 
 
 def compare_methods(question: Question, case: Case) -> list[CalculationMethod]:
-    """Solve a case by every method for a load along the axis; a tilted load also by the off-axis solver."""
-    joint, load, _ = press_arguments(question.file.joint, case)
-    aligned = list(_solve_aligned(question, joint, _size(load)))
-    return [*_solve_off_axis(question, joint, load), *aligned] if len(_size(load)) < len(load) else aligned
+    """Solve a case by every method for a load along the axis; a tilted load also by the off-axis solver.
 
-
-def _size(load: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a load without its direction."""
-    return {name: value for name, value in load.items() if name not in AIMS}
-
-
-def _suffix(question: Question) -> str:
-    """Return the suffix of methods that align the load of a question."""
-    return ALONG if question.model.off_axis else ""
-
-
-def _solve_off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
-    """Solve a case off the axis, on rings of the default width and of half the width."""
-    model = question.model
-    assert isinstance(model, Sphere)
-    fine = replace(model, ring_width=model.ring_width / 2)
-    for name, solver in {"sphere": model, "sphere, rings of half the width": fine}.items():
-        yield replace(_solve(name, solver, joint, load), aligned=False)
-
-
-def _solve_aligned(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
-    """Solve a case with its load along the axis, by every method that can."""
-    cup, suffix = question.file.cup, _suffix(question)
+    The off-axis solver has rings of its width, and of half the width. Methods that cannot solve the case are omitted.
+    """
+    joint, load, size = _joint_and_load(question, case)
+    methods = []
+    if len(size) < len(load):
+        model = question.model
+        assert isinstance(model, Sphere)
+        fine = replace(model, ring_width=model.ring_width / 2)
+        for name, solver in {"sphere": model, "sphere, rings of half the width": fine}.items():
+            methods.append(replace(_solve(name, solver, joint, load), aligned=False))
+    cup, suffix = question.file.cup, ALONG if question.model.off_axis else ""
     models: dict[str, Model] = {
-        f"exact{suffix}": reference.in_cup(cup),
+        f"exact{suffix}": with_gap(reference, question.gap).in_cup(cup),
         f"tabulated{suffix}": Tabulated().in_cup(cup),
-        f"sphere{ALONG}": Sphere(cup=cup),
+        f"sphere{ALONG}": with_gap(Sphere(cup=cup), question.gap),
     }
     if question.finite_elements and find_spec("skfem") is not None:
-        models[f"finite elements{suffix}"] = FiniteElement(cup=cup)
+        models[f"finite elements{suffix}"] = with_gap(FiniteElement(cup=cup), question.gap)
     for name, model in models.items():
-        try:
-            yield _solve(name, model, joint, load)
-        except OutsideDomainError:
-            continue
+        with suppress(OutsideDomainError):
+            methods.append(_solve(name, model, joint, size))
+    return methods
+
+
+def _joint_and_load(question: Question, case: Case) -> tuple[Joint, dict[str, Any], dict[str, Any]]:
+    """Return the joint of a case, its load, and the load without its direction."""
+    joint, load, _ = press_arguments(question.file.joint, case)
+    return joint, load, {name: value for name, value in load.items() if name not in AIMS}
 
 
 def _solve(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
@@ -142,34 +132,25 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
     """Solve a case along the axis with CalculiX; return an empty list if it is not installed or not required."""
     if not (question.finite_elements and shutil.which("ccx") and find_spec("skfem")):
         return []
-    joint, load, _ = press_arguments(question.file.joint, case)
-    model = FiniteElement(cup=question.file.cup, meshes=1)
-    return [_run_calculix(f"CalculiX{_suffix(question)}", model, joint, _size(load))]
-
-
-def _run_calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
-    """Run CalculiX on the input deck of a contact."""
     from ..elasticity.finite_elements.calculix import run
     from ..elasticity.finite_elements.deck import deck_of
 
-    contact: Contact = model.press(joint, **load)
+    joint, _, size = _joint_and_load(question, case)
+    model = with_gap(FiniteElement(cup=question.file.cup, meshes=1), question.gap)
+    contact: Contact = model.press(joint, **size)
+    name = f"CalculiX{ALONG if question.model.off_axis else ''}"
     failed = CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))
     if contact.status.failed:
-        return failed
+        return [failed]
     with tempfile.TemporaryDirectory() as folder:
         deck_of(contact, steps=4).write(Path(folder))  # type: ignore[arg-type]
         try:
             result = run(Path(folder))
         except RuntimeError as error:
-            return replace(failed, notes=(str(error),))
-    numbers = {
-        "indentation": result.indentation,
-        "force": result.force,
-        "half_angle": result.half_angle,
-        "max_pressure": result.pole_pressure,
-    }
-    last = {quantity: float(value[-1]) for quantity, value in numbers.items()}
-    return CalculationMethod(name=name, numbers=last, errors={}, valid=True)
+            return [replace(failed, notes=(str(error),))]
+    numbers = {key: float(getattr(result, key)[-1]) for key in ("indentation", "force", "half_angle")}
+    numbers["max_pressure"] = float(result.pole_pressure[-1])
+    return [CalculationMethod(name=name, numbers=numbers, errors={}, valid=True)]
 
 
 def largest_deviation(methods: Sequence[Mapping[str, Any]]) -> dict[str, float]:
@@ -204,12 +185,15 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
         for name, spread in spreads.items()
         if name not in LOADS
     }
-    model = default_model(joint, ends)
-    count = _EXACT_SAMPLES if model is reference else _TABULATED_SAMPLES
+    model = default_model(joint, ends) if question.gap is None else with_gap(reference, question.gap)
+    count = _EXACT_SAMPLES if model.name == reference.name else _TABULATED_SAMPLES
     drawn = sample(count, seed=_SEED, method=Method.SOBOL, **dict[str, Any](spreads)).values_in([slice(None)])
     made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
-    results = {name: _finite_results(getattr(contact, name), to_numpy(possible), count) for name in _BANDED}
+    results = {
+        name: numpy.where(to_numpy(possible), numpy.broadcast_to(to_numpy(getattr(contact, name)), count), numpy.nan)
+        for name in _BANDED
+    }
     indices = sensitivity(
         model, joint, spreads, quantities=_BANDED[:2], count=count // 4, confidence=None, load=load
     ).total_order
@@ -242,20 +226,13 @@ def _outside_notes(question: Question, case: Case) -> Iterator[str]:
             )
 
 
-def _finite_results(values: Any, possible: Numbers, count: int) -> Numbers:
-    """Return the results of the samples that are possible joints and have a result."""
-    results: Numbers = numpy.where(possible, numpy.broadcast_to(to_numpy(values), count), numpy.nan)
-    return results[numpy.isfinite(results)]
-
-
 def _band(name: str, values: Numbers) -> Mapping[str, float]:
-    """Compute low end, median and high end of a quantity over the samples, in the unit of files."""
-    factor = QUANTITIES[name].written.factor
-    ends = numpy.percentile(values, _PERCENTILES) * factor
-    return {"low": float(ends[0]), "median": float(ends[1]), "high": float(ends[2]), "answered": len(values)}
-
-
-_CUP_ANGLES = ("inclination", "anteversion")
+    """Compute low end, median and high end of a quantity over the samples with a result, in the unit of files."""
+    known = values[numpy.isfinite(values)]
+    low, median, high = (
+        float(end) for end in numpy.percentile(known, (2.5, 50.0, 97.5)) * QUANTITIES[name].written.factor
+    )
+    return {"low": low, "median": median, "high": high, "answered": len(known)}
 
 
 def wear_rates(question: Question, cases: Sequence[Case]) -> list[float | None]:
@@ -265,29 +242,23 @@ def wear_rates(question: Question, cases: Sequence[Case]) -> list[float | None]:
     """
     assert question.hip is not None
     file, known = read_hip(question.hip), dict[tuple[Any, ...], float | None]()
+    rates = []
     for case in cases:
-        if _geometry(case) not in known:
-            known[_geometry(case)] = _wear_rate(question, file, case)
-    return [known[_geometry(case)] for case in cases]
-
-
-def _geometry(case: Case) -> tuple[Any, ...]:
-    """Return the parameters of a case without its load."""
-    return tuple((name, value) for name, value in case.items() if name not in LOADS)
-
-
-def _wear_rate(question: Question, file: HipFile, case: Case) -> float | None:
-    """Compute the wear rate of the first cycle; None if the hip cannot be simulated."""
-    try:
-        return float(_simulation(question, file, case).first.volume)
-    except ValueError:  # no contact in the cycle, or a contact over the rim
-        return None
+        geometry = tuple((name, value) for name, value in case.items() if name not in LOADS)
+        if geometry not in known:
+            try:
+                known[geometry] = float(_simulation(question, file, case).first.volume)
+            except ValueError:  # no contact in the cycle, or a contact over the rim
+                known[geometry] = None
+        rates.append(known[geometry])
+    return rates
 
 
 def _simulation(question: Question, file: HipFile, case: Case) -> HipSimulation:
     """Create the simulation of the hip file with the joint and the cup angles of a case."""
-    joint, _, _ = press_arguments(question.file.joint, dict(_geometry(case)))
-    angles: dict[str, Any] = {name: case[name] for name in _CUP_ANGLES if name in case}
+    geometry = {name: value for name, value in case.items() if name not in LOADS}
+    joint, _, _ = press_arguments(question.file.joint, geometry)
+    angles: dict[str, Any] = {name: case[name] for name in ("inclination", "anteversion") if name in case}
     return replace(file.use, joint=joint, cup=replace(file.use.cup, **angles))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.util import find_spec
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy
 
+from ..core.arrays import Numbers
 from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
@@ -22,7 +23,7 @@ from .tunable import TUNABLES
 
 _NOT_CENTRAL = (
     "the force of a preloaded joint depends on the direction, which this target cannot represent: "
-    "export c, drake, modelica or mujoco, or use `ballsocket fmu`"
+    "export c, drake, modelica or mujoco, or table for splines along two axes, or use `ballsocket fmu`"
 )
 
 Texts = Mapping[str, str]
@@ -251,7 +252,12 @@ def _modelica_texts(job: ExportJob) -> Texts:
 
 
 def _table_texts(job: ExportJob) -> Texts:
-    """Return the texts of the table of the force law and of the fitted power law, by file name."""
+    """Return the texts of the table of the force law and of the fitted power law, by file name.
+
+    The force of a preloaded joint is no power law: it has a table with both signs along two axes.
+    """
+    if isinstance(job.element, PreloadedElement):
+        return {f"{job.name}_law.csv": _preloaded_table(job.element)}
     return {
         f"{job.name}_law.csv": _law_table(job.central_element, job.depth),
         f"{job.name}_power.txt": _power_law_text(job.central_element, job.fitted_power_law, __version__),
@@ -270,8 +276,44 @@ def _law_table(element: ForceElement, depth: float) -> str:
     energy, force, stiffness = element.potential(depths)
     angle = numpy.degrees(element.half_angle(depths))
     columns = (depths, force, stiffness, energy, angle, element.max_pressure(depths))
+    return _csv_text(_COLUMNS, columns)
+
+
+_PRELOADED_COLUMNS = (
+    "displacement_mm",
+    *(f"{name}_{axis}" for axis in ("along", "across") for name in ("force_N", "max_pressure_MPa")),
+)
+
+
+def _preloaded_table(element: PreloadedElement) -> str:
+    """Return a CSV table over the displacement from rest in mm, along the axis of the dome and across it.
+
+    The force on the ball is in the direction of the displacement, negative for a positive one.
+    """
+    distances = numpy.linspace(-element.wall, element.wall, _TABLE_ROWS) * (1 - 1e-9)
+    constants, columns = element.constants, [distances]
+    dome = numpy.array([constants.dome_x, constants.dome_y, constants.dome_z])
+    across = numpy.cross(dome, numpy.eye(3)[numpy.argmin(abs(dome))])
+    for axis in (dome, across / numpy.linalg.norm(across)):
+        load = element(element.rest_position + distances[:, None] * axis)
+        columns += [load.force @ axis, load.max_pressure]
+    return _csv_text(_PRELOADED_COLUMNS, columns)
+
+
+def _csv_text(heads: Sequence[str], columns: Sequence[Numbers]) -> str:
+    """Return a CSV table with nine digits."""
     rows = numpy.stack(columns, axis=1).tolist()
-    return "\n".join([",".join(_COLUMNS), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
+    return "\n".join([",".join(heads), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
+
+
+def _two_axes_note(job: ExportJob) -> str:
+    """Return the note on the directions of the table of a preloaded joint; empty for other joints."""
+    if not isinstance(job.element, PreloadedElement):
+        return ""
+    return (
+        "force on the ball over its displacement from rest, along the cup's axis (positive to the dome) and across it; "
+        "for other directions export c, drake, modelica or mujoco, or use `ballsocket fmu`"
+    )
 
 
 def _power_law_text(element: ForceElement, fit: PowerFit, version: str) -> str:
@@ -317,8 +359,8 @@ TARGETS: Mapping[str, Target] = {
             name="table",
             title="a table, and k and n for Adams, MotionSolve and Simpack",
             texts=_table_texts,
+            note=_two_axes_note,
             without=tuple(FEATURES),
-            central=True,
         ),
     )
 }

@@ -54,22 +54,6 @@ OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"
 """First bytes of Excel files: .xls, which is not read, and .xlsx."""
 
 
-def possible_rows(raw: bytes) -> Iterator[tuple[str, list[NumberedRow]]]:
-    """Yield each possible separator of the content of a text or Excel file, and the cells of all lines.
-
-    Raises
-    ------
-    ValueError
-        Content that is neither a table in text nor in .xlsx.
-    """
-    if raw.startswith(OLD_EXCEL):
-        raise ValueError("an old Excel file (.xls) is not read: save it as .xlsx or CSV")
-    if raw.startswith(EXCEL):
-        yield "", read_excel(raw)
-    else:
-        yield from split_text(decode_text(raw))
-
-
 def decode_text(raw: bytes) -> str:
     """Decode text in UTF-8 or UTF-16, with or without a byte order mark, or in cp1252, the code page of Windows.
 
@@ -119,8 +103,8 @@ def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
         raise ValueError(errors[0])
 
 
-def read_excel(raw: bytes) -> list[NumberedRow]:
-    """Return the rows of an Excel file (.xlsx); a row with two words begins each further sheet.
+def read_excel(raw: bytes) -> dict[str, list[NumberedRow]]:
+    """Return the rows of each sheet with a number in an Excel file (.xlsx), or of all sheets without any.
 
     Raises
     ------
@@ -134,17 +118,23 @@ def read_excel(raw: bytes) -> list[NumberedRow]:
     needs("xlsx", "openpyxl")
     from openpyxl import load_workbook
 
-    rows: list[NumberedRow] = []
     try:
         with ZipFile(BytesIO(raw)) as archive:
             if sum(member.file_size for member in archive.infolist()) > _MAX_SHEET_BYTES:
                 raise ValueError(f"its content is larger than {_MAX_SHEET_BYTES // 1_000_000} MB")
+        sheets: dict[str, list[NumberedRow]] = {}
         for sheet in load_workbook(BytesIO(raw), read_only=True, data_only=True).worksheets:
-            rows += [(0, ["sheet", sheet.title])] if rows else []
-            rows += [(number, [_excel_cell(cell) for cell in cells]) for number, cells in enumerate(sheet.rows, 1)]
+            sheet.reset_dimensions()  # some programs state too few cells
+            sheets[sheet.title] = [
+                (number, [_excel_cell(cell) for cell in cells]) for number, cells in enumerate(sheet.rows, 1)
+            ]
     except (BadZipFile, SyntaxError, LookupError, AttributeError, TypeError, OSError) as error:
         raise ValueError(f"it is not a readable .xlsx file: {error}") from error
-    return rows
+    return (
+        {title: rows for title, rows in sheets.items() if any(is_data(cells) for _, cells in rows)}
+        or sheets
+        or {"": []}
+    )
 
 
 def _excel_cell(cell: Any) -> Cell:

@@ -6,8 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain
-from math import isfinite
+from itertools import chain, zip_longest
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated
@@ -30,11 +29,12 @@ from .cells import (
     decimal_mark,
     decode_text,
     is_data,
-    possible_rows,
+    read_excel,
+    split_text,
 )
 from .head_names import UNCERTAINTY, known_head, plain_name
 from .schema import HeadMap, Table, Texts, meaning
-from .units import parse, parse_units
+from .units import Units, parse, parse_units
 
 _MAX_BYTES = 10_000_000
 """Largest size in bytes of a table that is not Parquet."""
@@ -59,9 +59,12 @@ _MAX_LISTED = 20
 
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
-_NAME = re.compile(r"[^\[(]*\w\.?")
+_NAME = re.compile(r"\w(?:[^\[(]*\w)?\.?")
 _SEPARATOR = re.compile(r"[\s_\[(/,;:'-]")
 _BRACKETED = re.compile(r"[\s_/,;:'-]*+[\[(]\s*+([^\])]*+)[\])]?\s*+")
+_LABEL = re.compile(r"[\s_#-]*+\w[\s\w.#-]*+[\[(][^\])]*+[\])]\s*+")
+"""Number or word before a unit in brackets, by which a head differs from others: "Force 2 [N]"."""
+
 _UNIT_CELL = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°µμ][A-Za-z%°µμ²³·*/^0-9 -]{0,14}[\])]?\s*+")
 
 
@@ -99,11 +102,12 @@ ALL_COLUMNS = HeadChoice()
 
 @dataclass(frozen=True)
 class Head:
-    """Column head: its text in the file, its known name or "", and its unit or ""."""
+    """Column head: its text in the file, its known name or "", its unit or "", and the index of its column."""
 
     text: str
     name: str
     unit: str = ""
+    column: int = 0
 
     @property
     def plain_texts(self) -> tuple[str, str]:
@@ -129,13 +133,13 @@ class Head:
 def split_head(text: str, names: Collection[str]) -> Head:
     """Split a head such as "Force [N]", "Kraft in N" or "force_N" into one of the known names and a unit.
 
-    The name is "" if it is not known.
+    The name is "" if it is not known, or if there is more before the unit, as in "Force 2 [N]".
     """
     marks = [match.start() for match in _SEPARATOR.finditer(text[:_MAX_HEAD_LENGTH])][:_MAX_HEAD_WORDS]
     for end in (len(text), *reversed(marks)) if len(text) <= _MAX_HEAD_LENGTH else ():
         start = text[:end]
         if _NAME.fullmatch(start) and (name := known_head(plain_name(start), names)):
-            return Head(text, name, _unit(text[end:]))
+            return split_head(text, ()) if _LABEL.fullmatch(text[end:]) else Head(text, name, _unit(text[end:]))
     bracket = re.search(r"[\[(]", text)
     return Head(text, "", _unit(text[bracket.start() :]) if bracket else "")
 
@@ -158,6 +162,8 @@ class NumberTable:
     heads : tuple of Head
     columns : tuple of arrays
         Numbers of each column, shape (n_rows,); NaN for cells without a number.
+    lines : tuple of int
+        Line of each row in the file.
     gaps : mapping of str to (int, str)
         Line and text of the first cell without a finite number, by the name of its column.
     left_out : mapping of str to int
@@ -171,6 +177,7 @@ class NumberTable:
     title: str
     heads: tuple[Head, ...]
     columns: tuple[Numbers, ...]
+    lines: Sequence[int]
     gaps: Mapping[str, tuple[int, str]] = field(default_factory=dict)
     left_out: Mapping[str, int] = field(default_factory=dict)
     in_degrees: bool | None = None
@@ -179,14 +186,16 @@ class NumberTable:
     def __len__(self) -> int:
         return len(self.columns[0]) if self.columns else 0
 
-    def remark(self, n_gaps: int = 0) -> str:
+    def remark(self, unused: Mapping[str, int] = MappingProxyType({})) -> str:
         """Return the number of rows, and the lines that are left out; empty without such lines.
 
-        `n_gaps` is the number of rows with gaps that a result does not use.
+        `unused` are the numbers of rows that a result does not use, by their description.
         """
-        counts = {**self.left_out, "with a gap": n_gaps}
+        counts = {**self.left_out, **unused}
         parts = [f"{count} {'line' if count == 1 else 'lines'} {place}" for place, count in counts.items() if count]
-        return f"{self.title}: {len(self) - n_gaps} rows read, left out {', '.join(parts)}" if parts else ""
+        return (
+            f"{self.title}: {len(self) - sum(unused.values())} rows read, left out {', '.join(parts)}" if parts else ""
+        )
 
     def items(self) -> Iterator[tuple[Head, Numbers]]:
         """Yield each head with the numbers below it."""
@@ -224,6 +233,62 @@ class NumberTable:
         return self.columns[[head.name for head in self.heads].index(name)]
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CellTable:
+    """Cells below column heads.
+
+    Attributes
+    ----------
+    title : str
+        Name of the file, and of the sheet if there are several.
+    heads : tuple of Head
+    rows : sequence of (int, sequence of str or float)
+        Line in the file and cells of each row; Excel files have cells of numbers.
+    separator : str
+        Separator of cells in text.
+    left_out : mapping of str to int
+        Numbers of lines that are not used, by their description.
+    """
+
+    title: str
+    heads: tuple[Head, ...]
+    rows: Sequence[NumberedRow]
+    separator: str
+    left_out: Mapping[str, int] = field(default_factory=dict)
+
+    def cells(self, head: Head) -> list[tuple[int, Cell]]:
+        """Return the line and the content of each cell in a column."""
+        return [(line, row[head.column] if head.column < len(row) else "") for line, row in self.rows]
+
+    def numbers(self, heads: Sequence[Head]) -> NumberTable:
+        """Convert columns to numbers.
+
+        Raises
+        ------
+        ValueError
+            Numbers whose decimal mark is ambiguous, or more than fit into the memory.
+        """
+        check_memory(
+            f"{plain_number(len(self.rows), 3)} rows of {self.title}", _COPIES * 8 * len(self.rows) * len(heads)
+        )
+        cells = [self.cells(head) for head in heads]
+        mark = decimal_mark(chain.from_iterable(cells), self.separator)
+        columns = [numpy.array([cell_number(cell, mark) for _, cell in column]) for column in cells]
+        gaps = {}
+        for head, column, values in zip(heads, cells, columns, strict=True):
+            if not numpy.isfinite(values).all():
+                line, cell = column[int(numpy.isfinite(values).argmin())]
+                gaps[head.name] = line, str(cell)
+        return NumberTable(
+            title=self.title,
+            heads=tuple(heads),
+            columns=tuple(columns),
+            lines=tuple(line for line, _ in self.rows),
+            gaps=gaps,
+            left_out=self.left_out,
+        )
+
+
 def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_COLUMNS) -> NumberTable:
     """Read the columns of numbers in a file.
 
@@ -253,36 +318,85 @@ def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_CO
     OSError
         The file cannot be read.
     """
+    reader = _HeadReader(names, choice)
     try:
-        resolved = resolve_input(path)
-        if resolved.exists() and not resolved.is_file():
-            raise ValueError("it is not a regular file")
-        with open_input(path) as stream:
-            raw = stream.read(_MAX_BYTES + 1)
-        return _parse_table(path, raw, _HeadReader(names, choice))
+        raw = _read_bytes(path)
+        if raw.startswith(b"PAR1"):
+            return _read_parquet(path, reader)
+        lines = [] if raw.startswith((OLD_EXCEL, EXCEL)) else decode_text(raw).split("\n")
+        if end := next((index for index, line in enumerate(lines) if line.strip().lower() == _HEADER_END), None):
+            return _parse_opensim(path.name, lines, end)
+        table = _parse_table(path.name, raw, reader)
+        reader.check_known(table.heads)
+        return table.numbers(table.heads)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
 
 
-def _parse_table(path: Path, raw: bytes, reader: _HeadReader) -> NumberTable:
-    """Convert the content of a file by its first bytes."""
-    if raw.startswith(b"PAR1"):
-        return _read_parquet(path, reader)
-    if len(raw) > _MAX_BYTES:
+def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Collection[str]) -> CellTable:
+    """Read the cells of a table in text or Excel; the name of a head that is not known is "".
+
+    The names in `texts` are those of columns of text, whose heads have no unit.
+
+    Raises
+    ------
+    ValueError
+        A file that is too large or no table, a known column that appears twice, or two tables with the same columns.
+    ImportError
+        An optional extra is not installed.
+    OSError
+        The file cannot be read.
+    """
+    try:
+        return _parse_table(path.name, _read_bytes(path), _HeadReader(names, choice, texts))
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+
+
+def find_cells(
+    title: str, candidates: Iterable[tuple[str, Sequence[NumberedRow]]], names: Collection[str]
+) -> CellTable:
+    """Find the table with the most known heads among separators with their rows; raise ValueError without any."""
+    reader = _HeadReader(names, ALL_COLUMNS)
+    return _best_block(candidates, reader).parse(title, reader)
+
+
+def _read_bytes(path: Path) -> bytes:
+    """Read the content of a table, or the beginning of a Parquet file."""
+    resolved = resolve_input(path)
+    if resolved.exists() and not resolved.is_file():
+        raise ValueError("it is not a regular file")
+    with open_input(path) as stream:
+        raw = stream.read(_MAX_BYTES + 1)
+    if len(raw) > _MAX_BYTES and not raw.startswith(b"PAR1"):
         raise ValueError(f"a table has at most {_MAX_BYTES // 1_000_000} MB: cut it, or save it as Parquet")
-    if not raw.startswith((OLD_EXCEL, EXCEL)):
-        lines = decode_text(raw).split("\n")
-        ends = [index for index, line in enumerate(lines) if line.strip().lower() == _HEADER_END]
-        if ends:
-            return _parse_opensim(path.name, lines, ends[0])
-    return _parse_rows(path.name, possible_rows(raw), reader)
+    return raw
+
+
+def _parse_table(title: str, raw: bytes, reader: _HeadReader) -> CellTable:
+    """Find the table in text, or in the sheet of an Excel file with the most known heads."""
+    if raw.startswith(OLD_EXCEL):
+        raise ValueError("an old Excel file (.xls) is not read: save it as .xlsx or CSV")
+    if not raw.startswith(EXCEL):
+        return _best_block(split_text(decode_text(raw)), reader).parse(title, reader)
+    sheets = read_excel(raw)
+    blocks = {name: _best_block([("", rows)], reader) for name, rows in sheets.items()}
+    name = max(blocks, key=lambda name: blocks[name].score)
+    others = [other for other in sheets if other != name]
+    for other in others:
+        if blocks[other].score[0] == blocks[name].score[0] > 0:
+            raise ValueError(f"the sheets {shown(name)} and {shown(other)} have such columns: keep one of them")
+    table = blocks[name].parse(f"{title}, sheet {shown(name)}" if others else title, reader)
+    n_lines = sum(bool(count_words(cells)) for other in others for _, cells in sheets[other])
+    return replace(table, left_out={**table.left_out, "in other sheets": n_lines})
 
 
 class _HeadReader:
     """Reader of column heads, with the names that are known and the choice of the user."""
 
-    def __init__(self, names: Collection[str], choice: HeadChoice) -> None:
+    def __init__(self, names: Collection[str], choice: HeadChoice, texts: Collection[str] = ()) -> None:
         self.names = names
+        self.texts = texts
         self.choice = choice
         self.targets = {plain_name(head): name for head, name in choice.columns.items()}
         self.skipped = {plain_name(head) for head in choice.skip}
@@ -291,12 +405,25 @@ class _HeadReader:
         """Return the name that the user gives to a head; "" for none."""
         return next((self.targets[text] for text in head.plain_texts if text in self.targets), "")
 
-    def read(self, text: str, unit: str = "") -> Head:
-        """Return the head of a column, whose unit may stand below it."""
+    def read(self, text: str, unit_below: str = "", column: int = 0) -> Head:
+        """Return the head of a column, whose unit may stand below it.
+
+        Raises
+        ------
+        ValueError
+            Two units.
+        """
         head = split_head(text, self.names)
         target = self.target(head)
+        if name := known_head(plain_name(target or text), self.texts):
+            return Head(text, name, column=column)
         wanted = split_head(target, self.names) if target else head
-        return Head(text, wanted.name, wanted.unit or head.unit or unit)
+        unit = head.unit or unit_below
+        if _parse_unit(unit_below) and not _are_equal(unit, unit_below):
+            raise ValueError(f"column {shown(text)} has the unit {unit_below} in the line below: correct one of them")
+        if wanted.unit and unit and not _are_equal(wanted.unit, unit):
+            raise ValueError(f"columns names {shown(target)} for {shown(text)}, but the file has the unit {unit}")
+        return Head(text, wanted.name, wanted.unit or unit, column)
 
     def skips(self, head: Head) -> bool:
         """Return True if the column is not used."""
@@ -304,156 +431,164 @@ class _HeadReader:
 
     def count(self, cells: Iterable[Cell]) -> tuple[int, int]:
         """Count the heads in a row that are known; with such heads, the others are a negative number."""
-        heads = [self.read(cell) for cell in cells if isinstance(cell, str) and cell]
-        known = sum((bool(head.name) and _is_one_head(head)) or self.skips(head) for head in heads)
+        names = (*self.names, *self.texts)
+        heads = [split_head(cell, names) for cell in cells if isinstance(cell, str) and cell]
+        named = [head for head in heads if head.name and (_parse_unit(head.unit) or not re.search("[,;\t]", head.text))]
+        known = sum(head in named or bool(self.target(head)) or self.skips(head) for head in heads)
         return known, known - len(heads) if known else min(len(heads), 2)
 
-    def choose(self, texts: Sequence[str], units: Sequence[str]) -> dict[int, Head]:
-        """Return the heads that are used, by the indices of their columns.
+    def choose(self, heads: Sequence[Head]) -> tuple[Head, ...]:
+        """Return the heads that are used.
 
         Raises
         ------
         ValueError
-            An unknown head, two equal names, two units of a column, or a choice that matches no head.
+            Two equal names, or a choice that matches no head.
         """
-        heads = [self.read(text, unit) for text, unit in zip(texts, units, strict=True)]
         present = {text for head in heads for text in head.plain_texts}
         for key, chosen in (("columns", self.choice.columns), ("skip", self.choice.skip)):
             for text in chosen:
                 if plain_name(text) not in present:
                     columns = ", ".join(shown(head.text) for head in heads[:_MAX_LISTED])
                     raise ValueError(f"{key} names {shown(text)}, but the columns are {columns}")
-        used = {index: head for index, head in enumerate(heads) if not self.skips(head)}
-        counts = Counter(head.name for head in used.values())
-        for index, head in used.items():
-            if not head.name:
-                raise ValueError(self._unknown(head))
-            if counts[head.name] > 1:
-                raise ValueError(f"the column {head.name} appears twice: skip one with skip = [...]")
-            unit = split_head(head.text, self.names).unit or units[index]
-            if unit and unit != head.unit:
-                target = shown(self.target(head))
-                raise ValueError(f"columns names {target} for {shown(head.text)}, but the file has the unit {unit}")
+        used = tuple(head for head in heads if not self.skips(head))
+        self.check_known(head for head in used if self.target(head))
+        for name, count in Counter(head.name for head in used if head.name).items():
+            if count > 1:
+                raise ValueError(f"the column {name} appears twice: skip one with skip = [...]")
         return used
 
-    def _unknown(self, head: Head) -> str:
-        """Return the message for a head that is not known."""
+    def check_known(self, heads: Iterable[Head]) -> None:
+        """Raise ValueError for a head that is not known."""
+        head = next((head for head in heads if not head.name), None)
+        if head is None:
+            return
         if target := self.target(head):
-            return f"columns names {shown(target)} for {shown(head.text)}{nearest(plain_name(target), self.names)}"
+            hint = nearest(plain_name(target), (*self.names, *self.texts))
+            raise ValueError(f"columns names {shown(target)} for {shown(head.text)}{hint}")
         if not head.text:
-            return "a column of numbers has no head: name it, or skip it with skip = ['']"
+            raise ValueError("a column of numbers has no head: name it, or skip it with skip = ['']")
         names = [name for name in self.names if not name.endswith(UNCERTAINTY)]
         text, close = shown(head.text), closest(plain_name(head.text), names)
         hint = f"did you mean {close!r}?" if close else f"known: {', '.join(names[:_MAX_NAMES])}, ...;"
-        return (
+        raise ValueError(
             f"column {text} is not known; {hint} columns = {{{text} = '{close or 'NAME'}'}} names it, "
             f"skip = [{text}] leaves it out"
         )
 
 
-def _is_one_head(head: Head) -> bool:
-    """Return False for the heads of several columns that another separator splits."""
-    if not re.search("[,;\t]", head.text) or not head.unit:
-        return True
+def _parse_unit(text: str) -> Units | str:
+    """Return a unit, or a text such as "%BW"; empty for other text."""
     try:
-        parse_units(head.unit)
+        return parse_units(text)
     except ValueError:
-        return False
-    return True
+        return text if text.startswith("%") else ""
 
 
-@dataclass(frozen=True)
+def _are_equal(unit: str, other: str) -> bool:
+    return (_parse_unit(unit) or unit) == (_parse_unit(other) or other)
+
+
+@dataclass(frozen=True, kw_only=True)
 class _Block:
-    """Heads above rows of numbers: their score, and the indices of both."""
+    """Heads above rows of numbers, with their score and the separator of cells; -1 for no heads."""
 
-    score: tuple[int, int]
-    head: int
-    start: int
+    rows: Sequence[NumberedRow] = ()
+    separator: str = ""
+    score: tuple[int, int] = (-1, 0)
+    head: int = 0
+    start: int = 0
+    repeats: tuple[int, ...] = ()
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """Order of separators, of which the first with the largest rank is chosen: known heads, numbers, cells."""
+        n_cells = count_words(self.rows[self.head][1]) if self.rows else 0
+        return self.score[0] + (self.start < len(self.rows)), min(n_cells, 2)
+
+    def parse(self, title: str, reader: _HeadReader) -> CellTable:
+        """Return the cells below the heads.
+
+        Raises
+        ------
+        ValueError
+            No heads, heads that are not allowed, or several tables with the same heads.
+        """
+        if self.score[0] < 0:
+            raise ValueError("it has no line of column heads above lines of numbers")
+        if self.repeats and self.score[0]:
+            lines = ", ".join(str(self.rows[head][0]) for head in (self.head, *self.repeats[:_MAX_LISTED]))
+            raise ValueError(f"it has several tables with these columns, in lines {lines}: keep one")
+        texts = [str(cell) for cell in self.rows[self.head][1]]
+        between = [cells for _, cells in self.rows[self.head + 1 : self.start]]
+        units = next((cells for cells in reversed(between) if _are_units(cells, texts)), ())
+        body, left_out = _select_rows(self.rows, self.start)
+        width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
+        for line, cells in body:
+            if any(cell != "" for cell in cells[max(width, len(texts)) :]):
+                raise ValueError(
+                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas need "
+                    "semicolons or tabs between the cells, or quotes"
+                )
+        filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
+        heads = [
+            reader.read(text, _unit(f"_{unit}"), index)
+            for index, (text, unit) in enumerate(zip_longest(texts, units, fillvalue=""))
+            if text or index in filled
+        ]
+        chosen = reader.choose(heads)
+        for line, cells in body if all(head.column for head in chosen) else ():  # a mean below an unused counter
+            if str(cells[0])[:1].isalpha() and is_data(body[0][1][:1]) and not is_data(cells[:1]):
+                raise ValueError(f"line {line} begins with {shown(cells[0])}, and other lines with a number: cut it")
+        return CellTable(
+            title=title,
+            heads=chosen,
+            rows=body,
+            separator=self.separator,
+            left_out={
+                "above the heads": sum(bool(count_words(cells)) for _, cells in self.rows[: self.head]),
+                "between heads and numbers": sum(bool(count_words(cells)) for cells in between) - bool(units),
+                **left_out,
+            },
+        )
 
 
-def _find_blocks(rows: Sequence[NumberedRow], reader: _HeadReader) -> list[_Block]:
-    """Find the heads above each group of rows with numbers; without such rows, the last heads."""
-    blocks: list[_Block] = []
+def _best_block(candidates: Iterable[tuple[str, Sequence[NumberedRow]]], reader: _HeadReader) -> _Block:
+    """Find the best known heads; the candidates are separators of cells, with the rows."""
+    best = _Block()
+    for separator, rows in candidates:
+        for block in _find_blocks(rows, reader):
+            if block.score > best.score if rows is best.rows else block.rank > best.rank:
+                best = replace(block, separator=separator)
+            elif block.score == best.score and rows is best.rows:
+                best = replace(best, repeats=(*best.repeats, block.head))
+        if best.score[0] > 1 and not best.score[1]:
+            break  # all heads are known
+    return best
+
+
+def _find_blocks(rows: Sequence[NumberedRow], reader: _HeadReader) -> Iterator[_Block]:
+    """Yield the heads above each group of rows with numbers; without such rows, the last heads."""
     above: list[int] = []
-
-    def add(start: int) -> None:
-        """Add the line of heads among the lines of text above a row."""
-        lines = [(reader.count(rows[index][1]), count_words(rows[index][1]), -index) for index in above]
-        score, _, index = max(lines)
-        blocks.append(_Block(score, -index, start))
-
-    for index, (_, cells) in enumerate(rows):
+    n_blocks = 0
+    for index, (_, cells) in enumerate([*rows, (0, [0.0])]):
         if not is_data(cells):
             above = [*above, index][-_MAX_HEAD_ROWS:] if any(cells) else above
             continue
-        if above and len(blocks) < _MAX_TABLES:
-            add(index)
+        if above and n_blocks < (_MAX_TABLES if index < len(rows) else 1):
+            lines = [(reader.count(rows[index][1]), count_words(rows[index][1]), -index) for index in above]
+            score, _, head = max(lines)
+            yield _Block(rows=rows, score=score, head=-head, start=index)
+            n_blocks += 1
         above = []
-    if above and not blocks:
-        add(len(rows))
-    return blocks
-
-
-def _parse_rows(
-    title: str, candidates: Iterable[tuple[str, Sequence[NumberedRow]]], reader: _HeadReader
-) -> NumberTable:
-    """Convert the rows below the best known heads; the candidates are separators of cells, with the rows."""
-    best: tuple[tuple[int, int], str, Sequence[NumberedRow], list[_Block]] | None = None
-    for separator, rows in candidates:
-        blocks = _find_blocks(rows, reader)
-        score = max((block.score for block in blocks), default=(-1, 0))
-        if blocks and (best is None or score > best[0]):
-            best = score, separator, rows, [block for block in blocks if block.score == score]
-        if score[0] > 1 and not score[1]:
-            break  # all heads are known
-    if best is None:
-        raise ValueError("it has no line of column heads above lines of numbers")
-    score, separator, rows, blocks = best
-    if len(blocks) > 1 and score[0]:
-        lines = ", ".join(str(rows[block.head][0]) for block in blocks[:_MAX_LISTED])
-        raise ValueError(f"it has several tables with these columns, in lines {lines}: keep one")
-    return _parse_block(title, rows, blocks[0], reader, separator)
-
-
-def _parse_block(
-    title: str, rows: Sequence[NumberedRow], block: _Block, reader: _HeadReader, separator: str
-) -> NumberTable:
-    """Convert the rows below heads to columns."""
-    texts = [str(cell) for cell in rows[block.head][1]]
-    between = [cells for _, cells in rows[block.head + 1 : block.start]]
-    units = next((cells for cells in reversed(between) if _are_units(cells, texts)), ())
-    body, left_out = _select_rows(rows, block.start)
-    width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
-    for line, cells in body:
-        if any(cell != "" for cell in cells[max(width, len(texts)) :]):
-            raise ValueError(
-                f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas need semicolons or "
-                "tabs between the cells, or quotes"
-            )
-    width = max([width, *(len(cells) for _, cells in body)])
-    filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
-    used = [index for index in range(width) if index in filled or any(texts[index : index + 1])]
-    below = [_unit(f"_{units[index]}") if index < len(units) else "" for index in used]
-    heads = reader.choose([texts[index] if index < len(texts) else "" for index in used], below)
-    check_memory(f"{plain_number(len(body), 3)} rows of {title}", _COPIES * 8 * len(body) * len(heads))
-    return _make_table(
-        title,
-        {head: used[index] for index, head in heads.items()},
-        body,
-        separator,
-        left_out={
-            "above the heads": len([cells for _, cells in rows[: block.head] if count_words(cells)]),
-            "between heads and numbers": len([cells for cells in between if count_words(cells)]) - bool(units),
-            **left_out,
-        },
-    )
 
 
 def _are_units(cells: Sequence[Cell], texts: Sequence[str]) -> bool:
-    """Return True if a row below heads without units in brackets has a unit in each cell that is not empty."""
+    """Return True for a row of units; below heads with a unit in brackets, other text is none."""
     units = [str(cell) for cell in cells if count_words([cell])]
     has_units = any(mark in text for text in texts for mark in "[(")
-    return bool(units) and not has_units and len(cells) <= len(texts) and all(map(_UNIT_CELL.fullmatch, units))
+    is_unit = (lambda text: _parse_unit(_unit(f"_{text}"))) if has_units else _UNIT_CELL.fullmatch
+    return bool(units) and len(cells) <= len(texts) and all(map(is_unit, units))
 
 
 def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[NumberedRow], dict[str, int]]:
@@ -481,59 +616,32 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
     return body, {"of text": n_text, "of another table below": n_other, "blank or with a comment": n_blank}
 
 
-def _make_table(
-    title: str,
-    heads: Mapping[Head, int],
-    body: Sequence[NumberedRow],
-    separator: str,
-    left_out: Mapping[str, int] = MappingProxyType({}),
-) -> NumberTable:
-    """Convert rows of cells to columns, whose indices in a row the heads have."""
-    cells = {
-        head: [(line, row[index] if index < len(row) else "") for line, row in body] for head, index in heads.items()
-    }
-    mark = decimal_mark(chain.from_iterable(cells.values()), separator)
-    columns = {head: numpy.array([cell_number(cell, mark) for _, cell in column]) for head, column in cells.items()}
-    rows = {head: int(numpy.isfinite(column).argmin()) for head, column in columns.items() if len(column)}
-    gaps = {head: cells[head][row] for head, row in rows.items() if not isfinite(columns[head][row])}
-    return NumberTable(
-        title=title,
-        heads=tuple(columns),
-        columns=tuple(columns.values()),
-        gaps={head.name: (line, str(cell)) for head, (line, cell) in gaps.items()},
-        left_out=left_out,
-    )
-
-
 def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:
-    """Convert the lines of an OpenSim file to columns."""
-    settings = dict(_parse_setting(line) for line in lines[:end] if line.strip())
+    settings = {
+        name.strip().lower(): value.strip()
+        for name, _, value in (line.strip().partition("=" if "=" in line else " ") for line in lines[:end])
+    }  # `nRows=5`, or in old files `datarows 5`
     rows = [(number, line.split()) for number, line in enumerate(lines[end + 1 :], end + 2) if line.strip()]
     if not rows:
         raise ValueError("it has no line of column heads below its header")
     stated = settings.get("nrows", settings.get("datarows", str(len(rows) - 1)))
     if stated != str(len(rows) - 1):
         raise ValueError(f"the header states {shown(stated)} rows, but the file has {len(rows) - 1}")
-    heads = {Head(text, text): index for index, text in enumerate(rows[0][1])}
+    heads = tuple(Head(text, text, column=column) for column, text in enumerate(rows[0][1]))
     in_degrees = {"yes": True, "no": False}.get(settings.get("indegrees", "").lower())
-    return replace(_make_table(title, heads, rows[1:], ","), in_degrees=in_degrees, is_opensim=True)
-
-
-def _parse_setting(line: str) -> tuple[str, str]:
-    """Split a header line into name and value: `nRows=5`, or in old files `datarows 5`."""
-    name, _, value = line.strip().partition("=" if "=" in line else " ")
-    return name.strip().lower(), value.strip()
+    table = CellTable(title=title, heads=heads, rows=rows[1:], separator=",").numbers(heads)
+    return replace(table, in_degrees=in_degrees, is_opensim=True)
 
 
 def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:
-    """Read the columns of a Parquet file."""
     needs("study", "pyarrow")
     from pyarrow import ArrowException, parquet
 
     try:
         with open_input(path) as stream, parquet.ParquetFile(stream) as file:
             texts = file.schema_arrow.names
-            heads = tuple(reader.choose(texts, [""] * len(texts)).values())
+            heads = reader.choose([reader.read(text) for text in texts])
+            reader.check_known(heads)
             n_rows = file.metadata.num_rows
             check_memory(f"{plain_number(n_rows, 3)} rows of {path.name}", _COPIES * 8 * n_rows * len(heads))
             table = file.read([head.text for head in heads])
@@ -545,4 +653,4 @@ def _read_parquet(path: Path, reader: _HeadReader) -> NumberTable:
     for head, column in columns.items():
         if column.dtype.kind not in "iuf":
             raise ValueError(f"column {shown(head.text)} has values of type {column.dtype}, not numbers")
-    return NumberTable(title=path.name, heads=heads, columns=tuple(columns.values()))
+    return NumberTable(title=path.name, heads=heads, columns=tuple(columns.values()), lines=range(1, n_rows + 1))

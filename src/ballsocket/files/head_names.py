@@ -28,9 +28,10 @@ _OTHER_NAMES = {
     "stiffness": "steifigkeit",
     "clearance": "radial_clearance",
     "diametral_clearance": "diameter_clearance durchmesserspiel",
-    "cycles": "zyklen lastwechsel",
+    "cycles": "zyklen zyklenzahl lastwechsel number_of_cycles cycle_count",
+    "million_cycles": "mc mio_zyklen mio_lastwechsel",
     "volume": "volumen wear_volume verschleissvolumen",
-    "mass": "masse mass_loss masseverlust",
+    "mass": "masse mass_loss masseverlust weight_loss gewichtsverlust",
     "station": "specimen probe pruefling",
 }
 

@@ -247,7 +247,6 @@ def _refuse_session(content: Mapping[str, Any]) -> None:
 
 
 def _details_of(table: ReportTable) -> ReportDetails:
-    """Return the head of a report."""
     return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
 
 
@@ -415,7 +414,6 @@ def _shell(
 
 
 def _layer(name: str, table: LayerTable) -> Layer:
-    """Create a layer behind the liner."""
     material = _material(name, table)
     with as_given(written_in(table), f"{name}."):
         return Layer(thickness=float(table.thickness), material=material)

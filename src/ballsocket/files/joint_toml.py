@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.arrays import is_plain_number
-from ..problem import Joint, Layer, Material
+from ..problem import Joint, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
 from .joint_file import (
@@ -67,7 +67,9 @@ def _file_table(file: JointFile) -> JointFileTable:
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
-        report=ReportTable(**_details(file.report)) if file.report != ReportDetails() else None,
+        report=ReportTable(**{name: Text(value) for name, value in vars(file.report).items() if value})
+        if file.report != ReportDetails()
+        else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(
             **{name: Length(value) for name, value in _lengths(joint).items()},
@@ -75,7 +77,8 @@ def _file_table(file: JointFile) -> JointFileTable:
         ),
         liner=MaterialTable(**_material(joint.liner)),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
-        backing=list(map(_layer, joint.backing)) or None,
+        backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
+        or None,
         cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
         load=_load(file) if file.load or file.aim else None,
     )
@@ -91,11 +94,6 @@ def _lengths(joint: Joint) -> dict[str, float]:
     return lengths
 
 
-def _details(details: ReportDetails) -> dict[str, Text]:
-    """Return the keys of the head of a report."""
-    return {name: Text(value) for name, value in vars(details).items() if value}
-
-
 def _cup(cup: Cup) -> CupTable:
     """Return the table of a cup, without the default orientation."""
     return CupTable(
@@ -109,7 +107,6 @@ def _cup(cup: Cup) -> CupTable:
 
 
 def _load(file: JointFile) -> LoadTable:
-    """Return the table of a load and its direction."""
     keys: dict[str, Any] = {
         "force": Force,
         "indentation": Length,
@@ -118,11 +115,6 @@ def _load(file: JointFile) -> LoadTable:
         "direction": Direction,
     }
     return LoadTable(**{key: keys[key](value) for key, value in (file.load | file.aim).items()})
-
-
-def _layer(layer: Layer) -> LayerTable:
-    """Return the table of a layer behind the liner."""
-    return LayerTable(thickness=Length(layer.thickness), **_material(layer.material))
 
 
 def _material(material: Material) -> dict[str, Any]:

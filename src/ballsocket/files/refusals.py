@@ -20,6 +20,9 @@ _STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
 _MAX_HINTS = 3
 """Largest number of names or tables in a hint."""
 
+_SIMILAR = 0.8
+"""Least similarity of a key to that of another table, for a hint."""
+
 
 @dataclass(frozen=True)
 class _Location:
@@ -152,14 +155,26 @@ def _hint(key: str, keys: Mapping[str, Any], root: _Location, table: str) -> str
     longer = [name for name in keys if name.endswith(f"_{key}") or (table and name.startswith(f"{key}_"))]
     if len(longer) > 1:
         return f"; did you mean {' or '.join(map(repr, longer[:_MAX_HINTS]))}?"
-    heads = dict(tables_of(root.type))
-    if tables := [head for head, struct in heads.items() if key in {field.encode_name for field in struct.fields}]:
-        return f"; it belongs in {' or '.join(tables[:_MAX_HINTS])}"
-    if tables := [head for head in heads if head.strip("[]") == key]:
-        return f"; it is a separate table, {tables[0]}"
+    heads = {head: {field.encode_name for field in struct.fields} for head, struct in tables_of(root.type)}
+    names = {head: head.strip("[]") for head in heads}
     struct = struct_in(root.type)
-    if table and struct is not None and key in {field.encode_name for field in struct.fields}:
+    if table and struct and key in {field.encode_name for field in struct.fields} - {*names.values()}:
         return f"; it belongs at the top of the file, above the first table: {key} = ..."
+    if tables := [head for head in heads if key in heads[head]]:
+        return f"; it belongs in {' or '.join(tables[:_MAX_HINTS])}"
+    for head, fields in heads.items():
+        if key.startswith(f"{names[head]}_") and (field := key.removeprefix(f"{names[head]}_")) in fields:
+            return f"; it is {field!r} in this table" if field in keys else f"; it is {field!r} in {head}"
+        if names[head] == key != table:
+            shared = [name for name in keys if name in fields and not choices_in(keys[name].type)]
+            of_table = f"; of its keys this table has {' and '.join(map(repr, shared))}" if shared else ""
+            return f"; it is a separate table, {head}{of_table}"
+    if words := [name for name, field in keys.items() if key in choices_in(field.type)]:
+        return f"; it is a value of a key: {words[0]} = {key!r}"
+    elsewhere = {name: head for head, fields in reversed(heads.items()) for name in fields}
+    similar = get_close_matches(key, [*keys, *elsewhere], n=1, cutoff=_SIMILAR)
+    if similar and similar[0] not in keys:
+        return f"; did you mean {similar[0]!r} in {elsewhere[similar[0]]}?"
     return nearest(key, keys)
 
 
@@ -170,6 +185,10 @@ def _table_hint(location: _Location, root: _Location) -> str:
         return ""
     similar = get_close_matches(location.key, heads, n=1)
     return f"; did you mean {heads[similar[0]]}?" if similar else ""
+
+
+_NAMING_KEYS = ("material", "name", "law", "file")
+"""Keys of tables that a user writes in place of the table."""
 
 
 def _expected(location: _Location) -> str:
@@ -194,8 +213,11 @@ def _array(location: _Location, kind: inspect.ListType) -> str:
 
 
 def _table(location: _Location, kind: inspect.StructType) -> str:
-    """Describe a table."""
-    return f"a table: [[{location.key.partition('[')[0]}]]" if "[" in location.key else f"a table: [{location.key}]"
+    """Describe a table; the name of a material, a cycle or a file in its place is moved into it."""
+    if "[" in location.key:
+        return f"a table: [[{location.key.partition('[')[0]}]]"
+    key = next((field.encode_name for field in kind.fields if field.encode_name in _NAMING_KEYS), "")
+    return f"a table: [{location.key}]" + (f", and below it {key} = ..." if key and location.value else "")
 
 
 _EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Location, Any], str]]] = (

@@ -45,17 +45,12 @@ def keys_of(table: type[Table]) -> list[Key]:
         _key(head, field)
         for head, struct in tables
         for field in struct.fields
-        if f"{head.strip('[]')}.{field.encode_name}".lstrip(".") not in heads or _takes_text(field.type)
+        if f"{head.strip('[]')}.{field.encode_name}".lstrip(".") not in heads
+        or any(isinstance(part, inspect.StrType) for part in parts_of(field.type))  # a text in place of a table
     ]
 
 
-def _takes_text(kind: inspect.Type) -> bool:
-    """Return True if a key takes a text in place of a table."""
-    return any(isinstance(part, inspect.StrType) for part in parts_of(kind))
-
-
 def _key(head: str, field: inspect.Field) -> Key:
-    """Describe a key for the documentation."""
     return Key(
         table=head,
         name=field.encode_name,

@@ -122,9 +122,12 @@ def toml_text(content: Mapping[str, Any]) -> str:
 
 
 def _table_lines(content: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
-    """Yield the lines of a table without its head."""
     tables = {key: value for key, value in content.items() if isinstance(value, Mapping)}
-    lists = {key: value for key, value in content.items() if _is_list_of_tables(value)}
+    lists = {
+        key: value
+        for key, value in content.items()
+        if isinstance(value, list | tuple) and value and isinstance(value[0], Mapping)
+    }
     for key, value in content.items():
         if key not in tables and key not in lists:
             yield f"{_key(key)} = {_value(value)}"
@@ -135,11 +138,6 @@ def _table_lines(content: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[
         for row in rows:
             yield from ("", f"[[{'.'.join(map(_key, (*path, key)))}]]")
             yield from _table_lines(row, (*path, key))
-
-
-def _is_list_of_tables(value: Any) -> bool:
-    """Return whether a value is a list that begins with a table."""
-    return isinstance(value, list | tuple) and bool(value) and isinstance(value[0], Mapping)
 
 
 def _key(name: str) -> str:

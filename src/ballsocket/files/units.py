@@ -66,7 +66,7 @@ _COMMON_FACTORS: dict[tuple[tuple[str, float], ...], float] = {
 """Conversion factors from a unit to another one, equal to those of pint."""
 
 _IN_RADIANS = re.compile(r"; \S+ degrees are \S+ radians$")
-_REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
+_REFUSED = re.compile(r"(?P<name>\w+(\[\d+\])?) = \S+( \(and \d+ more\))? is not allowed: (?P<rule>.*)")
 
 
 def parse(name: str, value: Any, kind: str) -> float:

@@ -14,6 +14,7 @@ import msgspec
 from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
+from ..files.columns import ALL_COLUMNS
 from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
@@ -178,15 +179,16 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     if table.quantity is None:
         raise ValueError("[[data]] of measured wear needs its quantity")
     quantity = str(table.quantity)
-    stated, cycles, station = _stated_readings(table, quantity, folder)
+    stated, cycles, station, remark = _stated_readings(table, quantity, folder)
     if per_year is None and tables.cycles_per_year is not None:
         per_year = float(tables.cycles_per_year)
     unit, density = _WEAR_UNITS.get(quantity, "mm"), _density(table, quantity)
+    factor = 1.0 if density is None else density
 
     def parse_all(name: str, numbers: Any) -> list[float]:
         """Convert a number or a list of numbers with units to mm³ or mm."""
         listed = numbers if isinstance(numbers, list) else [numbers]
-        return [_parse_wear(name, number, unit, table.rate is not None, per_year) / density for number in listed]
+        return [_parse_wear(name, number, unit, table.rate is not None, per_year) / factor for number in listed]
 
     text = None if table.uncertainty is None else table.uncertainty.value
     percent = number_of_percent(text)
@@ -201,28 +203,32 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
         uncertainty=None if text is None or percent is not None else parse_all("uncertainty", text),
         relative_uncertainty=None if percent is None else parse("uncertainty", percent, Kind.NUMBER) / 100,
         station=station,
+        density=density,
         name=str(table.name or ""),
+        remark=remark,
     )
 
 
-def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple[Any, Any, Any]:
-    """Return values with units, cycles and stations of a table [[data]], as stated or from its file."""
+def _stated_readings(table: WearDataTable, quantity: str, folder: Path) -> tuple[Any, Any, Any, str]:
+    """Return values with units, cycles, stations and a remark of a table [[data]], as stated or from its file."""
     if (table.values is None) == (table.file is None):
         raise ValueError("[[data]] of measured wear needs its values, or else the file with a table of them")
     if table.values is not None:
         if table.unit is not None:
             raise ValueError("unit belongs to a file: write the values with it, such as '38 mm^3'")
+        if table.choice() != ALL_COLUMNS:
+            raise ValueError("columns and skip belong to a file: remove them, or name the file")
         names = table.station
-        return table.values.value, table.cycles, names[0] if names is not None and len(names) == 1 else names
+        return table.values.value, table.cycles, names[0] if names is not None and len(names) == 1 else names, ""
     for key in ("cycles", "station"):
         if getattr(table, key) is not None:
             raise ValueError(f"{key} and file exclude each other: the file has a column of them; remove {key}")
-    readings = read_stations(folder / str(table.file), quantity, table.unit)
-    return list(readings.values), list(readings.cycles) or None, readings.stations
+    readings = read_stations(folder / str(table.file), quantity, table.unit, table.choice())
+    return list(readings.values), list(readings.cycles) or None, readings.stations, readings.remark
 
 
-def _density(table: WearDataTable, quantity: str) -> float:
-    """Return the density in mg/mm³ by which a mass is a volume; 1 for other quantities."""
+def _density(table: WearDataTable, quantity: str) -> float | None:
+    """Return the density in mg/mm³ by which a mass is a volume; None for other quantities."""
     if (table.density is None) == (quantity == "mass"):
         raise ValueError(
             "a mass needs the density of the worn material, such as density = '0.94 g/cm^3'"
@@ -230,7 +236,7 @@ def _density(table: WearDataTable, quantity: str) -> float:
             else f"density belongs to quantity = 'mass', and the quantity is {quantity}"
         )
     if table.density is None:
-        return 1.0
+        return None
     value = table.density.value
     try:
         number, text = split_quantity(str(value))

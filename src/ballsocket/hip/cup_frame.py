@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees
+from math import degrees, pi
 from typing import Any, Generic, TypeVar, overload
 
 import numpy
@@ -22,6 +22,10 @@ ANGLES = ("inclination", "anteversion", "tilt")
 
 _MIN_RELATIVE_FORCE = 1e-6
 """Force below which the ball counts as unloaded, relative to the largest force."""
+
+
+_REVERSED_NOTE = "; if the force acts on the other body, socket or ball, state this by force_on in [cycle]"
+"""Advice for a load that points out of the cup."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,11 +60,12 @@ class CupFrame:
             dislocated = dislocated[numpy.isnan(self.separation.displacement[:, 0])]
         if len(dislocated):
             first_dislocated = dislocated[0]
+            reversed_load = pi - self._force_angles[first_dislocated] < self.reach
             raise ValueError(
                 f"dislocated at {self.cycle.describe_step(first_dislocated)}: the load of "
                 f"{numpy.linalg.norm(self.forces[first_dislocated]):.0f} N points "
                 f"{degrees(self._force_angles[first_dislocated]):.1f}° from the dome's pole, and the bore ends at "
-                f"{degrees(self.reach):.1f}°"
+                f"{degrees(self.reach):.1f}°{_REVERSED_NOTE if reversed_load else ''}"
             )
 
     @cached_property

@@ -159,8 +159,21 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
         order=order,
         duration=duration,
         frame=Frame.CUP if frame == "cup" else Frame.BODY,
-        notes=_missing_angle_notes(columns) if motion is None else (f"the motion is that of {motion.name}",),
+        notes=(
+            *(_missing_angle_notes(columns) if motion is None else (f"the motion is that of {motion.name}",)),
+            *_assumed_frame_notes(table, options, loaded_body, frame),
+        ),
     )
+
+
+def _assumed_frame_notes(table: HipColumns, options: TableOptions, loaded_body: str, frame: str) -> tuple[str, ...]:
+    """Return a note on the loaded body and the frame of the force, as far as the user does not state them."""
+    assumed = {"force_on": f"acts on the {loaded_body}", "frame": f"is in the frame of the {frame}"}
+    unstated = [text for name, text in assumed.items() if getattr(options, name) is None]
+    if "force_z" not in table.columns or not unstated or (table.frame is not None and not table.orthoload):
+        return ()
+    reason = "by its heads, those of OrthoLoad" if table.orthoload else "by default"
+    return (f"the force {' and '.join(unstated)} {reason}; force_on and frame in [cycle] state it",)
 
 
 def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:

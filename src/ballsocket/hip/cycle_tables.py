@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
@@ -75,11 +75,14 @@ class HipColumns:
         Body that the force acts on, "ball" or "socket", if the column names state it.
     frame : str, optional
         Frame of the force, "body" or "femur", if the column names state it.
+    orthoload : bool
+        True for forces Fx, Fy, Fz, which are taken for OrthoLoad's: on the ball, in the frame of the femur.
     """
 
     columns: dict[str, Numbers] = field(default_factory=dict)
     force_on: str | None = None
     frame: str | None = None
+    orthoload: bool = False
 
 
 def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
@@ -108,7 +111,9 @@ def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipC
         columns[name] = _unit_factor(name, head, body_weight) * table.numbers(head.name)
     if orthoload and "time" in columns:
         columns.pop("phase", None)  # repeats the time
-    return HipColumns(columns=columns, force_on="ball" if orthoload else None, frame="femur" if orthoload else None)
+    if orthoload:
+        return HipColumns(columns=columns, force_on="ball", frame="femur", orthoload=True)
+    return HipColumns(columns=columns)
 
 
 def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
@@ -143,7 +148,7 @@ def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
-    return HipColumns(columns=columns, **_reaction_frame(reactions))
+    return _with_reaction_frame(columns, reactions)
 
 
 def _angle_factor(table: NumberTable) -> float:
@@ -153,16 +158,17 @@ def _angle_factor(table: NumberTable) -> float:
     return pi / 180 if table.in_degrees else 1.0
 
 
-def _reaction_frame(reactions: set[tuple[str, str]]) -> dict[str, str]:
-    """Return the loaded body and the frame of OpenSim's joint reaction."""
+def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
+    """Add the loaded body and the frame of OpenSim's joint reaction to columns."""
     if not reactions:
-        return {}
+        return HipColumns(columns=columns)
     if len(reactions) > 1:
         raise ValueError("the table has more than one joint reaction: on several bodies, or in several frames")
     body, frame = reactions.pop()
     if frame == "ground":
         raise ValueError("the joint reaction is in the ground frame: let OpenSim express it in pelvis or femur")
-    return {"force_on": "ball" if body == "femur" else "socket", "frame": "femur" if frame == "femur" else "body"}
+    loaded = "ball" if body == "femur" else "socket"
+    return HipColumns(columns=columns, force_on=loaded, frame="femur" if frame == "femur" else "body")
 
 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
@@ -182,7 +188,7 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
                 raise ValueError(f"the column {name} is in two files")
             columns[name] = values
     reaction = next((table for table in tables if table.frame is not None), HipColumns())
-    return HipColumns(columns=columns, force_on=reaction.force_on, frame=reaction.frame)
+    return replace(reaction, columns=columns)
 
 
 DEFAULT_CLOSURE = 0.01

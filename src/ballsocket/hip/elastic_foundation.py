@@ -129,7 +129,7 @@ class GridSmoothing:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticFoundation:
-    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells.
+    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells; its gap is linear.
 
     Attributes
     ----------

@@ -23,6 +23,7 @@ from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
+from ..problem.gaps import LinearGap
 from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
@@ -233,11 +234,11 @@ class HipSetup(OneLine):
 
     @cached_property
     def contact_model(self) -> Model:
-        """Contact model with the same foundation as the simulation: radial springs, or full elasticity."""
+        """Contact model with the same foundation as the simulation: springs, or full elasticity, with a linear gap."""
         if isinstance(self.surface, Springs):
             return RadialFoundation(modulus=self.surface.modulus)
         ring_width = min(self.ring_width, MAX_RING_WIDTH)
-        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width)
+        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width, gap=LinearGap)
 
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
         """Tabulate the contact of largest pressure of each activity: (activities, columns `COLUMNS`)."""

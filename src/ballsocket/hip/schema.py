@@ -323,7 +323,7 @@ class CycleCounts(Value, list[float]):
         return cls(Counts.read(name, value if isinstance(value, list) else [value]))
 
 
-class WearDataTable(Table, frozen=True, kw_only=True):
+class WearDataTable(HeadKeys, frozen=True, kw_only=True):
     """Measured wear, from which `ballsocket identify` fits the wear coefficient."""
 
     quantity: Annotated[WearQuantity | None, meaning("measured quantity")] = None

@@ -3,27 +3,32 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from ..core.checks import check_text, shown
-from ..core.input_files import open_input
-from ..files.cells import Cell, cell_number, decimal_mark, possible_rows
-from ..files.columns import Head, split_head
+import numpy
 
-_MAX_BYTES = 10_000_000
+from ..core.checks import check_text, shown
+from ..files.cells import Cell, count_words
+from ..files.columns import CellTable, Head, HeadChoice, read_cells
+
 _STATION = "station"
-_SIGNS = re.compile(r"[\[(]")
-_CYCLES = {"cycles": 1.0, "million cycles": 1e6, "mc": 1e6}
+_CYCLES = {"cycles": 1.0, "million_cycles": 1e6}
 """Numbers of cycles by the head of their column."""
 
-_CYCLE_UNITS = {"": 1.0, "1": 1.0, "cycles": 1.0, "million": 1e6, "million cycles": 1e6, "mc": 1e6}
+_CYCLE_UNITS = {
+    "": 1.0,
+    "1": 1.0,
+    "cycles": 1.0,
+    **dict.fromkeys(("million", "million cycles", "mc", "mio", "mio."), 1e6),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
 class StationReadings:
-    """Readings of a table of stations, in the order of its rows.
+    """Readings of a table of stations.
 
     Attributes
     ----------
@@ -33,19 +38,22 @@ class StationReadings:
         Readings with their units, such as "12.5 mg".
     cycles : tuple of float
         Number of cycles of each reading; empty for a table of rates without such a column.
+    remark : str
+        Sentence on lines of the file that are left out; empty without any.
     """
 
     stations: tuple[str, ...]
     values: tuple[str, ...]
     cycles: tuple[float, ...]
+    remark: str
 
 
-def read_stations(path: Path, quantity: str, unit: str | None = None) -> StationReadings:
-    """Read the readings of several stations from a table with columns separated by commas, semicolons or tabs.
+def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoice) -> StationReadings:
+    """Read the readings of several stations from a table in text or Excel.
 
     The head of one column is `cycles`, or `cycles [Mc]` for millions. In the long form there is a column `station`, and
     a column with the name of the quantity, such as `mass [mg]`. In the wide form every other column is a station, named
-    by its head, such as `A [mg]`; an empty cell is no reading. Lines that begin with # are skipped.
+    by its head, such as `A [mg]`. An empty cell is no reading, and a reading of 0 at 0 cycles is left out.
 
     Parameters
     ----------
@@ -54,6 +62,8 @@ def read_stations(path: Path, quantity: str, unit: str | None = None) -> Station
         Measured quantity, such as "volume" or "mass".
     unit : str, optional
         Unit of columns without one in their heads.
+    choice : HeadChoice
+        Columns of the file that get another name, or that are not used.
 
     Raises
     ------
@@ -62,90 +72,67 @@ def read_stations(path: Path, quantity: str, unit: str | None = None) -> Station
     OSError
         The file cannot be read.
     """
+    table = read_cells(path, (*_CYCLES, quantity), choice, texts=(_STATION,))
     try:
-        return _parse_readings(_read_cells(path), quantity, unit)
+        return _parse_readings(table, quantity, unit)
     except ValueError as error:
-        raise ValueError(f"{path.name}: {error}") from error
+        raise ValueError(f"{table.title}: {error}") from error
 
 
-def _read_cells(path: Path) -> tuple[list[str], list[list[Cell]], str]:
-    """Read the heads and the cells of a table in text or Excel, and its decimal mark."""
-    with open_input(path) as stream:
-        raw = stream.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"the table is larger than {_MAX_BYTES} bytes")
-    for separator, rows in possible_rows(raw):
-        (_, heads), *numbered = [row for row in rows if any(str(cell) for cell in row[1])] or [(0, [])]
-        if len(heads) > 1 and numbered:
-            mark = decimal_mark(((line, cell) for line, cells in numbered for cell in cells), separator)
-            body = [[*cells, *[""] * (len(heads) - len(cells))] for _, cells in numbered]
-            return [str(head) for head in heads], body, mark
-    raise ValueError("the table needs a line of heads and at least one line of readings")
-
-
-def _parse_readings(table: tuple[list[str], list[list[Cell]], str], quantity: str, unit: str | None) -> StationReadings:
+def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> StationReadings:
     """Find the columns of a table, and collect its readings."""
-    texts, body, mark = table
-    heads = [split_head(text, (_STATION, *_CYCLES, quantity)) for text in texts]
-    names = [head.name for head in heads]
-    cycle_column = next((column for column, name in enumerate(names) if name in _CYCLES), None)
-    is_long = _STATION in names
-    if is_long and quantity not in names:
-        raise ValueError(f"the column {quantity} is missing; the columns are {', '.join(texts)}")
-    twice = next((text for text in texts if text and texts.count(text) > 1), None)
-    if twice is not None:
+    heads = {head.name: head for head in table.heads}
+    counts = [heads[name] for name in _CYCLES if name in heads]
+    columns = [head for head in table.heads if head not in counts]
+    names = [re.split(r"[\[(]", head.text)[0].strip() for head in columns]
+    stations: dict[int, Cell] = {}
+    if _STATION in heads:
+        if quantity not in heads:
+            texts = ", ".join(head.text for head in table.heads)
+            raise ValueError(f"the column {quantity} is missing; the columns are {texts}")
+        if "" in heads:
+            text = shown(heads[""].text)
+            raise ValueError(f"column {text} is not known: leave it out with skip = [{text}]")
+        columns, names, stations = [heads[quantity]], [""], dict(table.cells(heads[_STATION]))
+    elif twice := next((name for name in names if names.count(name) > 1), None):
         raise ValueError(f"the column {shown(twice)} appears twice: keep one, or name them after their stations")
-    columns = [names.index(quantity)] if is_long else [c for c in range(len(names)) if c != cycle_column]
-    rows = [
-        (number, row, column, str(row[names.index(_STATION)]) if is_long else _SIGNS.split(texts[column])[0].strip())
-        for column in columns
-        for number, row in enumerate(body, start=1)
-        if column < len(row) and row[column] != ""
-    ]
-    if not rows:
+    numbers = table.numbers([*counts, *columns])
+    cycles = _cycle_factor(counts) * numbers.columns[0] if counts else numpy.ones(len(numbers))
+    readings: list[tuple[str, str, float]] = []
+    unused = set()
+    for head, name, values in zip(columns, names, numbers.columns[len(counts) :], strict=True):
+        for (line, cell), value, count in zip(table.cells(head), values.tolist(), cycles.tolist(), strict=True):
+            if not count_words([cell]):
+                continue
+            if not isfinite(value):
+                raise ValueError(f"line {line} has {shown(cell)} under {shown(head.text)}, which is not a number")
+            if not isfinite(count):
+                raise ValueError(f"line {line} has a reading, and no number of cycles")
+            if not (head.unit or unit):
+                text = head.text
+                raise ValueError(
+                    f"the column {shown(text)} has no unit: write '{text} [mg]' as its head, or unit = 'mg'"
+                )
+            station = stations.get(line, name)
+            station = station if isinstance(station, str) else f"{station:g}"
+            if not station:
+                raise ValueError(f"line {line} names no station")
+            if value == count == 0:
+                unused.add(line)
+            else:
+                readings.append((check_text("station", station), f"{value!r} {head.unit or unit}", count))
+    if not readings:
         raise ValueError("the table has no readings")
-    return StationReadings(
-        stations=tuple(_check_station(number, station) for number, _, _, station in rows),
-        values=tuple(
-            f"{_check_number(number, row[column], texts[column], mark)!r} {_check_unit(heads[column], unit)}"
-            for number, row, column, _ in rows
-        ),
-        cycles=()
-        if cycle_column is None
-        else tuple(
-            _cycle_factor(heads[cycle_column]) * _check_number(number, row[cycle_column], texts[cycle_column], mark)
-            for number, row, _, _ in rows
-        ),
-    )
+    labels, stated, ends = zip(*readings, strict=True)
+    remark = numbers.remark({"at 0 cycles": len(unused)})
+    return StationReadings(stations=labels, values=stated, cycles=ends if counts else (), remark=remark)
 
 
-def _check_station(number: int, station: str) -> str:
-    """Return the name of a station; ValueError if it is empty."""
-    if not station:
-        raise ValueError(f"row {number} names no station")
-    return str(check_text("station", station))
-
-
-def _check_number(number: int, cell: Cell, head: str, mark: str) -> float:
-    """Convert the cell of a numbered row to a number."""
-    value = cell_number(cell, mark)
-    if not isfinite(value):
-        raise ValueError(f"row {number} has {shown(cell)} under {shown(head)}, which is not a number")
-    return value
-
-
-def _check_unit(head: Head, unit: str | None) -> str:
-    """Return the unit in a head, or else the stated one."""
-    text = head.unit or unit
-    if not text:
-        raise ValueError(
-            f"the column {shown(head.text)} has no unit: write '{head.text} [mg]' as its head, or unit = 'mg'"
-        )
-    return text
-
-
-def _cycle_factor(head: Head) -> float:
+def _cycle_factor(counts: Sequence[Head]) -> float:
     """Return the number of cycles for which 1 stands in the column of cycles."""
+    head, *others = counts
+    if others:
+        raise ValueError(f"the cycles are in two columns, {shown(head.text)} and {shown(others[0].text)}: skip one")
     if head.unit.lower() not in _CYCLE_UNITS:
         raise ValueError(f"the unit of {shown(head.text)} is not known; allowed are cycles and Mc (million cycles)")
     return _CYCLES[head.name] * _CYCLE_UNITS[head.unit.lower()]

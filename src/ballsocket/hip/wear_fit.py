@@ -78,8 +78,12 @@ class MeasuredWear:
         Station (specimen) of all values, or of each. Readings of one station at several cycle counts are cumulative
         and no independent values. Without it a data set is one specimen, and further values at the same cycle counts
         are further specimens, in the order of the values.
+    density : float, optional
+        Density in mg/mm³ by which a measured mass is the volume of the values; it is printed as the mass.
     name : str
         Name in messages.
+    remark : str
+        Sentence on lines of its file that are left out; empty without any.
 
     Raises
     ------
@@ -101,7 +105,9 @@ class MeasuredWear:
     uncertainty: Any = None
     relative_uncertainty: float | None = None
     station: str | Sequence[str] | None = None
+    density: float | None = None
     name: str = ""
+    remark: str = ""
 
     def __post_init__(self) -> None:
         """Check all fields, and convert numbers to arrays."""
@@ -185,9 +191,14 @@ class MeasuredWear:
         return WEAR_QUANTITIES[self.quantity] + ("" if self.rate is None else "/Mc")
 
     @property
+    def measured_quantity(self) -> str:
+        """Measured quantity in words: the mass, if a density is stated."""
+        return self.quantity.replace("_", " ") if self.density is None else "mass"
+
+    @property
     def description(self) -> str:
         """Quantity, kind of rate and cycle counts in words."""
-        quantity = self.quantity.replace("_", " ")
+        quantity = self.measured_quantity
         if self.rate is None:
             return f"{quantity} after {', '.join(f'{count / _MILLION:g}' for count in self.cycles)} million cycles"
         if self.rate == "initial":
@@ -307,13 +318,16 @@ class WearFit:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on rates, uncertainties, scatter and the simulation."""
-        return (*self._fit_notes(), *self.simulation.notes)
+        remarks = dict.fromkeys(measured.remark for measured in self.data if measured.remark)
+        return (*remarks, *self._fit_notes(), *self.simulation.notes)
 
     def _fit_notes(self) -> Iterator[str]:
         """Yield sentences on rates, uncertainties and scatter."""
         kinds = dict.fromkeys(measured.description for measured in self.data if measured.rate is not None)
         if kinds:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
+        for density in dict.fromkeys(measured.density for measured in self.data if measured.density is not None):
+            yield f"the measured mass is a volume by the density {density:g} mg/mm³"
         yield from self._specimen_notes()
         if not isfinite(self.high):
             yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"
@@ -358,6 +372,7 @@ class WearFit:
                 "from": measured.begin,
                 "to": measured.end,
                 "unit": measured.unit,
+                "density": measured.density,
                 "measured": measured.values.tolist(),
                 "simulated": values.tolist(),
                 "stations": None if measured.station is None else list(measured.station),

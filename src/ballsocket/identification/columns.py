@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..files.columns import ALL_COLUMNS, HeadChoice, read_columns
+from ..files.columns import ALL_COLUMNS, HeadChoice, NumberTable, read_columns
 from ..files.head_names import UNCERTAINTY
 from ..files.units import parse
 from .machine import IDEAL_MACHINE, Machine
@@ -95,7 +95,7 @@ def read_measured(
         if name not in columns:
             raise ValueError(f"{path.name} has no column of {name}; its columns are {', '.join(columns)}")
         needed = (kind, name, name + UNCERTAINTY, kind + UNCERTAINTY, "angle")
-        rows, order = _complete_rows(path.name, {head: columns[head] for head in needed if head in columns}, gaps)
+        rows, order = _complete_rows(table, {head: columns[head] for head in needed if head in columns}, gaps)
         sets.append(
             Measured(
                 quantity=name,
@@ -105,7 +105,7 @@ def read_measured(
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
-                remark=table.remark(len(table) - len(order)),
+                remark=table.remark({"with a gap": len(table) - len(order)}),
                 **_load_arguments(kind, rows, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
@@ -122,19 +122,20 @@ def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
     return next((name for name in _LOADS if name in columns), "")
 
 
-def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
+def _complete_rows(table: NumberTable, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:
     """Select the rows without gaps, and return the columns with the row numbers, which start at 0."""
     missing = numpy.isnan(numpy.stack(list(columns.values())))
     rows = missing.any(axis=0)
     if rows.any() and gaps is Gaps.REFUSE:
-        numbers = ", ".join(str(row + 1) for row in numpy.flatnonzero(rows)[:_MAX_ROWS])
+        numbers = ", ".join(str(table.lines[row]) for row in numpy.flatnonzero(rows)[:_MAX_ROWS])
         names = ", ".join(name for name, absent in zip(columns, missing, strict=True) if absent.any())
+        more = " ..." if rows.sum() > _MAX_ROWS else ""
         raise ValueError(
-            f"{title}: no number for {names} in row {numbers}{' ...' if rows.sum() > _MAX_ROWS else ''}; add it, or "
-            'omit such rows with gaps = "leave-out"'
+            f"{table.title}: no number for {names} in line {numbers}{more}; add it, or omit such lines with "
+            'gaps = "leave-out"'
         )
     if rows.all():
-        raise ValueError(f"{title} has no row without a gap")
+        raise ValueError(f"{table.title} has no row without a gap")
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 

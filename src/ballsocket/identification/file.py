@@ -31,10 +31,10 @@ from ..files.schema import (
 from ..files.tables import parsed_values, quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
-from ..model_catalogue import named_models
+from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
 from ..studies.expressions import parse_ends
-from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
+from ..studies.file import DISTRIBUTION_SCHEMA, ModelGap, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .maximum_likelihood import identify
@@ -188,6 +188,7 @@ class IdentifyTable(JointTables, frozen=True, kw_only=True):
     """Identification file."""
 
     model: Annotated[ModelName, meaning("name of the model")] = ModelName("tabulated")
+    gap: ModelGap = None
     scatter: Annotated[ScatterName, meaning("scatter of the data; heavy-tailed for outliers")] = ScatterName("normal")
     free: FreeTable | None = None
     machine: dict[str, MachineTable] | None = None
@@ -248,7 +249,7 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
         for name, table in (tables.machine or {}).items()
     }
     return IdentifyFile(
-        model=named_models[tables.model].in_cup(joint_file.cup),
+        model=with_gap(named_models[tables.model], tables.gap).in_cup(joint_file.cup),
         joint=joint_file.joint,
         data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
         free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy
 
+from ..core.arrays import Numbers
 from ..core.display import load_plot
 from .experiment import Experiment, experiment
 from .fit import FittedModel
@@ -22,6 +23,9 @@ _MAX_OUTLIERS = 5  # largest number of values that are named
 _MIN_PROBABILITY = 1e-3  # probability of the scatter below which a note is made
 _MAX_SHIFT_RATIO = 0.5  # shift over half a band, about one standard uncertainty, above which a machine error is noted
 _MIN_NOTED_WIDENING = 1.05  # smallest noted factor on the uncertainties
+_MAX_TREND_PROBABILITY = 0.02  # share of random orders with as small a ratio, below which a trend is noted
+_MIN_TREND_RESIDUAL = 0.5  # largest residual in uncertainties from which a trend matters
+_N_ORDERS = 20_000  # random orders of the residuals
 _END_TOLERANCE = 1e-6  # distance in theta from the end of a range
 
 
@@ -51,6 +55,7 @@ class IdentificationResult(FittedModel):
             _convergence_notes,
             _range_notes,
             _fit_notes,
+            _trend_notes,
             _machine_notes,
             _validity_notes,
         )
@@ -231,6 +236,52 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
             )
     if result.misfit.widening > _MIN_NOTED_WIDENING:
         yield f"bands are {result.misfit.widening:.3g} times as wide as the stated uncertainties make them"
+
+
+def _trend_notes(result: IdentificationResult) -> Iterator[str]:
+    """Yield sentences on residuals that follow the load, or the angle at a single load."""
+    for measured, residuals in zip(result.data, result.residuals, strict=True):
+        by_angle = measured.angle is not None and numpy.ptp(measured.loads) == 0
+        if not (measured.load or by_angle) or abs(residuals).max() < _MIN_TREND_RESIDUAL:
+            continue
+        axis = measured.angle if by_angle else measured.loads
+        ratio, probability = von_neumann_ratio(axis[~measured.saturated], residuals[~measured.saturated])
+        if probability < _MAX_TREND_PROBABILITY:
+            yield (
+                f"the residuals of {measured.name or measured.quantity} have a trend over the "
+                f"{'angle' if by_angle else measured.load}: von Neumann's ratio is {ratio:.2g} (2 without a trend, as "
+                f"small by chance in {100 * probability:.2g} %); a number that the fit holds is wrong, of the joint or "
+                "of the machine: make it an unknown, or try another model"
+            )
+
+
+def von_neumann_ratio(axis: Numbers, residuals: Numbers) -> tuple[float, float]:
+    """Compute von Neumann's ratio of residuals in the order of an axis, and its probability without a trend.
+
+    The ratio is the sum of squared successive differences over the sum of squared deviations from the mean, about 2
+    for independent residuals and small for a trend of any shape. Residuals at equal values of the axis are averaged.
+
+    Parameters
+    ----------
+    axis, residuals : array (data,)
+
+    Returns
+    -------
+    ratio, probability : float
+        The probability is the share of random orders with as small a ratio; 1 for fewer than five values of the axis.
+
+    References
+    ----------
+    von Neumann 1941, Ann. Math. Stat. 12, 367, https://doi.org/10.1214/aoms/1177731677
+    """
+    levels, level_of_value = numpy.unique(axis, return_inverse=True)
+    if len(levels) < 5:
+        return 2.0, 1.0
+    means = numpy.bincount(level_of_value, residuals) / numpy.bincount(level_of_value)
+    orders = numpy.random.default_rng(0).permuted(numpy.tile(means, (_N_ORDERS, 1)), axis=1)
+    squares, total = (numpy.diff(orders) ** 2).sum(axis=1), ((means - means.mean()) ** 2).sum()
+    observed = (numpy.diff(means) ** 2).sum()
+    return float(observed / total), float((squares <= observed * (1 + 1e-12)).mean())
 
 
 def _machine_notes(result: IdentificationResult) -> Iterator[str]:

@@ -13,8 +13,9 @@ from ..core.checks import check_numeric, require
 from ..core.sources import Source
 from ..core.validity import SMALL_STRAIN, Range
 from ..problem import Joint
+from ..problem.gaps import LinearGapRange
 from .closed_form import ClosedForm
-from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
+from .kinematics import MAX_SPRING_REDUCTION, angle_of, linear_displacement, linear_indentation, versine_of
 from .modulus import Modulus, as_modulus, hess_forsbach
 
 
@@ -90,11 +91,12 @@ class AdhesiveSocket(ClosedForm):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        """Validity ranges of modulus and strains, and the limit η = 1 of the adhesion number."""
+        """Validity ranges of modulus, gap and strains, and the limit η = 1 of the adhesion number."""
         why = "from 1 on the full hemisphere adheres without load, and the result depends on the rim"
         return (
             *self.modulus.validity,
             Range(quantity=partial(_adhesion_number, self), symbol="η", high=1.0, why=why),
+            LinearGapRange(high=MAX_SPRING_REDUCTION, why="springs with adhesion have the linear gap alone"),
             SMALL_STRAIN,
         )
 

@@ -239,6 +239,9 @@ class Kinematics:
         return f"{self.name}_kinematics"
 
 
+MAX_SPRING_REDUCTION = 0.05
+"""Largest reduction of pmax by the linear gap for which springs are valid; they are less accurate than elasticity."""
+
 linear_kinematics = Kinematics(
     name="linear",
     sources=(Source("hess2021", "(6), (8), (12), (13)"),),
@@ -250,7 +253,7 @@ linear_kinematics = Kinematics(
     versine=linear_versine,
     indentation_of_versine=linear_indentation_of_versine,
     displacement=linear_displacement,
-    validity=(LinearGapRange(high=0.05, why="use the same springs with exact kinematics"),),
+    validity=(LinearGapRange(high=MAX_SPRING_REDUCTION, why="use the same springs with exact kinematics"),),
 )
 """u = d cos φ - c (1 - cos φ), Eq. (6) of the paper: sin² φ neglected under the root of Eq. (5)."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,8 @@ from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
+from ..files.cells import NumberedRow, decode_text, is_data, split_text
+from ..files.columns import CellTable, find_cells
 from .meshes import LENGTH_UNITS, check_extent, length_of, read_mesh
 
 _MESH_SUFFIXES = (".stl", ".obj", ".ply")
@@ -21,8 +22,9 @@ _MAX_BYTES = 100_000_000
 """Largest size of a file of points."""
 
 _COMMENTS = ("#", "//", "%", "!")
-_HEAD = re.compile(r"([xyz])(?:[ _]*[\[(]?([a-zµμ]*)[\])]?)?", re.IGNORECASE)
-"""Head of a column of coordinates with its unit, such as `x`, `Y [mm]` or `z_mm`."""
+_AXES = ("x", "y", "z")
+_HEAD_LINES = 100
+"""Number of lines in which heads, separators and the first points are searched."""
 
 _MICRON = {"µm": "um", "μm": "um", "micron": "um"}
 
@@ -50,7 +52,7 @@ def read_points(path: str | Path, *, units: str = "mm") -> PointCloud:
     """Read points from text with columns x, y, z (.xyz, .csv, .txt, .asc, .pts) or from a mesh (.stl, .obj, .ply).
 
     Columns are separated by blanks, tabs, commas or semicolons. Without heads, the first three are x, y, z. A decimal
-    comma is read where commas do not separate the columns.
+    comma is read where commas do not separate the columns. Numbers have no mark between thousands.
 
     Parameters
     ----------
@@ -93,63 +95,69 @@ def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
         raw = file.read(_MAX_BYTES + 1)
     if len(raw) > _MAX_BYTES:
         raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
-    text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
-    lines = [line for line in map(str.strip, text.splitlines()) if line and not line.startswith(_COMMENTS)]
-    if lines and lines[0].isdigit():  # number of points, as .pts files have it
-        lines = lines[1:]
-    if not lines:
-        raise ValueError(f"{path.name} has no points")
-    separator = next((mark for mark in (";", "\t", ",") if mark in lines[-1]), None)
-    if separator == "," and len(lines[-1].split()) >= 3:  # blanks between numbers with decimal commas
-        separator = None if ", " not in lines[-1] else ","
-    heads = [cell.strip().strip('"') for cell in lines[0].split(separator)]
-    columns, notes = [0, 1, 2], []
-    if any(map(_is_number, heads)):
-        if len(heads) > 3:
-            notes.append(f"{path.name}: columns 4 to {len(heads)} are not read: x, y and z are the first three")
-    else:
-        columns, lines = _find_columns(heads, units, path.name), lines[1:]
-    if len(heads) < 3:
-        raise ValueError(f"{path.name} has {len(heads)} columns in {shown(lines[0])}: a point has three, x y z")
-    if separator != ",":
-        lines = [line.replace(",", ".") for line in lines]
     try:
-        points = numpy.loadtxt(lines, delimiter=separator, usecols=columns, ndmin=2, comments=None, quotechar='"')
+        lines = ["" if line.startswith(_COMMENTS) else line for line in map(str.strip, decode_text(raw).split("\n"))]
+        first = next((number for number, line in enumerate(lines) if line), None)
+        if first is None:
+            raise ValueError("it has no points")
+        if lines[first].isdigit():  # number of points, as .pts files have it
+            lines[first] = ""
+        tables = list(split_text("\n".join(lines[: first + _HEAD_LINES])))
+        table = find_cells(path.name, _without_heads(tables) or tables, _AXES)
+        return _read_points(lines, table, _find_columns(table, units))
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+
+
+def _without_heads(tables: Sequence[tuple[str, list[NumberedRow]]]) -> list[tuple[str, list[NumberedRow]]]:
+    """Return the table that begins with numbers, below the names of the axes; empty for a table with heads."""
+    found: list[tuple[str, list[NumberedRow]]] = []
+    width = 1
+    for separator, rows in tables:
+        cells = next((cells for _, cells in rows if any(cells)), [])
+        numbers = all(is_data([cell]) and not str(cell).endswith(",") for cell in cells if cell)
+        if numbers and len(cells) >= width:
+            found, width = [(separator, [(0, [*_AXES, *[""] * (len(cells) - 3)]), *rows])], min(len(cells), 3)
+    return found
+
+
+def _read_points(lines: Sequence[str], table: CellTable, columns: Sequence[int]) -> tuple[Numbers, tuple[str, ...]]:
+    """Return the points (n, 3) below the heads of a table, and a note on columns without heads."""
+    start, separator = table.rows[0][0], table.separator
+    numbers, body = zip(*((number, line) for number, line in enumerate(lines[start - 1 :], start) if line), strict=True)
+    marks = {mark for mark in ".," if mark != separator and any(mark in line for line in body)}
+    n_unnamed = sum(not head.text for head in table.heads)
+    if separator == "," and (len({line.count(",") for line in body}) > 1 or (n_unnamed and not marks)):
+        raise ValueError("its commas may separate numbers or decimals: write semicolons between the numbers")
+    if len(marks) > 1:
+        raise ValueError("it has decimal points and decimal commas: write one of them, and no mark between thousands")
+    if "," in marks:
+        body = tuple(line.replace(",", ".") for line in body)
+    delimiter = None if separator == " " else separator
+    try:
+        points = numpy.loadtxt(body, delimiter=delimiter, usecols=columns, ndmin=2, comments=None, quotechar='"')
     except (ValueError, IndexError) as error:
-        cells = [line.split(separator) for line in lines]
-        bad = [line for line, row in zip(lines, cells, strict=True) if not _has_point(row, columns)]
-        line = shown(bad[0] if bad else lines[0])
-        raise ValueError(f"{path.name}: {line} is no point, three numbers x y z as in the other lines") from error
-    return points, tuple(notes)
-
-
-def _is_number(cell: str) -> bool:
-    """Return True for a number with a decimal point or comma."""
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
-def _has_point(cells: Sequence[str], columns: Sequence[int]) -> bool:
-    """Return True for a row with numbers in some columns."""
-    return len(cells) > max(columns) and all(_is_number(cells[column]) for column in columns)
-
-
-def _find_columns(heads: Sequence[str], units: str, name: str) -> list[int]:
-    """Return the columns of x, y and z; raise ValueError for heads without them, or with another unit."""
-    matches = {index: match for index, head in enumerate(heads) if (match := _HEAD.fullmatch(head))}
-    columns = {match[1].lower(): index for index, match in reversed(matches.items())}
-    if set(columns) != set("xyz"):
-        raise ValueError(f"{name} has the columns {', '.join(map(shown, heads))[:200]}: name three of them x, y and z")
-    stated = {_MICRON.get(unit, unit) for index in columns.values() if (unit := (matches[index][2] or "").lower())}
-    if len(stated) > 1:
+        rows = [[cell.strip(' "') for cell in line.split(delimiter)] for line in body]
+        bad = (row for row, cells in enumerate(rows) if not all(is_data(cells[axis : axis + 1]) for axis in columns))
+        row = next(bad, 0)
         raise ValueError(
-            f"{name} has columns in different units, {' and '.join(sorted(stated))}: write all in one unit"
-        )
+            f"line {numbers[row]} has {shown(lines[numbers[row] - 1])}: that is no point, three numbers x y z"
+        ) from error
+    note = f"{table.title}: {n_unnamed} columns without names are not read, behind x, y and z"
+    return points, (note,) * bool(n_unnamed)
+
+
+def _find_columns(table: CellTable, units: str) -> list[int]:
+    """Return the columns of x, y and z; raise ValueError for heads without them, or with another unit."""
+    heads = {head.name: head for head in table.heads}
+    if not table.rows or not set(_AXES) <= set(heads):
+        names = ", ".join(shown(head.text) for head in table.heads)
+        raise ValueError(f"it has the columns {names[:200]}: name three of them x, y and z")
+    stated = {_MICRON.get(unit, unit) for axis in _AXES if (unit := heads[axis].unit.lower())}
+    if len(stated) > 1:
+        raise ValueError(f"it has columns in different units, {' and '.join(sorted(stated))}: write all in one unit")
     if stated - {units}:
         unit = stated.pop()
         remedy = f"state --stl-units {unit}" if unit in LENGTH_UNITS else f"write them in {', '.join(LENGTH_UNITS)}"
-        raise ValueError(f"{name} states the unit {shown(unit)} in its heads, but is read in {units}: {remedy}")
-    return [columns[axis] for axis in "xyz"]
+        raise ValueError(f"it states the unit {shown(unit)} in its heads, but is read in {units}: {remedy}")
+    return [heads[axis].column for axis in _AXES]

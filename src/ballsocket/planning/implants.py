@@ -25,6 +25,8 @@ from .rims import (
 RADII = (7.0, 40.0)
 """Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""
 
+_RADII_TEXT = f"radius {RADII[0]:g} to {RADII[1]:g} mm"
+
 _MAX_OUTER_RADIUS = 60.0  # mm
 _SEED = 20260101
 _SAMPLE = 1200
@@ -185,7 +187,7 @@ def fit_liner(mesh: Mesh) -> ImplantFit:
     if bore is None:
         solid = _find_sphere(mesh, 1.0, RADII)
         seen = f"; its sphere of radius {solid.radius:.4g} mm is convex, as of a head" if solid is not None else ""
-        raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_range_text(RADII)}{seen}")
+        raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_RADII_TEXT}{seen}")
     fit, bore = _describe(mesh, bore)
     if fit.axis is None:
         raise ValueError(f"{mesh.name}: the bore of radius {bore.radius:.4g} mm has no opening")
@@ -202,13 +204,8 @@ def fit_head(mesh: Mesh) -> ImplantFit:
     """
     ball = _find_sphere(mesh, 1.0, RADII)
     if ball is None:
-        raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_range_text(RADII)}")
+        raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_RADII_TEXT}")
     return _describe(mesh, ball)[0]
-
-
-def _range_text(limits: tuple[float, float]) -> str:
-    """Return a range of radii as text."""
-    return f"radius {limits[0]:g} to {limits[1]:g} mm"
 
 
 def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _SphereFit | None:
@@ -286,7 +283,6 @@ def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _SphereF
 
 
 def _fit_facets(mesh: Mesh, facets: Numbers) -> _SphereFit:
-    """Fit a sphere to the corners of facets, given by a mask or indices."""
     points, weights = mesh.triangles[facets].reshape(-1, 3), numpy.repeat(mesh.areas[facets], 3)
     centre, radius = fit_sphere(points, weights)
     residuals = numpy.linalg.norm(points - centre, axis=1) - radius
@@ -356,7 +352,10 @@ def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
     """
     part, centre = mesh.part(bore.facets), bore.centre
     points = edge_points((part.triangles - centre) / bore.radius)
-    outer = _outer_surface(mesh, centre, bore.radius)
+    offsets = mesh.triangles.mean(axis=1) - centre
+    distances = numpy.linalg.norm(offsets, axis=1)
+    outwards = numpy.sum(offsets * mesh.normals, axis=1) > _MIN_OUTWARDS * distances
+    outer = mesh.part(outwards & (distances > 1.02 * bore.radius))
     moments = numpy.cross(outer.triangles.mean(axis=1) - centre, _smooth_normals(outer)) * outer.areas[:, None]
     axis, ambiguous = numpy.asarray(fit.axis), False
     for _ in range(3):
@@ -371,14 +370,6 @@ def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
     angle = acos(float(numpy.clip(-planes[0].height / bore.radius, -1.0, 1.0)))
     deviation = rim_deviation(ends, -planes[0].normal, angle)
     return replace(fit, axis=axis, arc_of_cover=2 * angle, rim_deviation=deviation, rim=planes, ambiguous=ambiguous)
-
-
-def _outer_surface(mesh: Mesh, centre: Numbers, radius: float) -> Mesh:
-    """Return the facets of a liner that look away from its bore."""
-    offsets = mesh.triangles.mean(axis=1) - centre
-    distances = numpy.linalg.norm(offsets, axis=1)
-    outwards = numpy.sum(offsets * mesh.normals, axis=1) > _MIN_OUTWARDS * distances
-    return mesh.part(outwards & (distances > 1.02 * radius))
 
 
 def _smooth_normals(mesh: Mesh) -> Numbers:

@@ -15,6 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.input_files import open_input
+from ..files.cells import decode_text
 from ..problem.cup import Side
 
 _MAX_FILE_SIZE = 10_000_000
@@ -40,7 +41,6 @@ _RIMS = ("rim", "cuprim", "linerrim", "acetabularrim", "acetabulumrim")
 
 
 def _with_side(side: str, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names with a word for the side before or after them."""
     return tuple(text for word in _SIDES[side] for name in names for text in (word + name, name + word))
 
 
@@ -179,7 +179,6 @@ def read_landmarks(
 
 
 def _list(names: list[str] | tuple[str, ...]) -> str:
-    """Return some names as text for a message."""
     return ", ".join(shown(name)[1:-1] for name in names[:20]) + (" ..." if len(names) > 20 else "") or "none"
 
 
@@ -189,7 +188,6 @@ def missing_landmarks(landmarks: Landmarks, needed: str) -> ValueError:
 
 
 def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]:
-    """Read the points of one file with their names, in mm and RAS."""
     reader = _READERS.get("".join(path.suffixes[-2:]).lower()) or _READERS.get(path.suffix.lower())
     if reader is None:
         raise ValueError(f"{path.name}: landmarks are read from .fcsv and .mrk.json files of 3D Slicer")
@@ -198,9 +196,7 @@ def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]
     if len(raw) > _MAX_FILE_SIZE:
         raise ValueError(f"{path.name}: a landmark file has at most {_MAX_FILE_SIZE // 1_000_000} MB")
     try:
-        points = list(reader(raw.decode("utf-8-sig"), coordinates))
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path.name} is not text in UTF-8") from error
+        points = list(reader(decode_text(raw), coordinates))
     except (ValueError, csv.Error) as error:
         raise ValueError(f"{path.name}: {error}") from error
     if not points:
@@ -209,7 +205,6 @@ def _read_file(path: Path, coordinates: str | None) -> list[tuple[str, Numbers]]
 
 
 def _signs(stated: Any, coordinates: str | None) -> Numbers:
-    """Return the factors from the coordinates of a file to RAS."""
     if stated is None and coordinates is None:
         raise ValueError("the file states no coordinate system: give it, RAS or LPS")
     if stated is None:
@@ -224,7 +219,6 @@ def _signs(stated: Any, coordinates: str | None) -> Numbers:
 
 
 def _point(name: str, values: Any) -> Numbers:
-    """Return three finite coordinates as an array."""
     try:
         point = numpy.array([float(value) for value in values])
     except (TypeError, ValueError, OverflowError) as error:

@@ -110,7 +110,8 @@ def read_mesh(path: str | Path, *, units: str = "mm") -> Mesh:
     if not len(triangles):
         raise ValueError(f"{path.name} has no triangles")
     length = check_extent(triangles.reshape(-1, 3), units, path.name)
-    mesh = Mesh(triangles * length, path.name, _space(header))
+    space = next((word for word in ("RAS", "LPS") if f"SPACE={word}".encode() in header), None)  # by 3D Slicer
+    mesh = Mesh(triangles * length, path.name, space)
     return mesh.part(mesh.areas > 0)
 
 
@@ -170,11 +171,6 @@ def _ascii_coordinates(stream: BinaryIO) -> Iterator[float]:
         complete = keyword == b"endsolid" or (complete and not words)
     if not complete or vertices != 3 * facets:
         raise ValueError("`endsolid` is missing at its end")
-
-
-def _space(header: bytes) -> str | None:
-    """Return the coordinate system in a header of 3D Slicer, "SPACE=LPS"."""
-    return next((word for word in ("RAS", "LPS") if f"SPACE={word}".encode() in header), None)
 
 
 def check_extent(points: Numbers, units: str, name: str) -> float:

@@ -234,7 +234,6 @@ def make_plan(
 
 
 def _rounded(cup: Cup) -> Cup:
-    """Round the angles of a cup to a thousandth of a degree."""
     arc = radians(round(degrees(cup.arc_of_cover), 3))
     if not cup.oriented:
         return replace(cup, arc_of_cover=arc)
@@ -243,7 +242,6 @@ def _rounded(cup: Cup) -> Cup:
 
 
 def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:
-    """Return the pelvic frame for JSON."""
     return {
         "origin": frame.origin.tolist(),
         "axes": frame.axes.tolist(),
@@ -255,7 +253,6 @@ def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:
 
 
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
-    """Return the orientation of a cup for JSON."""
     in_pelvis, in_body = orientation.cup(upright=False), orientation.cup()
     return {
         "inclination_deg": degrees(in_body.inclination),
@@ -271,7 +268,6 @@ def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
 
 
 def _fit_summary(fit: ImplantFit) -> dict[str, Any]:
-    """Return the fit of a liner or head for JSON."""
     return {
         "file": fit.name,
         "radius": fit.radius,
@@ -310,9 +306,9 @@ def _worn_summary(worn: WornBore) -> dict[str, Any]:
         "reach_deg": degrees(worn.reach),
         "cover": worn.cover,
         "ambiguous": worn.ambiguous,
+        "hidden_shift": worn.hidden_shift,
     }
 
 
 def _degrees(angle: float | None) -> float | None:
-    """Convert an angle in rad to degrees; None stays None."""
     return None if angle is None else angle * 180 / pi

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import acos, cos, pi, radians, sin
 
@@ -194,21 +193,11 @@ def _turned_axis(moments: Numbers, start: Numbers) -> Numbers:
 
 def edge_points(corners: Numbers) -> Numbers:
     """Return points (n, 3) on the edges of facets (n, 3, 3), as near as the sectors of a rim."""
-    steps = min(int(numpy.ceil(_largest_edge(corners) / (pi / _RIM_SECTORS))), 20) or 1
-    return corners.reshape(-1, 3) if steps == 1 else numpy.concatenate(list(_along_edges(corners, steps)))
-
-
-def _largest_edge(corners: Numbers) -> float:
-    """Return the length of the longest edge of facets (n, 3, 3)."""
-    return float(numpy.linalg.norm(corners - numpy.roll(corners, -1, axis=1), axis=2).max())
-
-
-def _along_edges(corners: Numbers, steps: int) -> Iterable[Numbers]:
-    """Yield points (3 n, 3) along the edges of facets, one set for each step."""
     following = numpy.roll(corners, -1, axis=1)
-    for step in range(steps):
-        share = step / steps
-        yield ((1 - share) * corners + share * following).reshape(-1, 3)
+    largest = float(numpy.linalg.norm(corners - following, axis=2).max())
+    steps = min(int(numpy.ceil(largest / (pi / _RIM_SECTORS))), 20) or 1
+    shares = [step / steps for step in range(steps)]
+    return numpy.concatenate([((1 - share) * corners + share * following).reshape(-1, 3) for share in shares])
 
 
 def farthest_points(points: Numbers, dome: Numbers) -> Numbers:

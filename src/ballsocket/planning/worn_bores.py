@@ -73,6 +73,9 @@ _MAX_DEPTH = 0.3
 _SPHERICAL_WEAR = 0.04
 """Share of worn points from which they may be a sphere that was taken for worn by mistake."""
 
+_MAX_EDGE = 0.25
+"""Share of points outside the sphere, at the edge of the points, up to which they may be the only unworn ones."""
+
 _MIN_SPHERE_POINTS = 30
 
 _FORM_FACTOR = 3.0
@@ -119,6 +122,9 @@ class WornBore:
         Number of points.
     ambiguous : bool
         True if the worn part is as good a sphere as the unworn one, with the same radius.
+    hidden_shift : float
+        Longest shift in mm of a head of the bore's radius that may have worn the sphere without a trace in the points.
+        The errors contain it. 0 if the points exclude it.
     name : str
         Name of the file.
     """
@@ -141,6 +147,7 @@ class WornBore:
     ambiguous: bool
     name: str
     reading_notes: tuple[str, ...] = ()
+    hidden_shift: float = 0.0
 
     @property
     def area(self) -> float:
@@ -162,6 +169,12 @@ class WornBore:
             notes.append(
                 f"{self.name}: {100 * (1 - self.cover):.0f} % of the surface within {degrees(self.reach):.0f}° of the "
                 f"pole have no points within {degrees(_MAX_GAP):.0f}°: their wear is not in the volume"
+            )
+        if self.hidden_shift:
+            notes.append(
+                f"{self.name}: the points do not show if the sphere is unworn: a head of its radius may have worn it, "
+                f"by a shift of up to {self.hidden_shift:.2g} mm, which the errors contain; measure surface that the "
+                "head does not reach, more than 90° from the direction of its load"
             )
         if self.ambiguous:
             notes.append(
@@ -211,9 +224,10 @@ def measure_wear(cloud: PointCloud) -> WornBore:
             f"{RADII[1]:g} mm"
         )
     local = _Neighbourhoods.of(points)
-    bores = [_integrate(cloud, local, sphere) for sphere in _find_unworn(points, local, name)]
+    spheres = _find_unworn(points, local, name)
+    bores = [_integrate(cloud, local, sphere) for sphere in spheres]
     if len(bores) == 1:
-        return bores[0]
+        return _add_hidden_shift(bores[0], points, local, spheres[0])
     volume_error, depth_error = (
         max(
             abs(getattr(bores[0], field) - getattr(bores[1], field)) + getattr(bores[1], f"{field}_error"),
@@ -266,6 +280,30 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
     )
 
 
+def _add_hidden_shift(bore: WornBore, points: Numbers, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
+    """Add the wear to the errors that a head of the bore's own radius may have left as a shifted sphere.
+
+    A shift s wears the depth n·s in each direction n with n·s > 0, and leaves the sphere of the others outside by -n·s.
+    It is possible as long as the points outside the found sphere are few, and deepest at the edge of the points. Its
+    largest length towards the pole is that of which the points with n·s < 0 show nothing else.
+    """
+    radial, distance = _polar(points, sphere.centre)
+    outside = float((local.smooth(distance - sphere.radius) > sphere.limit).mean())
+    at_edge = bore.deepest @ bore.pole < cos(bore.reach - _PATCH)
+    if outside > (_MAX_EDGE if at_edge else _SPHERICAL_WEAR):
+        return bore
+    away = -float(numpy.quantile(radial @ bore.pole, outside + _SPHERICAL_WEAR))
+    length = min(sphere.limit / max(away, 1e-9), _MAX_DEPTH * sphere.radius)
+    facing = numpy.maximum(radial @ bore.pole, 0.0)
+    volume = length * sphere.radius**2 * float(_vertex_areas(radial, bore.pole) @ facing)
+    return replace(
+        bore,
+        volume_error=bore.volume_error + volume,
+        depth_error=bore.depth_error + length,
+        hidden_shift=length,
+    )
+
+
 def _polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
     """Return the unit vectors (n, 3) and the distances (n,) of points from a centre."""
     offset = points - centre
@@ -274,7 +312,6 @@ def _polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _unit(vector: Numbers) -> Numbers:
-    """Return a unit vector (3,)."""
     return vector / max(float(numpy.linalg.norm(vector)), 1e-12)
 
 
@@ -443,7 +480,6 @@ def _grown(points: Numbers, sphere: _Unworn, smoothed: Numbers, margin: float) -
 
 
 def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: str) -> None:
-    """Raise ValueError for points that are no bore."""
     low, high = RADII
     depth = _polar(points, sphere.centre)[1] - sphere.radius
     smoothed = local.smooth(depth)

@@ -9,7 +9,7 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import Any, TypedDict
 
-from ..core.arrays import Array, is_plain_number
+from ..core.arrays import Array, all_true, is_plain_number
 from ..core.checks import check_names, require, shown
 from ..core.quantities import FIT, JOINT
 
@@ -20,9 +20,6 @@ DIAMETERS = MappingProxyType(
 
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
-
-EQUIVALENTS = MappingProxyType({**DIAMETERS, "interference": "clearance"})
-"""Equivalent length of each diameter and of the interference."""
 
 _MAX_INTERFERENCE = 0.1
 """Largest interference over the radius of the ball."""
@@ -47,6 +44,11 @@ _BASES = (
 
 STORED_AND_OUTER = ("ball_radius", "socket_radius", "clearance", "liner_thickness", "outer_radius")
 """Lengths without diameters and interference, in the order of messages."""
+
+
+def canonical(name: str) -> str:
+    """Return the radial length of a diameter, the clearance for an interference, and any other name itself."""
+    return "clearance" if name == "interference" else DIAMETERS.get(name, name)
 
 
 class Lengths(TypedDict, total=False):
@@ -106,7 +108,7 @@ class Dimensions:
     @property
     def fit(self) -> tuple[str, Array]:
         """Name and positive radial value in mm of the fit: "clearance", or "interference" of a preloaded joint."""
-        preloaded = is_plain_number(self.clearance) and self.clearance < 0
+        preloaded = all_true(self.clearance < 0)
         return ("interference", self.interference) if preloaded else ("clearance", self.clearance)
 
     @property
@@ -174,8 +176,8 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
         Several choices; the message has each of them.
     """
     changed_names = tuple(changed)
-    new = {EQUIVALENTS.get(name, name) for name in changed_names}
-    old = {EQUIVALENTS.get(name, name): name for name in given}
+    new = {canonical(name) for name in changed_names}
+    old = {canonical(name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:
         kept = [[old[name] for name in STORED_AND_OUTER if name in basis - new] for basis in choices]
@@ -203,26 +205,25 @@ def check_given(names: Iterable[str]) -> tuple[str, ...]:
         raise TypeError(f"given must be a tuple of names of lengths, got {shown(names)}")
     given = tuple(names)
     check_names(given, LENGTHS, "among the given lengths of a joint")
-    if not any(basis <= {EQUIVALENTS.get(name, name) for name in given} for basis in _BASES):
+    if not any(basis <= {canonical(name) for name in given} for basis in _BASES):
         raise ValueError(f"given = {shown(given)} does not determine a joint: it needs three lengths")
     return given
 
 
 def lost_lengths(names: Iterable[str], given: Iterable[str]) -> list[str]:
     """List the given lengths that are not among those which determine a changed joint."""
-    kept = {EQUIVALENTS.get(name, name) for name in names}
-    return [name for name in given if EQUIVALENTS.get(name, name) not in kept]
+    kept = {canonical(name) for name in names}
+    return [name for name in given if canonical(name) not in kept]
 
 
 def fit_beside(varied: Iterable[str], stated: Iterable[str]) -> list[str]:
     """Select the stated lengths that can stay where others vary, in their order; none if no length varies."""
-    taken = {EQUIVALENTS.get(name, name) for name in varied if name in LENGTHS}
+    taken = {canonical(name) for name in varied if name in LENGTHS}
     fitting: list[str] = []
     for name in stated if taken else ():
-        length = EQUIVALENTS.get(name, name)
-        if length not in taken and any({length, *taken} <= basis for basis in _BASES):
+        if canonical(name) not in taken and any({canonical(name), *taken} <= basis for basis in _BASES):
             fitting.append(name)
-            taken.add(length)
+            taken.add(canonical(name))
     return fitting
 
 
@@ -232,8 +233,8 @@ def give(name: str, given: Iterable[str]) -> tuple[str, ...]:
     It takes the place of its diameter or radius, of the other length of the wall, or of one of three radial lengths: of
     the socket's radius, or else of the clearance.
     """
-    new = EQUIVALENTS.get(name, name)
-    others = {EQUIVALENTS.get(other, other): other for other in given}
+    new = canonical(name)
+    others = {canonical(other): other for other in given}
     others.pop(new, None)
     for rivals in (_WALLS, _RADIAL_LENGTHS):
         if new in rivals and {*rivals} <= {new, *others}:
@@ -271,9 +272,9 @@ def derive_lengths(lengths: Mapping[str, Array], shell: Array) -> dict[str, Arra
 
 def check_unique_lengths(names: Iterable[str]) -> None:
     """Check that no given length follows from the others; raise ValueError otherwise."""
-    names_by_length = {EQUIVALENTS.get(name, name): name for name in names}
+    names_by_length = {canonical(name): name for name in names}
     for name in names:
-        duplicate = names_by_length[EQUIVALENTS.get(name, name)]
+        duplicate = names_by_length[canonical(name)]
         if duplicate != name:
             raise ValueError(f"{name} and {duplicate} are one too many: either fixes the other")
     radial = [names_by_length[name] for name in _RADIAL_LENGTHS if name in names_by_length]
@@ -288,11 +289,11 @@ def _contradiction(numbers: Mapping[str, Array], given: Mapping[str, Array], she
     """Describe the first of too many lengths that disagrees with the others; empty for arrays."""
     if not all(map(is_plain_number, (*numbers.values(), *given.values(), shell))):
         return ""
-    for name, value in sorted(numbers.items(), key=lambda item: EQUIVALENTS.get(item[0], item[0]) in _RADIAL_LENGTHS):
+    for name, value in sorted(numbers.items(), key=lambda item: canonical(item[0]) in _RADIAL_LENGTHS):
         remaining = {key: number for key, number in numbers.items() if key != name}
         try:
             check_unique_lengths(remaining)
-            implied = _length_of(name, derive_lengths({**held_lengths(remaining, given), **remaining}, shell), shell)
+            implied = length_of(name, derive_lengths({**held_lengths(remaining, given), **remaining}, shell), shell)
         except (ValueError, KeyError):  # the others are too many as well, or too few
             continue
         if abs(implied - value) > _ROUNDING * abs(value):
@@ -300,7 +301,7 @@ def _contradiction(numbers: Mapping[str, Array], given: Mapping[str, Array], she
     return "; leave one out"
 
 
-def _length_of(name: str, stored: Mapping[str, float], shell: float) -> float:
+def length_of(name: str, stored: Mapping[str, Array], shell: Array) -> Array:
     """Return a length of a joint by its name, from its stored lengths in mm."""
     socket = stored["ball_radius"] + stored["clearance"]
     lengths = {**stored, "socket_radius": socket, "outer_radius": socket + stored["liner_thickness"] + shell}
@@ -310,7 +311,7 @@ def _length_of(name: str, stored: Mapping[str, float], shell: float) -> float:
 
 def _check_sufficient_lengths(names: Iterable[str]) -> None:
     """Check that the given lengths define a new joint; raise ValueError otherwise."""
-    names_by_length = {EQUIVALENTS.get(name, name): name for name in names}
+    names_by_length = {canonical(name): name for name in names}
     if {"clearance", "liner_thickness", "outer_radius"} <= {*names_by_length}:
         return
     if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):

@@ -73,8 +73,8 @@ class CircularGap:
 
     clearance: float
     socket_radius: float
-    steps: ClassVar[int] = 7
-    """Number of Newton steps from d = 0."""
+    steps: ClassVar[int] = 40
+    """Largest number of Newton steps from d = 0; the widest contact takes most."""
 
     conservative: ClassVar[bool] = False
     """False since ∂u/∂d is not cos φ: the work of the force differs from that of the pressure."""
@@ -171,7 +171,7 @@ class LinearGapRange(Range):
     quantity: str | Callable[[Any], Array] = linear_gap_reduction
     symbol: str = "reduction of pmax by Eq. (6)"
     high: float = _MAX_REDUCTION
-    why: str = "use exact, fem or sphere, which have the circular gap"
+    why: str = "use the circular gap of exact, fem or sphere (gap=CircularGap or --gap circular)"
 
     def note(self, contact: Any) -> str:
         """Note with the largest reduction among the contacts outside the range."""
@@ -213,16 +213,14 @@ class CircularGapRemark(Range):
 
 
 LINEAR_GAP, LINEAR_GAP_REMARK = LinearGapRange(), LinearGapRemark()
-"""Validity and remark of accurate models that have the linear gap alone."""
-
-_CHOICE = "use gap=CircularGap or --gap circular"
+"""Validity and remark of accurate models with the linear gap."""
 
 
 def gap_validity(gap: GapKind | None) -> tuple[Range, ...]:
     """Return the validity ranges of a model with a gap; those of the circular gap are empty."""
     if gap is CircularGap:
         return ()
-    return (LinearGapRange(quantity=linear_gap_reduction if gap else _default_gap_reduction, why=_CHOICE),)
+    return (LINEAR_GAP if gap else LinearGapRange(quantity=_default_gap_reduction),)
 
 
 def gap_remarks(gap: GapKind | None) -> tuple[Range, ...]:
@@ -230,8 +228,8 @@ def gap_remarks(gap: GapKind | None) -> tuple[Range, ...]:
     if gap is CircularGap:
         return ()
     if gap is LinearGap:
-        return (LinearGapRemark(why=_CHOICE),)
-    return (LinearGapRemark(quantity=_default_gap_reduction, why=_CHOICE), CircularGapRemark())
+        return (LINEAR_GAP_REMARK,)
+    return (LinearGapRemark(quantity=_default_gap_reduction), CircularGapRemark())
 
 
 _NODES, _WEIGHTS = (numpy.array(values) for values in gauss_legendre(24))

@@ -9,7 +9,7 @@ from itertools import chain
 from math import inf
 from typing import Any, Unpack
 
-from ..core.arrays import Array, is_plain_number, to_list, where
+from ..core.arrays import Array, is_plain_number, read_only, to_list, where
 from ..core.checks import check_names, require, shown
 from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
@@ -179,8 +179,8 @@ class Joint(OneLine, Dimensions):
 
     @property
     def given_lengths(self) -> dict[str, Array]:
-        """Lengths in mm that the joint was made from, by their names."""
-        return {name: getattr(self, name) for name in self.given or STORED_LENGTHS}
+        """Lengths in mm that the joint was made from, by their names; arrays are read-only."""
+        return {name: read_only(getattr(self, name)) for name in self.given or STORED_LENGTHS}
 
     def numbers(self) -> tuple[Array, ...]:
         """List all lengths and elastic constants of the joint, in a fixed order.

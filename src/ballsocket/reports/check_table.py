@@ -25,7 +25,6 @@ from ..contact.verdict import (
     error_bar,
     percent,
     ratio_text,
-    von_mises_bar,
 )
 from ..core.quantities import QUANTITIES, STRENGTH, Quantity
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -103,7 +102,7 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
         Contact of any model; one along the axis ends at its half angle from the pole.
     cup : Cup
     von_mises : float, optional
-        Largest von Mises stress in the liner in MPa, if it is solved for already; by default the mean of its bounds.
+        Largest von Mises stress in the liner in MPa, if it is solved for already; by default the `quick_von_mises`.
 
     Returns
     -------
@@ -122,7 +121,7 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
     return checks_at(
         joint,
         pressure=error_bar(contact, "max_pressure"),
-        von_mises=von_mises_bar(contact, von_mises),
+        von_mises=error_bar(contact, "quick_von_mises" if von_mises is None else "von_mises"),
         edge=(reach, distance) if float(contact.half_angle) > 0 else None,
         trusted=bool(contact.valid),
     )

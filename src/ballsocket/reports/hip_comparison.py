@@ -189,9 +189,11 @@ def _measured_table(fit: WearFit) -> Any:
             if measured.rate
             else [f" after {plain_number(count)} cycles" for count in measured.cycles]
         )
-        for value, result, count in zip(measured.values, results, cycles, strict=True):
-            title = measured.description if measured.rate else f"{measured.quantity.replace('_', ' ')}{count}"
-            table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit, *next(stations))
+        factor = measured.density or 1.0
+        unit = measured.unit if measured.density is None else measured.unit.replace("mm³", "mg")
+        for value, result, count in zip(factor * measured.values, factor * results, cycles, strict=True):
+            title = measured.description if measured.rate else f"{measured.measured_quantity}{count}"
+            table.add_row(title, f"{value:.4g}", f"{result:.4g}", unit, *next(stations))
     return table
 
 

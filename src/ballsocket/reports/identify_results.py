@@ -10,6 +10,7 @@ from rich.table import Table
 from ..core.kinds import Unit
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identification.experiment import Experiment
+from ..identification.information import QUANTILE_95
 from ..identification.measured import MEASURED, Measured
 from ..identification.posterior import CONVERGED, Posterior
 from ..identification.result import IdentificationResult
@@ -93,16 +94,16 @@ def _horizontal_values(data: Measured) -> tuple[Numbers, str]:
 
 
 def corner_figure(result: IdentificationResult, posterior: Posterior | None = None) -> Figure:
-    """Draw samples of the posterior: each unknown alone, and each pair of unknowns.
+    """Draw samples of the posterior: each unknown alone, and each pair of unknowns, with the printed 95 % bands.
 
-    Without a posterior, samples of the normal distribution about the best fit are drawn.
+    Without a posterior, the samples are of the normal distribution about the best fit that has the width of the bands.
     """
     from .notebook_figure import NotebookFigure
 
     samples = _approximate_samples(result) if posterior is None else posterior.samples
     unknowns = result.transform.unknowns
     count = len(unknowns)
-    figure = NotebookFigure(figsize=(2.3 * count + 1.2, 2.1 * count + 1.0), layout="constrained")
+    figure = NotebookFigure(figsize=(max(2.3 * count + 1.2, 4.6), 2.1 * count + 1.2), layout="constrained")
     panels = figure.subplots(count, count, squeeze=False, sharex="col")
     columns = [unknown.quantity.shown.factor * samples[:, index] for index, unknown in enumerate(unknowns)]
     for row in range(count):
@@ -111,7 +112,12 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
             if column > row:
                 axes.set_axis_off()
             elif column == row:
-                _draw_histogram(axes, columns[row])
+                axes.hist(columns[row], bins=40, color=SKY, histtype="stepfilled")
+                name, factor = unknowns[row].name, unknowns[row].quantity.shown.factor
+                estimate = result.estimates[name]
+                for end in (estimate.low, estimate.high) if posterior is None else posterior.band(name):
+                    axes.axvline(factor * end, color=INK, linewidth=0.9, linestyle="--")
+                axes.set_yticks([])
             else:
                 _draw_regions(axes, columns[column], columns[row])
             across = _label(unknowns[column].name, unknowns[column].quantity) if row == count - 1 else ""
@@ -121,9 +127,12 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
             axes.spines[["top", "right"]].set_visible(False)
             axes.tick_params(labelsize=8)
     source = (
-        "drawn about the best point" if posterior is None else f"posterior, R-hat {max(posterior.r_hat.values()):.3f}"
+        f"dashed: 95 % by profile likelihood, quantile {result.information.quantile:.3g}\n"
+        "shaded: 50 and 95 % of a normal distribution that is as wide"
+        if posterior is None
+        else f"posterior, R-hat {max(posterior.r_hat.values()):.3f}\ndashed: 95 %; shaded: 50 and 95 % of the samples"
     )
-    figure.suptitle(f"{result.model.name}: {source}; 50 and 95 % shaded", fontsize=10)
+    figure.suptitle(f"{result.model.name}: {source}", fontsize=9)
     return figure
 
 
@@ -133,18 +142,11 @@ def _label(name: str, quantity: Quantity) -> str:
 
 
 def _approximate_samples(result: IdentificationResult) -> Numbers:
-    """Draw samples from the normal distribution about the best fit."""
-    random = numpy.random.default_rng(0)
-    theta = random.multivariate_normal(result.best.theta, result.information.covariance, _SAMPLES)
+    """Draw samples from the normal distribution about the best fit that is as wide as the 95 % bands."""
+    random, information = numpy.random.default_rng(0), result.information
+    covariance = information.covariance * (information.quantile / QUANTILE_95) ** 2
+    theta = random.multivariate_normal(result.best.theta, covariance, _SAMPLES)
     return result.transform.to_values(numpy.clip(theta, result.transform.low, result.transform.high))
-
-
-def _draw_histogram(axes: Axes, values: Numbers) -> None:
-    """Draw the histogram of one unknown with its 95 % interval."""
-    axes.hist(values, bins=40, color=SKY, histtype="stepfilled")
-    for end in numpy.quantile(values, [0.025, 0.975]):
-        axes.axvline(end, color=INK, linewidth=0.9, linestyle="--")
-    axes.set_yticks([])
 
 
 def _draw_regions(axes: Axes, x: Numbers, y: Numbers) -> None:

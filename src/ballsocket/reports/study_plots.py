@@ -11,7 +11,15 @@ import numpy
 
 from ..contact.verdict import Verdict
 from ..core.quantities import QUANTITIES
-from ..studies.limits import Limit, allowed, count_verdicts, margin_on_plane, relative_margins, verdicts
+from ..studies.limits import (
+    Limit,
+    allowed,
+    count_verdicts,
+    margin_on_plane,
+    relative_margins,
+    undecided_reason,
+    verdicts,
+)
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 from .unit_systems import Units
 
@@ -86,7 +94,7 @@ def design_map(
     counts = count_verdicts(study, limits)
     texts = {
         "pale: a limit is exceeded, or no result": counts["exceeded"] or counts["no result"],
-        "dotted: undecided, the error bar contains a limit": counts["undecided"],
+        f"dotted: undecided, {undecided_reason(study, limits)}": counts["undecided"],
         "hatched: the model is not valid": not trusted.all(),
     }
     figure.supxlabel("; ".join(words for words, present in texts.items() if present), fontsize=8, color="0.3")

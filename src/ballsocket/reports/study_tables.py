@@ -20,7 +20,7 @@ from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..studies.file_formats import dimension_names, iterate_chunks
-from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason
+from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
 from ..studies.task import BOUNDS, OUTCOMES, VERDICT
@@ -268,9 +268,10 @@ def varying_parameters(study: xarray.Dataset) -> list[str]:
 
 def held_text(held: Mapping[str, float], units: Units = Units.SI) -> str:
     """List lengths that are held while others vary, with titles and units."""
+    named = {"interference" if name == "clearance" and value < 0 else name: abs(value) for name, value in held.items()}
     return ", ".join(
         f"{QUANTITIES[name].title} {_value_text(name, value, units)} {_unit(name, units)}"
-        for name, value in held.items()
+        for name, value in named.items()
     )
 
 
@@ -335,11 +336,9 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     shares = ", ".join(f"{100 * n / study.status.size:.3g} % {word}" for word, n in counts.items() if n)
     Console().print(f"of the map: {shares}" + "".join(f"; {limit}" for limit in limits), highlight=False)
     if counts[Verdict.UNDECIDED.word]:
-        Console().print(_UNDECIDED, highlight=False)
+        reason = undecided_reason(study, limits)
+        Console().print(f"undecided: {reason}; the table has the kept designs only", highlight=False)
     _print_held(held_in(study))
-
-
-_UNDECIDED = "undecided: the error bar contains a limit; the table has the kept designs only"
 
 
 def _verdict_counts(counts: Mapping[Verdict, int]) -> str:
@@ -392,8 +391,8 @@ def print_optimum(best: Optimum) -> None:
         console.print("the model is not valid there: use another model", highlight=False)
     if best.undecided:
         console.print(
-            f"{best.undecided} of {best.searched} searched joints are undecided: their error bar contains a limit; the "
-            "best one keeps the limits by its whole error bar",
+            f"{best.undecided} of {best.searched} searched joints are undecided: their error bar contains a limit, or "
+            "a strength is missing; the best one keeps the limits by its whole error bar",
             highlight=False,
         )
     if best.active:

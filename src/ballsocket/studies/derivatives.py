@@ -98,7 +98,7 @@ def _choose_steps(name: str, value: float, relative_step: float) -> tuple[float,
     for steps in ((size, -size), (size, 2 * size), (-size, -2 * size)):
         if PARAMETERS[name].allows(value + numpy.array(steps)).all():
             return steps
-    raise ValueError(f"{name} = {value:g} is not allowed for a {PARAMETERS[name].title}")
+    raise ValueError(f"{name} = {value:g} is not allowed: {PARAMETERS[name].allowed}")
 
 
 def _parabola_derivative(rises: Numbers, steps: tuple[float, float]) -> float:

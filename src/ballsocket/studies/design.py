@@ -198,10 +198,8 @@ def _check_allowed(name: str, values: Numbers, hint: str = "", start: int = 0) -
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        title, degrees = PARAMETERS[name].title, PARAMETERS[name].radian_hint(float(values[first]))
-        raise ValueError(
-            f"{name}[{start + first}] = {values[first]:g}{more} is not allowed for a {title}{hint}{degrees}"
-        )
+        allowed, degrees = PARAMETERS[name].allowed, PARAMETERS[name].radian_hint(float(values[first]))
+        raise ValueError(f"{name}[{start + first}] = {values[first]:g}{more} is not allowed: {allowed}{hint}{degrees}")
 
 
 def is_number(value: Any) -> bool:

@@ -30,11 +30,12 @@ from ..files.schema import (
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import as_given, parse
-from ..model_catalogue import named_models
+from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
+from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
-from .design import Design, grid, sample, table
+from .design import Design, check_values, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
@@ -104,6 +105,22 @@ class ModelName(Word):
     noun, choices = "model", tuple(named_models)
 
 
+class GapName(Word):
+    """Name of a gap."""
+
+    noun, choices = "gap", tuple(GAP_KINDS)
+
+
+ModelGap = Annotated[
+    GapName | None,
+    meaning(
+        "gap of exact, fem and sphere: linear, Eq. (6), or circular, Eq. (5); linear up to a clearance of 0.01 R2, "
+        "else circular by default"
+    ),
+]
+"""Gap of the model of a file."""
+
+
 class AxisValues(Parsed):
     """Number, list of numbers, or equal steps `{from, to, count}`."""
 
@@ -124,6 +141,8 @@ class AxisValues(Parsed):
         """Convert the values of an axis."""
         if isinstance(value, list):
             return [parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)]
+        if isinstance(value, str) and ".." in value:
+            raise ValueError(f"{name} = {shown(value)} must be a list, or equal steps such as {{from, to, count}}")
         if not isinstance(value, Mapping):
             return parse(name, value, cls.kind)
         check_names(value, ("from", "to", "count"), f"in {name}")
@@ -131,7 +150,8 @@ class AxisValues(Parsed):
         if missing:
             raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
         low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
-        return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
+        with as_given(value, f"{name}."):
+            return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
 
 
 class AxisMaterials(Parsed):
@@ -200,6 +220,7 @@ class StudyTable(JointTables, frozen=True, kw_only=True):
     """Study file."""
 
     model: Annotated[ModelName, meaning("name of the model")] = ModelName("hess-forsbach")
+    gap: ModelGap = None
     axes: AxesTable | None = None
     samples: SamplesTable | None = None
     table: RowsTable | None = None
@@ -242,7 +263,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     """Create the study of a file in a folder."""
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
-    model = named_models[tables.model].in_cup(file.cup)
+    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup)
     everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
         model=model,
@@ -273,9 +294,21 @@ def _engine(table: EngineTable) -> Engine:
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
 
+def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of axes as the file writes them, by name and index; of equal steps both ends."""
+    texts: dict[str, Any] = {}
+    for name, values in axes.items():
+        ends = [values.get("from"), values.get("to")] if isinstance(values, Mapping) else values
+        texts |= {f"{name}[{i}]": text for i, text in enumerate(ends if isinstance(ends, list) else [ends])}
+    return texts
+
+
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
     """Create the design of a study: the product of samples, rows of a table and a grid."""
-    design = grid(**parsed_values(tables.axes, content.get("axes", {})))
+    axes = content.get("axes", {})
+    design = grid(**parsed_values(tables.axes, axes))
+    with as_given(_texts_of_values(axes), "axes."):
+        check_values(design)
     if tables.samples is not None:
         samples = tables.samples
         spreads = parsed_values(samples, content["samples"])

@@ -14,7 +14,7 @@ from ..core.checks import needs
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from ..core.storage.folders import folder_at, open_address
-from .metadata import invalid_reasons
+from .metadata import derived_lengths, invalid_reasons
 from .task import BOUNDS, VERDICT, Blocks
 
 if TYPE_CHECKING:
@@ -79,9 +79,9 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
     """Write a study to a NetCDF (.nc), CSV (.csv), Parquet (.parquet) or Zarr (.zarr) file, in chunks.
 
     The file appears when it is complete. CSV and Parquet have a row for each point: first the parameters in the order
-    of the design, then the quantities, and `why_not_valid`, the reason of an invalid point. Column names end in
-    their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have the labelled arrays of the
-    study in mm, N, MPa, rad.
+    of the design, then the lengths that follow from them, the quantities, and `why_not_valid`, the reason of an invalid
+    point. Column names end in their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have
+    the labelled arrays of the study in mm, N, MPa, rad.
 
     Parameters
     ----------
@@ -178,6 +178,8 @@ def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]
         variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
         columns = (variable.transpose(*dims).values.ravel() for variable in variables)
         values = dict(zip(names, columns, strict=True))
+        parameters = {name: values[name] for name in map(str, study.coords)}
+        values = {**parameters, **derived_lengths(study, parameters), **values}
         kinds = zip(values["status"].tolist(), values.pop("broken_limit").tolist(), strict=True)
         why = [reasons.get(kind, "") for kind in kinds]
         heads = {_column_head(name): _in_written_unit(name, column) for name, column in values.items()}

@@ -17,6 +17,7 @@ from ..core.quantities import CONTACT, JOINT
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
 from ..problem.dimensions import STORED_LENGTHS, Dimensions, derive_lengths
+from .metadata import missing_reasons
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
 
@@ -202,6 +203,13 @@ def count_verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> dict[str, 
     return {**counts, "no result": int((~answered).sum())}
 
 
+def undecided_reason(study: xarray.Dataset, limits: Iterable[Limit]) -> str:
+    """Explain why limits are undecided at points of a study: by a missing strength, else by their error bars."""
+    missing = missing_reasons(study)
+    reasons = dict.fromkeys(missing[limit.name] for limit in limits if limit.name in missing)
+    return "; ".join(reasons) or "the error bar contains a limit: use a more accurate model"
+
+
 def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
     """Describe the reason why no point of a study is allowed: limits, or a model without a result.
 
@@ -217,8 +225,7 @@ def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str,
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):
         near = count_verdicts(study, limits := tuple(limits))[Verdict.UNDECIDED.word]
-        count = f"{near} of {study.status.size}, whose error bar contains a limit: use a more accurate model"
-        words = f"; undecided: {count}" if near else ""
+        words = f"; undecided: {near} of {study.status.size}, {undecided_reason(study, limits)}" if near else ""
         return f"{refused} by {' and '.join(map(str, limits))}, according to {model}{words}"
     numbers, counts = numpy.unique(study.status.values, return_counts=True)
     return f"{model} has no answer {place}: {Status(int(numbers[counts.argmax()])).sentence}"

@@ -21,6 +21,7 @@ from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
 from ..core.validity import Status
+from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of, lost_lengths
 from .axes import Axis, MaterialAxis, SampleAxis, TableAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
@@ -35,6 +36,9 @@ _PARAMETERS = "parameters"
 
 HELD = "held"
 """Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
+
+_DERIVED = "derived_lengths"
+"""Attribute with the names of the lengths that follow from varied ones, and the shell's thickness in mm, as JSON."""
 
 _LIMITS = "limits"
 """Attribute with the sentences of the limits of the model's validity, as JSON."""
@@ -89,12 +93,29 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "source": f"ballsocket {fingerprint()}",
         _PARAMETERS: " ".join(_parameter_order(task.design)),
         HELD: json.dumps(task.design.held),
+        _DERIVED: json.dumps([_derived_names(task), float(task.joint.shell)]),
         _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
         _MISSING: json.dumps(_missing_reasons(task), ensure_ascii=False),
         "Conventions": "CF-1.10",
         **({"comment": "; ".join(remarks)} if remarks else {}),
         **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
+
+
+def _derived_names(task: Task) -> list[str]:
+    """List the lengths of the joint that follow from varied ones: given ones in their own names, then stored ones."""
+    lengths = [name for name in task.design.names if name in LENGTHS]
+    lost = lost_lengths(lengths, task.joint.given_lengths) if lengths else []
+    return [*lost, *lost_lengths([*lengths, *lost], STORED_LENGTHS)] if lengths else []
+
+
+def derived_lengths(study: xarray.Dataset, values: Mapping[str, Numbers]) -> dict[str, Numbers]:
+    """Compute the lengths in mm that follow from the varied and held ones, by name; `values` has those by name."""
+    names, shell = json.loads(study.attrs.get(_DERIVED, "[[], 0]"))
+    if not names:
+        return {}
+    stored = derive_lengths({name: values[name] for name in values if name in LENGTHS}, shell)
+    return {name: length_of(name, stored, shell) for name in names}
 
 
 def held_in(result: xarray.Dataset) -> dict[str, float]:

@@ -12,7 +12,8 @@ from ..core import quantities
 from ..core.arrays import Array, all_true, where
 from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
-from ..problem.dimensions import EQUIVALENTS, STORED_LENGTHS, check_unique_lengths, derive_lengths, held_lengths
+from ..problem.dimensions import STORED_LENGTHS, canonical, check_unique_lengths, derive_lengths, held_lengths
+from ..problem.material import make_unchecked
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
     {**quantities.AIM, **{name: quantities.CUP[name] for name in ("inclination", "anteversion")}}
@@ -62,13 +63,11 @@ def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]
     if joint.ball is None and ball_names and not all(f"ball_{number}" in values for number in MATERIAL):
         raise ValueError(f"the ball of this joint is rigid: it has no {ball_names[0]}")
     lengths, possible = _vary_lengths(joint, {name: value for name, value in values.items() if name in JOINT})
-    varied_joint = replace(
-        joint,
-        **lengths,
-        liner=_vary_material(joint.liner, values, "liner") or joint.liner,
-        ball=_vary_material(joint.ball, values, "ball"),
-    )
-    return varied_joint, possible
+    liner = _vary_material(joint.liner, values, "liner") or joint.liner
+    parts = {**vars(joint), "liner": liner, "ball": _vary_material(joint.ball, values, "ball")}
+    if not lengths:
+        return make_unchecked(Joint, **parts), possible
+    return Joint(**{name: part for name, part in parts.items() if name not in STORED_LENGTHS} | lengths), possible
 
 
 def hold(joint: Joint, names: Iterable[str]) -> dict[str, float]:
@@ -95,14 +94,16 @@ def _vary_lengths(joint: Joint, varied: Mapping[str, Array]) -> tuple[dict[str, 
         return {}, True
     stored = derive_lengths(lengths, joint.shell)
     radius, clearance, thickness = (stored[name] for name in STORED_LENGTHS)
-    possible = (radius > 0) & (clearance > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
+    fit, gap = ("interference", -clearance) if all_true(clearance < 0) else ("clearance", clearance)
+    possible = (radius > 0) & (gap > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
     usable = {
         "ball_radius": where(possible, radius, 1.0),
-        "clearance": where(possible & (clearance > 0), clearance, 0.0),
+        fit: where(possible & (gap > 0), gap, 0.0 if fit == "clearance" else _ROUNDING),
         "liner_thickness": where(possible, thickness, 1.0),
     }
-    stated = {EQUIVALENTS.get(name, name) for name in lengths}
-    made = {name: stored[name] if name in stated else usable[name] for name in STORED_LENGTHS}
+    stated = {canonical(name) for name in lengths}
+    raw = {**stored, "interference": -clearance}
+    made = {name: raw[name] if canonical(name) in stated else length for name, length in usable.items()}
     return {**made, "given": tuple(lengths)}, possible
 
 

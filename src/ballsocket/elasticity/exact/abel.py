@@ -90,9 +90,11 @@ class AbelState(PeakPressure):
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation d in mm, solved by Newton's method.
+        """Indentation d in mm, solved by Newton's method; NaN if a circular gap has no contact of this half angle.
 
-        The condition is H(ε) = 0: the pressure is bounded at the edge.
+        The condition is H(ε) = 0: the pressure is bounded at the edge. H(ε) is concave in d, so that the steps from
+        d = 0 do not pass its root. Under a circular gap the widest contact lies along a great circle of the ball; for
+        wider ones H(ε) has no root.
         """
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
@@ -104,6 +106,10 @@ class AbelState(PeakPressure):
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
                 break
+            if self.gap.steps > 1:
+                d[step > _DEPTH_TOLERANCE * abs(d)] = numpy.nan  # back from beyond the maximum
+        if self.gap.steps > 1:
+            d[abs(step) > _DEPTH_TOLERANCE * abs(d)] = numpy.nan
         return d[:, 0]
 
     @cached_property
@@ -198,12 +204,15 @@ class AbelState(PeakPressure):
         return (self.indentation * self.force - self.gap.clearance * gap_work) / 2
 
     def _integrate_work(self) -> Numbers:
-        """Compute the work ∫ F dd in N mm by quadrature over the half angle, for gaps without a potential."""
-        nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
-        angles = (nodes[:, None] * self.half_angle).ravel()
+        """Compute the work ∫ F dd in N mm by quadrature over the half angle, for gaps without a potential.
+
+        The half angles are ε (1 - x⁴). The points x are dense where dd/dε grows towards the widest contact.
+        """
+        x, weights = (numpy.array(part) for part in gauss_legendre(24))
+        angles = ((1 - x**4)[:, None] * self.half_angle).ravel()
         narrower = AbelState(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
-        power = (narrower.force * narrower.indentation_slope).reshape(len(nodes), -1)
-        return self.half_angle * (weights @ power)
+        power = (narrower.force * narrower.indentation_slope).reshape(len(x), -1)
+        return self.half_angle * ((weights * 4 * x**3) @ power)
 
     @cached_property
     def expansion(self) -> Numbers:
@@ -283,6 +292,9 @@ ROUNDING = 1e-9
 """Relative rounding error of a pressure."""
 
 _MODES_PER_BLOCK = 64
+
+_DEPTH_TOLERANCE = 1e-9
+"""Relative tolerance of an indentation, which is least accurate for the widest contact of a circular gap."""
 
 
 def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:

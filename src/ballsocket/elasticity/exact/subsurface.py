@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isqrt, log1p, radians
@@ -9,7 +10,6 @@ from math import inf, isqrt, log1p, radians
 import numpy
 
 from ...contact.coordinates import angle_root, half_angle_at
-from ...contact.strength import ball_stress_ratio
 from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
 from .abel import AbelState
@@ -20,6 +20,9 @@ from .load_curve import LoadCurve
 
 MIN_HALF_ANGLE = radians(1.0)
 """Half angle in rad of the narrowest contact whose interior is computed."""
+
+_SIMILAR_ANGLE = radians(1.5)
+"""Half angle in rad of the contact whose stress ratio stands for narrower ones; it needs fewer modes than 1°."""
 
 _SURFACE_WAVES = 600  # n ε of the last mode at the surface
 _MIN_MODES, _MAX_MODES = 2000, 35_000
@@ -95,13 +98,14 @@ def estimate_von_mises(state: AbelState) -> Numbers:
 
     The estimate differs from `largest_von_mises` by at most `VON_MISES_TOLERANCE`.
     """
-    values = state.max_pressure * ball_stress_ratio(state.kernel.socket.shells[0].poisson)
-    for number in numpy.flatnonzero(state.half_angle >= MIN_HALF_ANGLE):
-        contact = state.single_contact(int(number))
-        angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
-        count = _mode_count(contact, 0.0) // _FEWER_MODES
-        values[number] = _sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max()
-    return values
+    return _evaluate_contacts(_estimate_peak, state, numpy.ones_like(state.half_angle, dtype=bool))
+
+
+def _estimate_peak(contact: AbelState) -> float:
+    """Estimate the largest von Mises stress of one contact in MPa at a few points."""
+    angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
+    count = _mode_count(contact, 0.0) // _FEWER_MODES
+    return float(_sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max())
 
 
 VON_MISES_TOLERANCE = 0.1
@@ -133,18 +137,39 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
 
 
 def largest_von_mises(state: AbelState, reachable: Numbers) -> Numbers:
-    """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others.
+    """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others."""
+    return _evaluate_contacts(
+        lambda contact: find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises, state, reachable
+    )
 
-    A narrow contact has the stress of a half-space under Hertz' pressure.
-    """
-    liner = state.kernel.socket.shells[0]
+
+def _evaluate_contacts(peak: Callable[[AbelState], float], state: AbelState, mask: Numbers) -> Numbers:
+    """Evaluate the largest von Mises stress in MPa of the contacts in a mask one by one; NaN for the others."""
     values = numpy.full(len(state.half_angle), numpy.nan)
-    for number in numpy.flatnonzero(reachable):
-        if state.half_angle[number] < MIN_HALF_ANGLE:  # a half-space
-            values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
+    for number in numpy.flatnonzero(mask):
+        contact, angle = state.single_contact(int(number)), state.half_angle[number]
+        if angle >= MIN_HALF_ANGLE:
+            values[number] = peak(contact)
         else:
-            values[number] = find_peak_stress(state.single_contact(int(number)), liner.thickness).von_mises
+            wider = [_wider_contact(contact, factor * _SIMILAR_ANGLE) for factor in (1, 2)]
+            first, second = (peak(similar) / float(similar.max_pressure[0]) for similar in wider)
+            values[number] = state.max_pressure[number] * (first + (angle / _SIMILAR_ANGLE - 1) * (second - first))
     return values
+
+
+def _wider_contact(contact: AbelState, angle: float) -> AbelState:
+    """Make the contact of a half angle in rad on thicker layers, with the same ratio of contact radius and thickness.
+
+    A narrow contact acts on plane layers. Its stress ratio depends on this ratio alone, and the curvature adds a term
+    that is proportional to the half angle.
+    """
+    socket, factor = contact.kernel.socket, angle / float(contact.half_angle[0])
+    shells = tuple(replace(shell, thickness=shell.thickness * factor) for shell in socket.shells)
+    return replace(
+        contact,
+        kernel=replace(contact.kernel, socket=replace(socket, shells=shells)),
+        intervals=Intervals(half_angle=numpy.array([angle]), grid=contact.grid),
+    )
 
 
 _HALF_INTERVALS, _SEARCH_ROUNDS = 4, 4
@@ -206,6 +231,8 @@ def _legendre(angle: Numbers, count: int) -> Numbers:
 
 
 _STRESS_INTERVALS = 40  # between half angles where stresses are solved
+_NARROWEST = radians(0.005)
+"""Half angle in rad below which the stress ratio is constant: the contact is small against the thinnest liner."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -243,7 +270,7 @@ class StressCurve:
     @property
     def _first_coordinate_and_step(self) -> tuple[float, float]:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
-        first = min(float(angle_root(MIN_HALF_ANGLE, self._thickness_ratio)), self._widest_coordinate)
+        first = min(float(angle_root(_NARROWEST, self._thickness_ratio)), self._widest_coordinate)
         return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
 
     def _stress_ratios_at(self, numbers: Numbers) -> Numbers:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy
 
-from ...core.arrays import Numbers
+from ...core.arrays import Numbers, gauss_legendre
 from ...models.kinematics import linear_indentation
 from ...problem.gaps import CircularGap, LinearGap
 from .compliance import Compliance, UniformOperator
@@ -104,6 +104,9 @@ def initial_displacement(bore: BoreSize, modulus: float, depth: Numbers, force: 
     return start
 
 
+_PATH_POINTS = 4
+"""Number of contacts on the way of a ball, at which the work of the load is integrated."""
+
 _BATCH_CELLS = 150_000
 """Number of cells that are solved together: more exceed the processor's cache."""
 
@@ -194,6 +197,32 @@ class BoreContact:
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
             pressure[block], converged[block] = solution.pressure, solution.converged
         return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
+
+    def work_beyond_stored_energy(self, displacement: Numbers) -> Numbers:
+        """Compute the work of the load in N mm, (batch,), less the stored energy, on straight ways from the centre.
+
+        The pressure acts along the normals of the bore, but the overlap of a circular gap grows by less than the
+        displacement along them. The difference is small, so that contacts on the coarser grid suffice.
+
+        Parameters
+        ----------
+        displacement : array (batch, 3)
+            Displacement of the ball's centre in mm at the end of the way.
+        """
+        if self.gap.kind.conservative:
+            return numpy.zeros(len(displacement))
+        bore = self.coarser_bore or self
+        initial, final = (bore.gap.overlap(factor * displacement) for factor in (0.0, 1.0))
+        touch = numpy.where(final > 0, -initial / numpy.where(final > 0, final - initial, 1.0), 1.0)
+        first_touch = numpy.clip(touch.min(axis=(1, 2)), 0.0, 1.0)  # as a fraction of the way
+        work = numpy.zeros(len(displacement))
+        for node, weight in zip(*gauss_legendre(_PATH_POINTS), strict=True):
+            moved = displacement * (first_touch + (1 - first_touch) * node)[:, None]
+            difference = bore.compliance.grid.normals - bore.gap.overlap_slope(moved)
+            growth = numpy.einsum("bkij,bk->bij", difference, displacement)
+            power = bore.compliance.grid.integrate_product(bore.solve_displaced(moved).pressure, growth)
+            work += weight * (1 - first_touch) * bore.area * power
+        return work
 
     def pressure_sensitivity(
         self,

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
-from ...contact.strength import OFF_AXIS_ERROR, TABLE_ERROR, off_axis_bounds, von_mises_ratio
+from ...contact.strength import rim_errors, von_mises_ratio
+from ...contact.verdict import Bounded
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.records import cached_array
@@ -39,26 +40,26 @@ class OffAxisContact(SolvedContact):
     _inside: ClassVar[str] = "pressure maps"
 
     def _joint_von_mises(self, indices: Numbers, contacts: JointContacts) -> Numbers:
-        """Estimate the largest von Mises stress in the liner in MPa from the axial contact of the same half angle.
-
-        The estimate is an upper one: it has the error of the axial ratio added.
-        """
+        """Estimate the largest von Mises stress in the liner in MPa from the axial contact of the same half angle."""
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
         ratio = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         if not joint.backing_ratio <= RIGID_BACKING.high:
             ratio = exact_stress_ratio(joint, state.half_angle)
-        return numpy.asarray((1 + TABLE_ERROR) * ratio * state.max_pressure)
+        return numpy.asarray(ratio * state.max_pressure)
 
     @property
-    def quick_von_mises(self) -> Array:
-        """Largest von Mises stress in the liner in MPa: `von_mises`, which needs no further solution."""
-        return self.von_mises
+    def quick_von_mises(self) -> Bounded:
+        """Largest von Mises stress in the liner in MPa with its bounds; it needs no solution for stresses."""
+        low, high = self._stress_errors
+        stress = self.von_mises
+        bounds = stress, (1 - low) * stress, arrays.where(stress > 0, 1 + high, 1.0) * stress
+        return Bounded(*map(self._match_load, bounds))
 
     @property
-    def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of `von_mises` in MPa."""
-        low, high = off_axis_bounds(self.von_mises)
-        return self._match_load(low), self._match_load(high)
+    def _stress_errors(self) -> tuple[Array, Array]:
+        """Relative errors, below and above, of the von Mises stress at the largest pressure."""
+        margin = self.laws.combine(lambda contacts: contacts.state.edge_margin)
+        return rim_errors(self.joint, arrays.where(self.edge_loaded, 0.0, margin) * self.joint.socket_radius)
 
     @cached_array
     def force_vector(self) -> Array:
@@ -158,7 +159,7 @@ class OffAxisContact(SolvedContact):
         cut = _CUT_ERROR * relative * (self.half_angle + self.tilt) + TILT_TOLERANCE
         return {
             **errors,
-            "von_mises": self._match_load(OFF_AXIS_ERROR + 0.0 * self.half_angle),
+            "von_mises": self._match_load(self._stress_errors[1] + 0.0 * self.half_angle),
             "edge_margin": self._match_load(arrays.where(self.edge_loaded, cut, relative * self.half_angle)),
         }
 

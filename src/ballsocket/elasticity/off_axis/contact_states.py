@@ -251,12 +251,16 @@ class ContactStates:
         )
         return numpy.einsum("kn,kln,ln->n", force_direction, self.tangent, motion_direction)
 
-    @property
+    @cached_property
     def energy(self) -> Numbers:
-        """Stored energy of both bodies in N mm."""
+        """Work of the load in N mm as the ball moves straight from the centre of the bore.
+
+        With a linear gap it is the stored energy of both bodies.
+        """
         p = self.equilibrium.pressure
         displacement = self.bore.compliance.displacement(p)
-        return self.bore.area * self.bore.compliance.grid.integrate_product(p, displacement) / 2
+        stored = self.bore.area * self.bore.compliance.grid.integrate_product(p, displacement) / 2
+        return stored + self.bore.work_beyond_stored_energy(self.equilibrium.displacement)
 
     @property
     def pressure_integral(self) -> Numbers:

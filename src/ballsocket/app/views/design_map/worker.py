@@ -21,7 +21,7 @@ from ....model_catalogue import catalogue
 from ....problem import Joint
 from ....problem.dimensions import DIAMETERS, give
 from ....studies.design import Span, grid
-from ....studies.limits import Limit, allowed, count_verdicts, relative_margins
+from ....studies.limits import Limit, allowed, count_verdicts, relative_margins, undecided_reason
 from ....studies.metadata import held_in
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
@@ -144,9 +144,8 @@ def map_summary(results: Any, screen: Screen) -> str:
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
-        words.append(
-            "Faded: a limit is exceeded. Half faded: undecided, its error bar contains a limit. Grey: no result."
-        )
+        reason = escape(undecided_reason(results, limits_of(screen)))
+        words.append(f"Faded: a limit is exceeded. Half faded: undecided, {reason}. Grey: no result.")
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 

@@ -13,8 +13,7 @@ from typing import Any
 from ....core.checks import check_names, shown
 from ....core.kinds import Kind
 from ....evidence.folder import SUMS, WORK, names_of, write
-from ....evidence.pack import gather_evidence
-from ....evidence.plan import plan
+from ....evidence.pack import gather_evidence, plan
 from ....evidence.question import Question, read_question
 from ....files.joint_file import JointFile, JointTables
 from ....files.joint_toml import Tables, tables_of
