@@ -2,6 +2,7 @@
 
 import ctypes
 import re
+from dataclasses import replace
 from importlib import import_module
 from math import exp, pi, sqrt
 from pathlib import Path
@@ -183,6 +184,14 @@ def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     assert element.constants.sliding == 0.1
     assert_allclose(element.damping.restitution(100.0), 0.8, rtol=1e-6)
     assert words.element(JointFile(HIP, {})).constants.rim == 0.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_files_of_a_target_follow_the_stiffness_of_the_joint(target):
+    stiffer = ForceElement(bs.HessForsbach(), HIP.replace(liner=replace(HIP.liner, young=2 * HIP.liner.young)))
+    assert texts(target, PLAIN) == texts(target, ForceElement(bs.HessForsbach(), HIP))
+    assert texts(target, stiffer) != texts(target, PLAIN)
 
 
 @pytest.mark.parametrize("target", TARGETS)

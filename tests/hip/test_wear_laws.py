@@ -90,6 +90,8 @@ def test_wear_needs_pressure_and_sliding_and_grows_with_coefficient_and_cycles(l
     assert (depth.shape, depth[1]) == ((3,), 0.0)
     assert min(depth[0], depth[2]) > 0
     assert depth.max() < np.inf
+    if coefficient_field(law).unit.text == "mm³/(N m)":  # then it is near Archard's wear, and not 1000 times as large
+        assert 0.01 < law.with_coefficient(2e-6).depth(exposure())[0] / (2e-9 * WORK[0]) < 100
     assert law.depth(exposure(pressure=0 * PRESSURE, shares=0 * SHARES)) == pytest.approx(0.0, abs=0)
     assert law.depth(exposure(slides=0 * SLIDES)) == pytest.approx(0.0, abs=0)
     twice = exposure(*(np.tile(part, (2, 1)) for part in (PRESSURE, SHARES, SLIDES)))
