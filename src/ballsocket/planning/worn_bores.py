@@ -26,52 +26,31 @@ _THINNING = radians(3.0)
 _STARTS, _FINALISTS, _STEPS, _LAST_STEPS = 300, 8, 2, 20
 """Spheres through four points, best of them, and steps of the trimmed fit for all and for the best."""
 
-_TRIMMED = 0.4
-"""Share of the points whose residuals the trimmed fit minimises."""
-
-_TRIMMED_SIGMA = 0.524
-"""Largest residual in the trimmed share over the standard deviation, if no point is worn."""
+_TRIMMED = 0.4  # share of the points whose residuals the trimmed fit minimises
+_TRIMMED_SIGMA = 0.524  # largest residual in the trimmed share over the standard deviation, if no point is worn
 
 _NEIGHBOURS = 12
-_SMOOTHING = radians(5.0)
-"""Radius of the neighbourhood in which deviations are smoothed, and margin around worn points."""
+_SMOOTHING = radians(5.0)  # radius of the neighbourhood in which deviations are smoothed, and margin around worn points
 
 _MAX_NEIGHBOURS = 60
 _WORN_SIGMAS = 3.0
-_RESOLUTION = 2e-4
-"""Smallest deviation in mm that is seen as wear."""
+_RESOLUTION = 2e-4  # smallest deviation in mm that is seen as wear
 
 _PASSES = 12
 _PATCH = radians(10.0)
 """Size of the patches in which errors of form may be the same, and radius of the patch of the deepest wear."""
 
-_MAX_GAP = radians(15.0)
-"""Longest distance of neighbouring points; a wider gap is not covered."""
-
-_SMOOTHED_AWAY = 1e-3
-"""Largest relative error of the paraboloid at the deepest wear of a head."""
+_MAX_GAP = radians(15.0)  # longest distance of neighbouring points; a wider gap is not covered
+_SMOOTHED_AWAY = 1e-3  # largest relative error of the paraboloid at the deepest wear of a head
 
 _MIN_REACH = radians(25.0)
-_MIN_UNWORN = 0.1
-"""Least share of the covered surface that is not worn."""
-
-_MIN_FLATNESS = 0.02
-"""Smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°."""
-
-_MAX_FORM = 0.005
-"""Largest scatter of the unworn part over its radius."""
-
-_MAX_INSIDE = 0.02
-"""Largest share of points clearly inside the sphere of the unworn part."""
-
-_SMOOTHED_EDGE = 0.03
-"""Largest error in mm of smoothed depths at the edge of deep wear between sparse points."""
-
-_MAX_DEPTH = 0.3
-"""Largest depth of wear over the radius."""
-
-_SPHERICAL_WEAR = 0.04
-"""Share of worn points from which they may be a sphere that was taken for worn by mistake."""
+_MIN_UNWORN = 0.1  # least share of the covered surface that is not worn
+_MIN_FLATNESS = 0.02  # smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°
+_MAX_FORM = 0.005  # largest scatter of the unworn part over its radius
+_MAX_INSIDE = 0.02  # largest share of points clearly inside the sphere of the unworn part
+_SMOOTHED_EDGE = 0.03  # largest error in mm of smoothed depths at the edge of deep wear between sparse points
+_MAX_DEPTH = 0.3  # largest depth of wear over the radius
+_SPHERICAL_WEAR = 0.04  # share of worn points from which they may be a sphere that was taken for worn by mistake
 
 _MAX_EDGE = 0.25
 """Share of points outside the sphere, at the edge of the points, up to which they may be the only unworn ones."""
@@ -81,8 +60,7 @@ _MIN_SPHERE_POINTS = 30
 _FORM_FACTOR = 3.0
 """Largest error of a radius or depth over the error of form, where wear below the noise is taken for unworn."""
 
-_SIGMAS = 2.0
-"""Standard errors in a printed error: 95 %."""
+_SIGMAS = 2.0  # standard errors in a printed error: 95 %
 
 _OUT_OF_ROUND = 2e-3
 """Error of the volume over the covered area, in mm, of an original bore that is out of round by 1 µm."""
@@ -228,14 +206,12 @@ def measure_wear(cloud: PointCloud) -> WornBore:
     bores = [_integrate(cloud, local, sphere) for sphere in spheres]
     if len(bores) == 1:
         return _add_hidden_shift(bores[0], points, local, spheres[0])
-    volume_error, depth_error = (
-        max(
-            abs(getattr(bores[0], field) - getattr(bores[1], field)) + getattr(bores[1], f"{field}_error"),
-            getattr(bores[0], f"{field}_error"),
-        )
-        for field in ("volume", "depth")
-    )
-    return replace(bores[0], volume_error=volume_error, depth_error=depth_error, ambiguous=True)
+    errors = {}
+    for quantity in ("volume", "depth"):
+        difference = abs(getattr(bores[0], quantity) - getattr(bores[1], quantity))
+        own, other = (getattr(bore, f"{quantity}_error") for bore in bores)
+        errors[f"{quantity}_error"] = max(difference + other, own)
+    return replace(bores[0], **errors, ambiguous=True)
 
 
 def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
