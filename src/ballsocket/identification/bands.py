@@ -89,15 +89,8 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
     def excess_of_squares(factor: float) -> float:
         """Compute the sum of squared residuals minus the degrees of freedom, for a factor on uncertainties."""
-        scaled_residuals = residuals / factor
-        return (
-            float(
-                numpy.sum(
-                    scaled_residuals * misfit.scatter.misfit(scaled_residuals) * misfit.scatter.slope(scaled_residuals)
-                )
-            )
-            - misfit.freedom
-        )
+        z = residuals / factor
+        return float(numpy.sum(z * misfit.scatter.misfit(z) * misfit.scatter.slope(z))) - misfit.freedom
 
     if misfit.freedom <= 0 or excess_of_squares(1.0) <= 0:
         return 1.0
