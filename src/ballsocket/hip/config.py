@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from math import degrees, inf, pi
 from pathlib import Path
 from types import MappingProxyType
@@ -121,7 +122,6 @@ def _with_coefficient(content: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
-    """Build a `HipFile` from the content of a hip file; paths in the file are relative to a folder."""
     tables = read_table(content, HipTable)
     joint_file = _parse_joint(tables, folder)
     cycle, law_numbers = cycle_of(tables, folder), content.get("wear", {})
@@ -154,12 +154,10 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     )
 
 
-_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")
-"""Ends of the unit of a rate, behind the slash."""
+_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")  # ends of the unit of a rate, behind the slash
 
 
 def _lubricant(table: FilmTable) -> Lubricant:
-    """Make the lubricant of a table [film]."""
     values: dict[str, Any] = quantities_of(table)
     boundary = values.pop("boundary_friction", None)
     if boundary is None:
@@ -170,8 +168,7 @@ def _lubricant(table: FilmTable) -> Lubricant:
 
 
 _DENSITY_UNIT = "mg/mm^3"
-_WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}
-"""Units of measured wear; others are in mm."""
+_WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}  # units of measured wear; others are in mm
 
 
 def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable, folder: Path) -> MeasuredWear:
@@ -333,7 +330,6 @@ def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
 
 
 def _tilt_cup(cup: Cup, table: HipCupTable) -> Cup:
-    """Return the cup tilted from the load by the angle that a hip file states."""
     for name in ("inclination", "anteversion"):
         if getattr(table, name) is not None:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")
@@ -374,12 +370,14 @@ class UncertaintySettings:
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:
-    """Read distributions and sample settings from the table [uncertainty] of a hip file, for the nominal patient."""
+    coefficient, cup = coefficient_field(use.wear), use.frame.placed
+    readers: dict[str, Read] = {name: partial(parse, kind=kind) for name, kind in _SAMPLED_KINDS.items()}
+    readers[COEFFICIENT] = wear_factor if coefficient is None else coefficient.unit.read
+    nominal = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
+    nominal |= {} if coefficient is None else {COEFFICIENT: getattr(use.wear, coefficient.name)}
     stated = {name: value for name, value in table.stated().items() if isinstance(value, PatientNumber)}
     distributions = {
-        name: distribution_of(name, stated[name].value, _quantity_reader(name, use))
-        for name in SAMPLED_QUANTITIES
-        if name in stated
+        name: distribution_of(name, stated[name].value, readers[name]) for name in SAMPLED_QUANTITIES if name in stated
     }
     count = int(table.count)
     require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
@@ -387,18 +385,10 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
     variability = PatientVariability(
         use=use, distributions=distributions, body_weight=weight, surface=_ELASTIC_SURFACES[table.contact]
     )
-    for name, value in _nominal_values(use).items():
+    for name, value in nominal.items():
         if name in distributions:
-            check_nominal(name, value, distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
+            check_nominal(name, float(value), distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
     return UncertaintySettings(variability=variability, count=count, seed=int(table.seed))
-
-
-def _nominal_values(use: HipSimulation) -> dict[str, float]:
-    """Return the nominal values of the quantities that may differ between patients."""
-    coefficient, cup = coefficient_field(use.wear), use.frame.placed
-    values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
-    known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
-    return {name: float(value) for name, value in known.items()}
 
 
 def _body_weight(tables: HipTable) -> float | None:
@@ -408,11 +398,3 @@ def _body_weight(tables: HipTable) -> float | None:
     if len(stated) > 1:
         raise ValueError("body_weight has several values, but patients need one: give it once, at the top of the file")
     return float(stated.pop()) if stated else None
-
-
-def _quantity_reader(name: str, use: HipSimulation) -> Read:
-    """Return the function that reads a sampled quantity from text with a unit."""
-    if name != "coefficient":
-        return lambda key, value: parse(key, value, _SAMPLED_KINDS[name])
-    coefficient = coefficient_field(use.wear)
-    return wear_factor if coefficient is None else coefficient.unit.read

@@ -97,7 +97,6 @@ def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Sid
 
 
 def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
-    """Convert the columns of a text table to s, N and rad."""
     columns: dict[str, Numbers] = {}
     orthoload = any(head.name in _ORTHOLOAD for head in table.heads)
     names = _ORTHOLOAD if orthoload else {"f": "force"}
@@ -159,7 +158,6 @@ def _angle_factor(table: NumberTable) -> float:
 
 
 def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
-    """Add the loaded body and the frame of OpenSim's joint reaction to columns."""
     if not reactions:
         return HipColumns(columns=columns)
     if len(reactions) > 1:
@@ -194,11 +192,8 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
 DEFAULT_CLOSURE = 0.01
 """Largest difference between the ends of a column, as a share of its range."""
 
-_MAX_STEP_RATIO = 3.0
-"""Longest time step as a multiple of the median step; a longer one is a gap."""
-
-_TIME_TOLERANCE = 1e-6
-"""Difference by which two tables may end apart, as a share of the duration."""
+_MAX_STEP_RATIO = 3.0  # longest time step as a multiple of the median step; a longer one is a gap
+_TIME_TOLERANCE = 1e-6  # difference by which two tables may end apart, as a share of the duration
 
 
 def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
@@ -295,7 +290,6 @@ def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
 
 
 def _check_increasing_times(name: str, time: Numbers) -> None:
-    """Check that times increase from row to row; ValueError otherwise."""
     steps = numpy.diff(time)
     if not (steps > 0).all():
         row = int((steps <= 0).argmax())

@@ -42,14 +42,9 @@ from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 MIN_RING_WIDTH = radians(0.5)
 """Smallest ring width in rad."""
 
-_MAX_RING_WIDTH = radians(10.0)
-"""Largest ring width in rad."""
-
-_DIAMETERS = 1.0, 1000.0
-"""Allowed diameters of head and bore in mm."""
-
-_CYCLES_PER_MILLION = 1e6
-"""Cycles to which wear rates refer."""
+_MAX_RING_WIDTH = radians(10.0)  # largest ring width in rad
+_DIAMETERS = 1.0, 1000.0  # allowed diameters of head and bore in mm
+_CYCLES_PER_MILLION = 1e6  # cycles to which wear rates refer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -82,7 +77,6 @@ class HipSetup(OneLine):
     socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
 
     def __post_init__(self) -> None:
-        """Check types and limits of the fields, and that no load pushes the ball over the rim."""
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
@@ -362,7 +356,6 @@ class HipSetup(OneLine):
 
     @cached_property
     def _unworn_films(self) -> dict[tuple[Lubricant, str, int], Film]:
-        """Cached films of the unworn bore."""
         return {}
 
     @cached_property

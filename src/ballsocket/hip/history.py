@@ -263,7 +263,6 @@ class History(OneLine):
 
     @property
     def _contact_notes(self) -> tuple[str, ...]:
-        """Sentences of the contact model, each kind only once."""
         later = (_AFTER_CYCLES.format(plain_number(report.cycles)) for report in self.reports)
         return tuple(
             list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
@@ -371,7 +370,6 @@ class History(OneLine):
         return {**wave, "hamrock_dowson": formula} if wave else {}
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        """Return a report with its contact checks as a dictionary for JSON, with years if known."""
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
         years = {} if per_year is None else {"years": report.cycles / per_year}
         lateral, upward = self.radiographic_displacement(report)
@@ -388,8 +386,7 @@ class History(OneLine):
         return {**report.summary(), **radiograph, **years, "edge": _closest_approach_summary(edge), **contact}
 
 
-_THIN_LINER = 0.25
-"""Worn depth above which a note appears, relative to the thickness of the liner."""
+_THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
 
 _WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
 _WORN_THIN = (
@@ -409,5 +406,4 @@ _NOT_CONVERGED = "a contact did not balance its load: the results of this run ar
 
 
 def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
-    """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()

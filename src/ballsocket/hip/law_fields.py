@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from math import inf
 from numbers import Real
@@ -179,7 +179,6 @@ class Law(ABC):
     """True if the text of the law identifies it, so that a run can be stored."""
 
     def __post_init__(self) -> None:
-        """Check all fields of the law against their limits."""
         for law_number in self.law_fields():
             law_number.check(getattr(self, law_number.name))
 
@@ -206,18 +205,12 @@ class Law(ABC):
 
     def summary(self) -> dict[str, Any]:
         """Return name and numbers of the law as a dictionary for JSON, with units at the ends of keys."""
-        numbers = {
-            "_".join(filter(None, (law_number.name, law_number.unit.suffix))): _field_value_for_json(
-                getattr(self, law_number.name), law_number
-            )
-            for law_number in self.law_fields()
-        }
-        return {"law": self.name, **numbers}
-
-
-def _field_value_for_json(value: Any, law_number: LawField) -> Any:
-    """Convert the value of a field for JSON: to a number or a list of numbers."""
-    return list(map(float, value)) if law_number.is_list else float(value)
+        summary: dict[str, Any] = {"law": self.name}
+        for law_number in self.law_fields():
+            key = "_".join(filter(None, (law_number.name, law_number.unit.suffix)))
+            value = getattr(self, law_number.name)
+            summary[key] = list(map(float, value)) if law_number.is_list else float(value)
+        return summary
 
 
 def law_summary(law: Any) -> dict[str, Any] | None:
@@ -291,11 +284,5 @@ def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]],
     """
     if "law" in table:
         return laws[known_name(noun, table["law"], laws)]
-    return next(_laws_with_keys(table, laws), next(iter(laws.values())))
-
-
-def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
-    """Yield the laws that have at least one of their keys in a table."""
-    for law in laws.values():
-        if any(law_number.key in table for law_number in law.law_fields()):
-            yield law
+    stated = (law for law in laws.values() if any(law_number.key in table for law_number in law.law_fields()))
+    return next(stated, next(iter(laws.values())))

@@ -28,8 +28,7 @@ from .wear_integrator import WearIntegrator
 MAX_WORN_LINERS = 10.0
 """Largest wear by the rate of the first cycle, in liner thicknesses."""
 
-_VERSION = 7
-"""Version of the file's format."""
+_VERSION = 7  # version of the file's format
 
 _FILE_NAME = "hip_in_use.npz"
 
@@ -101,7 +100,6 @@ class Checkpoint:
 
 
 def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    """Build a report from stored arrays, whose names begin with a prefix."""
     values: dict[str, Any] = {}
     for field in _REPORT_FIELDS:
         convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
@@ -355,11 +353,7 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
         A total count that is not positive and finite, or a report beyond it.
     """
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
+    rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
     for count in report_at:
-        require(
-            "report_at",
-            count,
-            0 <= count <= cycles,
-            f"it lies between 0 and the {plain_number(cycles)} cycles of the run",
-        )
+        require("report_at", count, 0 <= count <= cycles, rule)
     return sorted({float(count) for count in (*report_at, cycles)})

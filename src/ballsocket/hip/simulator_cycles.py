@@ -54,11 +54,6 @@ def _iso_14242_1_angles(phases: Numbers) -> Numbers:
     return numpy.radians([flexion, adduction, rotation])
 
 
-def _iso_14242_1_key_point_angles(phases: Numbers) -> Numbers:
-    """Compute the angles of ISO 14242-1 in rad by half cosines between its key points."""
-    return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
-
-
 def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseFunction | None = None) -> Cycle:
     """Create the walking cycle of hip simulators (ISO 14242-1): 300 to 3000 N along a line fixed to the socket, 1 Hz.
 
@@ -86,7 +81,11 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
 
 def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of ISO 14242-1 with half cosines between the key points of each angle; see `iso_14242_1`."""
-    return replace(iso_14242_1(n_steps, order, _iso_14242_1_key_point_angles), name="iso-14242-1-key-points")
+    return replace(
+        iso_14242_1(n_steps, order),
+        name="iso-14242-1-key-points",
+        angles=lambda phases: numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES]),
+    )
 
 
 def flexion(
@@ -113,7 +112,6 @@ def flexion(
     middle = radians(_ISO_FLEXION_MIDDLE)
 
     def flexion_angles(phases: Numbers) -> Numbers:
-        """Compute the angles (3, n) in rad, of which adduction and rotation are 0."""
         angles = _iso_14242_1_angles(phases) * numpy.array([[1.0], [0.0], [0.0]])
         if angle_ratio != 1:
             angles[0] = middle + angle_ratio * (angles[0] - middle)

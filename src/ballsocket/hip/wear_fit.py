@@ -13,7 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, shown
-from ..core.display import plain_number
+from ..core.display import finite_or_none, plain_number
 from .history import History, NumericalError, Report
 from .law_fields import law_summary
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
@@ -33,19 +33,15 @@ _MILLION = 1e6
 _NODES = numpy.linspace(-0.5, 0.5, 5)
 """Differences of ln(coefficient) from that of the centre, at which runs are computed."""
 
-_DEGREE = 3
-"""Degree of the polynomial of ln(result) over ln(coefficient) through the nodes."""
-
-_MAX_SHIFT = 0.3
-"""Largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted."""
+_DEGREE = 3  # degree of the polynomial of ln(result) over ln(coefficient) through the nodes
+_MAX_SHIFT = 0.3  # largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted
 
 _MAX_CENTRES = 6
 _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
 _MAX_LOG_RANGE = 20.0
 """Range of ln(coefficient) on both sides of the best one in which other readings of a rate are searched."""
 
-_SIGNIFICANCE = 0.05
-"""Probability of the scatter below which Student's quantile applies."""
+_SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
 
 _MIN_NOTED_WIDENING = 1.05
 
@@ -110,7 +106,6 @@ class MeasuredWear:
     remark: str = ""
 
     def __post_init__(self) -> None:
-        """Check all fields, and convert numbers to arrays."""
         known_name("quantity", self.quantity, WEAR_QUANTITIES)
         values = _positive_array(self.quantity, self.values, "a measured wear is positive and finite")
         object.__setattr__(self, "values", values)
@@ -134,7 +129,6 @@ class MeasuredWear:
             object.__setattr__(self, "station", names)
 
     def _check_totals(self, values: Numbers) -> None:
-        """Check the cycle counts of totals; ValueError otherwise."""
         if self.begin is not None or self.end is not None:
             raise ValueError(f"from and to belong to a rate of {self.quantity}: state rate, or cycles for totals")
         if self.cycles is None:
@@ -147,7 +141,6 @@ class MeasuredWear:
         object.__setattr__(self, "cycles", cycles)
 
     def _check_rate(self, rate: str) -> None:
-        """Check the cycle counts of a rate; ValueError otherwise."""
         if self.cycles is not None:
             raise ValueError(f"a rate of {self.quantity} takes from and to, not cycles")
         if rate == "initial":
@@ -162,12 +155,8 @@ class MeasuredWear:
         if rate == "mean" and self.begin:
             raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
         begin = self.begin or 0.0
-        require(
-            "to",
-            self.end,
-            0 <= begin < self.end < inf,
-            f"it is above the {plain_number(begin)} cycles of from, and finite",
-        )
+        rule = f"it is above the {plain_number(begin)} cycles of from, and finite"
+        require("to", self.end, 0 <= begin < self.end < inf, rule)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -379,12 +368,12 @@ class WearFit:
             }
             for measured, values in zip(self.data, self.results, strict=True)
         ]
-        low, high = (end if isfinite(end) else None for end in (self.low, self.high))
+        ends = {"low": finite_or_none(self.low), "high": finite_or_none(self.high)}
         return {
             "law": law_summary(self.simulation.wear),
-            "coefficient": {"value": self.coefficient, "low": low, "high": high, "unit": self.unit},
+            "coefficient": {"value": self.coefficient, **ends, "unit": self.unit},
             "stations": dict(self.stations),
-            "station_scatter": self.scatter if isfinite(self.scatter) else None,
+            "station_scatter": finite_or_none(self.scatter),
             "readings": dict(self.readings),
             "data": data,
             "noise_estimated": self.noise_estimated,
@@ -453,7 +442,6 @@ def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequenc
 
 
 def _join(sets: Sequence[MeasuredWear]) -> Numbers:
-    """Join the values of all data sets: (data,)."""
     return numpy.concatenate([measured.values for measured in sets])
 
 
@@ -464,7 +452,6 @@ def _standard_uncertainty(sets: Sequence[MeasuredWear], fitted: Numbers) -> Numb
 
 
 def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
-    """Find the indices of the values of each specimen, by its name."""
     names: list[str] = []
     for number, measured in enumerate(sets, start=1):
         if measured.station is not None:
@@ -504,15 +491,10 @@ class _WearModel:
         """Cycle counts of all data sets and readings, in ascending order."""
         return sorted({count for measured in (*self.data, *self.readings) for count in measured.counts})
 
-    @property
-    def _is_scale_free(self) -> bool:
-        """True if the result depends on the product of coefficient and cycles alone: without creep and ball wear."""
-        return self.simulation.creep is None and self.simulation.ball_wear is None
-
     def log_results(self, coefficients: Numbers) -> Numbers:
         """Compute ln of the results of all data sets, then of all readings, at each coefficient: (nodes, results)."""
         ratios = coefficients / self.start
-        if self._is_scale_free:
+        if self.simulation.creep is None and self.simulation.ball_wear is None:  # coefficient times cycles counts
             exposures = sorted({float(count * ratio) for count in self.counts for ratio in ratios})
             history = self._run(self.start, exposures)
             rows = [self._row(history, ratio, float(ratio)) for ratio in ratios]
@@ -521,7 +503,6 @@ class _WearModel:
         return numpy.log(numpy.array(rows))
 
     def _run(self, coefficient: float, counts: Sequence[float]) -> History:
-        """Run the simulation with a coefficient to cycle counts."""
         simulation = replace(self.simulation, wear=with_coefficient(self.simulation.wear, coefficient))
         check_total_wear(simulation, counts[-1] if counts else _MILLION)
         integrator = WearIntegrator(setup=simulation)
@@ -545,7 +526,6 @@ def _totals_of(
     """Make the function from a cycle count to the total of a quantity, in a run with scaled exposures."""
 
     def total(count: float) -> float:
-        """Return the total of the quantity after a number of cycles."""
         report = reports[float(count * ratio)]
         if quantity == "radiographic_penetration":
             return history.radiographic_penetration(report)

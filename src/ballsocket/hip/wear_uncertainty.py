@@ -30,14 +30,9 @@ from .variability import (
 
 _CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
 
-_NODES = 12
-"""Number of runs of the nominal patient over the range of the coefficient."""
+_NODES = 12  # number of runs of the nominal patient over the range of the coefficient
 
 _SERIAL = Serial()
-
-
-def _ignore_progress(finished: int) -> None:
-    """Ignore the number of finished patients."""
 
 
 def uncertainty(
@@ -47,7 +42,7 @@ def uncertainty(
     count: int = DEFAULT_COUNT,
     seed: int = 0,
     engine: Engine = _SERIAL,
-    progress: ProgressCallback = _ignore_progress,
+    progress: ProgressCallback = lambda finished: None,
 ) -> Bands:
     """Compute uncertainty bands of a wear simulation, and Sobol indices of the sampled quantities.
 
@@ -105,7 +100,7 @@ def population(
     seed: int = 0,
     engine: Engine = _SERIAL,
     store: CohortStore | None = None,
-    progress: ProgressCallback = _ignore_progress,
+    progress: ProgressCallback = lambda finished: None,
     method: str | None = None,
 ) -> tuple[CohortRun, Bands]:
     """Compute the results of a sampled patient cohort, and their bands.
@@ -242,10 +237,8 @@ def share_coefficient(
     coefficients = variability.distributions[COEFFICIENT].frozen.ppf([low_probability, 0.5, 1 - low_probability])
     values = dict(zip(("low", "median", "high"), map(float, coefficients), strict=True))
     sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], _cycle_ratios(variability, sampled)
-    low, high = (
-        min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min(),
-        max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max(),
-    )
+    low = min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min()
+    high = max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max()
     if not 0 < low < high or numpy.isnan(table).all():
         return None
     exposures = numpy.geomspace(low, high, _NODES)
