@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import degrees
 from typing import Any
 
@@ -23,10 +23,7 @@ from .variability import (
     PatientVariability,
     summarize_distributions,
 )
-from .wear_law import coefficient_field
-
-COEFFICIENT = "coefficient"
-"""Name of the wear coefficient among the sampled quantities."""
+from .wear_law import COEFFICIENT, coefficient_field
 
 CONVERTED = ("volume", "depth", "penetration")
 """Results that are converted to shared coefficients."""
@@ -246,9 +243,7 @@ class Bands:
     def _wear_through_note(self) -> tuple[str, ...]:
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
         n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (
-            (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) if n_worn_through else ()
-        )
+        return (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) * bool(n_worn_through)
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
@@ -330,16 +325,19 @@ class Bands:
         }
 
     def _summarize_report(self, report: int) -> dict[str, Any]:
-        bands: dict[str, dict[str, Any]] = {
-            name: {
-                end_name: finite_or_none(self.quantile(name, fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            }
-            for name in RESULT_UNITS
-        }
+
+        def ends(quantile: Callable[[float], Numbers]) -> dict[str, Any]:
+            """Return a quantile at the report for the ends and the middle of a band."""
+            probabilities = self._probabilities_by_name.items()
+            return {end_name: finite_or_none(quantile(fraction)[report]) for end_name, fraction in probabilities}
+
+        bands = {name: ends(partial(self.quantile, name)) for name in RESULT_UNITS}
         if self.shared is not None:
             for name in CONVERTED:
-                bands[name]["given_coefficient"] = self._summarize_coefficients(self.shared, name, report)
+                bands[name]["given_coefficient"] = {
+                    coefficient: ends(partial(self.shared.quantile, coefficient, name))
+                    for coefficient in self.shared.values
+                }
         year = self.variability.cycles_per_year
         return {
             "cycles": self.counts[report],
@@ -347,20 +345,8 @@ class Bands:
             **bands,
             "edge_loading": finite_or_none(self.edge_loading(report)),
             "edge_loaded": finite_or_none(self.edge_loaded_fraction(report)),
-            "peak_utilisation": {
-                end_name: finite_or_none(self.utilisation_quantile(fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            },
+            "peak_utilisation": ends(self.utilisation_quantile),
             "valid": finite_or_none(self.valid_fraction(report)),
-        }
-
-    def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
-        return {
-            coefficient: {
-                end_name: finite_or_none(shared.quantile(coefficient, name, fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            }
-            for coefficient in shared.values
         }
 
     def _summarize_indices(self) -> dict[str, Any] | None:

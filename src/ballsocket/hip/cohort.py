@@ -31,15 +31,11 @@ PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
 
 _MAX_PATIENTS = 1_000_000
-
 _COPIES = 4  # copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band
 _ROWS_PER_BLOCK = 10_000  # rows of the table of patients that are written at once
 _LABEL_NAME = "patients.json"  # name of the file with the identity of a stored cohort
-
 _SERIAL = Serial()
-
-_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}
-"""Unit suffixes of the table's columns."""
+_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}  # units in the table's columns
 
 ProgressCallback = Callable[[int], None]
 """Function that is called with the number of finished patients."""
@@ -69,7 +65,6 @@ class CohortRun:
     code: str = field(default_factory=fingerprint)
 
     def __len__(self) -> int:
-        """Return the number of patients."""
         return len(next(iter(self.values.values())))
 
     @property

@@ -318,10 +318,7 @@ def _report_points(points: list[float] | None, end: float) -> tuple[float, ...]:
 
 
 def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
-    """Create the joint and the cup of a hip file.
-
-    The cup may have a tilt instead of an orientation, also next to the name of a joint.
-    """
+    """Create joint and cup of a hip file; the cup may have a tilt in place of angles, also with a named joint."""
     cup = tables.cup or HipCupTable()
     file = joint_in(msgspec.structs.replace(tables, cup=None), folder)
     if any(getattr(cup, key) is not None for key in CupTable.__struct_fields__):

@@ -65,8 +65,7 @@ class GridContact(Contact):
         return Bounded(self.von_mises, (1 - strength.TABLE_ERROR) * self.von_mises, (1 + _WORN_ERROR) * self.von_mises)
 
 
-_WORN_ERROR = 0.2
-"""Relative error by which the stress of a worn contact may be larger; assumed, 0.12 without wear for ν up to 0.46."""
+_WORN_ERROR = 0.2  # stress of a worn contact above its value, assumed; 0.12 without wear for ν up to 0.46
 
 
 @dataclass(frozen=True, kw_only=True)

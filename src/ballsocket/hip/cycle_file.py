@@ -196,10 +196,7 @@ def _check_size(title: str, values: Numbers) -> None:
 
 
 def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
-    """Return the angles in rad as a function of phase, from the table or from another cycle.
-
-    The other cycle counts if the table has no columns of angles.
-    """
+    """Return the angles in rad as a function of phase, from the columns of the table or from another cycle."""
     if motion is None:
         return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
     if any(name in columns for name in ANGLES):

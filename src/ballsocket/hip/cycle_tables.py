@@ -35,9 +35,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     }
 )
 _ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z"})
-_IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")
-"""Columns of OrthoLoad that repeat others, or that wear does not need."""
-
+_IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")  # repeated, or not needed
 _HEADS = (*_UNITS, *_ORTHOLOAD, *_IGNORED_ORTHOLOAD)
 
 
@@ -59,8 +57,7 @@ def read_table(path: Path, choice: HeadChoice) -> NumberTable:
 
 _OPENSIM_ANGLE = re.compile(r"(?:.*/)?hip_(flexion|adduction|rotation)_([rl])(?:/value)?")
 _OPENSIM_REACTION = re.compile(r"hip_([rl])_on_(femur|pelvis)(?:_[rl])?_in_(femur|pelvis|ground)(?:_[rl])?_f([xyz])")
-_OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"})
-"""Axes of OpenSim to the right, to the front and upwards."""
+_OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"})  # right, front, up
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,7 +113,6 @@ def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipC
 
 
 def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
-    """Return the factor that converts a column to s, N or rad."""
     factors = _UNITS[name]
     if not head.unit:
         example = next(iter(factors)).replace("n", "N")

@@ -181,7 +181,6 @@ class HipSetup(OneLine):
 
     @property
     def _unoriented_cup(self) -> Cup:
-        """Cup without its orientation, with the same arc and interface."""
         return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
@@ -350,7 +349,6 @@ class HipSetup(OneLine):
     def _film(
         self, equilibrium: CycleEquilibrium, depth: Numbers | float, lubricant: Lubricant, method: str, cycles: int
     ) -> Film:
-        """Compute lubricant film and friction of a cycle from its contacts on a bore of a worn depth in mm."""
         frame, foundation, worn = self.frame, self.foundation, self._depth_field(depth)
         return film(frame, foundation, self.sliding, equilibrium, worn, lubricant, self.grid, method, cycles)
 

@@ -285,7 +285,6 @@ class History(OneLine):
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
-        """Sentences on the first stages with edge loading, and with a bore that is worn to the rim."""
         frame = self.use.frame
         stages = [(_FIRST_CYCLE, self.worst)] + [
             (_AFTER_CYCLES.format(plain_number(report.cycles)), report.edge.closest_approach(frame))
@@ -323,6 +322,9 @@ class History(OneLine):
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
         first, separation, limit = self.use.first, self.use.frame.separation, self.use.film_limit
+        film = None if self.film is None else self.film.summary()
+        if film and self.lubricant is not None:
+            film["hamrock_dowson"] = self.use.film(self.lubricant, method="hamrock-dowson").summary()
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -352,7 +354,7 @@ class History(OneLine):
                 "creep": law_summary(self.use.creep),
                 "film_limit": None if limit is None else limit.summary(self.use.excluded_work_share),
             },
-            "film": None if self.film is None else self._film_summary(self.film),
+            "film": film,
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
             "history": list(map(self._report_summary, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
@@ -363,11 +365,6 @@ class History(OneLine):
     def film(self) -> Film | None:
         """Film of the first cycle by the wave; None for a hip without film."""
         return None if self.lubricant is None else self.use.film(self.lubricant)
-
-    def _film_summary(self, film: Film) -> dict[str, Any]:
-        """Return the film by the wave for JSON, and Hamrock and Dowson's formula under `hamrock_dowson`."""
-        wave, formula = film.summary(), self.use.film(film.lubricant, method="hamrock-dowson").summary()
-        return {**wave, "hamrock_dowson": formula} if wave else {}
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
@@ -387,7 +384,6 @@ class History(OneLine):
 
 
 _THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
-
 _WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
 _WORN_THIN = (
     "after {} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"

@@ -170,7 +170,6 @@ def _make_lane(contact: SpringContact, iterations: Array | int, displacement: Ar
 
 
 def _overlap(contact: SpringContact, displacement: Array) -> Array:
-    """Compute the overlap (cells,) of ball and bore in mm."""
     return displacement @ contact.normals - contact.closing
 
 

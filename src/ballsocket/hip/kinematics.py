@@ -174,15 +174,9 @@ class SurfaceSliding:
     @cached_property
     def _sliding_second_moments(self) -> tuple[Numbers, ...]:
         """Second moments xx, yy and xy of each sliding step divided by its length: (steps, points)."""
-        first_component, second_component = self._rotated_sliding_components
-        inverse_length = numpy.divide(
-            1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0
-        )
-        return (
-            first_component * first_component * inverse_length,
-            second_component * second_component * inverse_length,
-            first_component * second_component * inverse_length,
-        )
+        (x, y), length = self._rotated_sliding_components, self.distances
+        inverse_length = numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
+        return x * x * inverse_length, y * y * inverse_length, x * y * inverse_length
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Compute the cross-shear ratio (points,) of sliding, weighted by the pressure (steps, points)."""

@@ -58,7 +58,6 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     """Create a unit for a field that is a list of plain numbers."""
 
     def read_numbers(name: str, value: Any) -> tuple[float, ...]:
-        """Read a list of plain numbers from a file."""
         if not isinstance(value, list) or not value:
             raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in {text}")
         return tuple(parse(name, number, Kind.NUMBER) for number in value)
@@ -256,7 +255,9 @@ def read_law(
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):
         if key in table and key not in {*fields_by_key, *keys}:
-            raise ValueError(f"{key} belongs to {_describe_laws_with_key(key, laws)}, and the law is {law.name!r}")
+            names = [repr(name) for name, other in laws.items() if key in law_keys({name: other})]
+            owner = f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
+            raise ValueError(f"{key} belongs to {owner}, and the law is {law.name!r}")
     for key, law_number in fields_by_key.items():
         if law_number.required and key not in table:
             raise ValueError(
@@ -269,12 +270,6 @@ def read_law(
         if key in table
     }
     return law(**numbers, **values)
-
-
-def _describe_laws_with_key(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
-    """Describe in words the laws that have a field with a key, for messages."""
-    names = [repr(name) for name, law in laws.items() if any(law_number.key == key for law_number in law.law_fields())]
-    return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
 
 
 def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:

@@ -23,10 +23,7 @@ MEMBERS_PER_PIECE = 8
 _NODES_PER_UNIT = 1.5  # interpolation points per unit of the logarithm of the exposure
 _MAX_NODES = 24  # largest number of interpolation points of the exposure
 _MEMBERS_PER_TERM = 2  # simulations per term of the polynomial
-
-_WEIGHTS = {CLEARANCE: 4}
-"""Weights of variables in the degree. The modulus, and with it the creep of a family, hardly depends on clearance."""
-
+_WEIGHTS = {CLEARANCE: 4}  # weights in the degree; the modulus, and with it creep, hardly depends on clearance
 _MIN_MEMBERS_PER_TERM = 1.5  # least number of simulations with a result per term of the polynomial
 _WEAR_SAFETY = 0.95  # fraction of the largest allowed wear up to which a patient takes its result from the series
 _ROUNDING = 1e-12  # margin of the range of the logarithm of the exposure
@@ -213,13 +210,8 @@ class PatientSeries:
         clearance, forces = similarity.clearances(values), similarity.largest_forces(values)
         indentation, half_angle, pressure = stage.reshape(len(stage), -1, _CONTACT_FIELDS).transpose(2, 1, 0)
         pressure_unit = similarity.modulus(clearance) * clearance
-        columns = (
-            numpy.zeros_like(forces),
-            forces,
-            numpy.exp(indentation) * clearance,
-            half_angle,
-            numpy.exp(pressure) * pressure_unit,
-        )
+        depth, max_pressure = numpy.exp(indentation) * clearance, numpy.exp(pressure) * pressure_unit
+        columns = (numpy.zeros_like(forces), forces, depth, half_angle, max_pressure)
         rows = numpy.stack(columns, axis=-1).reshape(-1, len(columns))
         joint = replace(similarity.setup.joint, clearance=numpy.tile(clearance, len(forces)))
         utilisation, valid = check_rows(similarity.setup.contact_model, joint, rows).reshape(2, *forces.shape)

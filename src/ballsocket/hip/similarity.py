@@ -25,10 +25,7 @@ from .wear_integrator import WearIntegrator
 from .wear_law import coefficient_field, with_coefficient
 
 _RIM_MARGIN = radians(5.0)  # least angle in rad between a load and the end of the bore in a family member
-
-_RIM_SLOPE = 0.5
-"""Angle in rad beyond the rim per overlap of one clearance at the rim. It continues the rim distance below 0."""
-
+_RIM_SLOPE = 0.5  # angle in rad beyond the rim per overlap of one clearance there; continues the distance below 0
 _CONTACT_COLUMNS = slice(2, 5)  # indentation, half angle and largest pressure in a table of worst contacts
 
 FORCE, CLEARANCE, TIME = "force", "clearance", "time"

@@ -29,13 +29,9 @@ MAX_WORN_LINERS = 10.0
 """Largest wear by the rate of the first cycle, in liner thicknesses."""
 
 _VERSION = 7  # version of the file's format
-
 _FILE_NAME = "hip_in_use.npz"
-
 _REPORT_FIELDS = fields(Report)
-
-_CONVERTERS = {"float": float, "bool": bool}
-"""Converters of a stored array to a field of a report, by the field's type; other fields are arrays."""
+_CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,19 +117,9 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     frame = use.frame
     arrays = (frame.loads, frame.lateral_stiffness, frame.rotation_increments, frame.loaded)
     loads = sha256(b"".join(array.tobytes() for array in arrays)).hexdigest()
-    inputs = (
-        use.joint,
-        frame.placed,
-        use.wear,
-        use.ball_wear,
-        use.surface,
-        use.ring_width,
-        use.tolerance,
-        use.creep,
-        use.seconds,
-        *(() if use.film_limit is None else (use.film_limit,)),
-    )
-    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, inputs))
+    laws = (use.joint, frame.placed, use.wear, use.ball_wear, use.surface, use.ring_width, use.tolerance, use.creep)
+    limit = () if use.film_limit is None else (use.film_limit,)
+    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, (*laws, use.seconds, *limit)))
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:

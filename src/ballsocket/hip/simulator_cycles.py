@@ -43,10 +43,7 @@ def _iso_14242_1_force(phases: Numbers) -> Numbers:
 
 
 def _iso_14242_1_angles(phases: Numbers) -> Numbers:
-    """Compute the angles of ISO 14242-1 in rad, one cosine each.
-
-    Flexion is 25° to -18°, adduction 7° to -4°, inward rotation -10° to 2°.
-    """
+    """Compute flexion of 25° to -18°, adduction of 7° to -4° and rotation of -10° to 2° in rad, one cosine each."""
     cycle_angle = 2 * pi * phases
     flexion = 3.5 + 21.5 * numpy.cos(cycle_angle)
     adduction = 1.5 + 5.5 * numpy.cos(cycle_angle - 2 * pi * 0.21)

@@ -39,12 +39,8 @@ SAMPLED_QUANTITIES = (
 DEFAULT_COUNT = 64
 """Default number of samples in each sample set of an uncertainty analysis."""
 
-_COARSE_RINGS = radians(8.0)
-"""Least ring width in a patient's simulation on springs, which is quick: its error is below the variability."""
-
-_COARSE_ELASTIC_RINGS = radians(6.0)
-"""Ring width in a patient's simulation with full elasticity, the largest of `Sphere`."""
-
+_COARSE_RINGS = radians(8.0)  # least ring width of a patient on springs; its error is below the variability
+_COARSE_ELASTIC_RINGS = radians(6.0)  # ring width of a patient with full elasticity, the largest of `Sphere`
 _COARSE_INSTANTS = 32  # largest number of instants of a cycle in a patient's simulation
 
 DEFAULT_LEVEL = 0.95
@@ -189,7 +185,6 @@ class PatientVariability:
         )
 
     def _ratio_to_nominal(self, values: Mapping[str, float], name: str) -> float:
-        """Compute a patient's quantity divided by that of the nominal patient."""
         if name not in values:
             return 1.0
         require(name, values[name], 0 < values[name] < inf, "it must be positive")
@@ -250,15 +245,7 @@ class Patient:
 
 @dataclass(frozen=True, eq=False)
 class _CycleTable:
-    """Periodic function of the phase, linear between tabulated values.
-
-    Attributes
-    ----------
-    phases : array (n,)
-        Phases in parts of the cycle.
-    values : array (..., n)
-        Values at these phases.
-    """
+    """Periodic function of the phase, linear between values (..., n) at phases (n,) in parts of the cycle."""
 
     phases: Numbers
     values: Numbers

@@ -30,23 +30,15 @@ RATES = ("initial", "steady", "mean")
 """Kinds of rates: of the new bore, between two cycle counts, and from the new bore to a cycle count."""
 
 _MILLION = 1e6
-_NODES = numpy.linspace(-0.5, 0.5, 5)
-"""Differences of ln(coefficient) from that of the centre, at which runs are computed."""
-
+_NODES = numpy.linspace(-0.5, 0.5, 5)  # ln(coefficient) of the runs minus that of the centre
 _DEGREE = 3  # degree of the polynomial of ln(result) over ln(coefficient) through the nodes
 _MAX_SHIFT = 0.3  # largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted
-
 _MAX_CENTRES = 6
 _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
-_MAX_LOG_RANGE = 20.0
-"""Range of ln(coefficient) on both sides of the best one in which other readings of a rate are searched."""
-
+_MAX_LOG_RANGE = 20.0  # range of ln(coefficient) to both sides in which other readings of a rate are searched
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
-
 _MIN_NOTED_WIDENING = 1.05
-
-_PREDICTED, _LEAST = 10, 1e-6
-"""Number of steps of a prediction, and the share of the coefficient that stands for an end of the band at 0."""
+_PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -311,7 +303,6 @@ class WearFit:
         return (*remarks, *self._fit_notes(), *self.simulation.notes)
 
     def _fit_notes(self) -> Iterator[str]:
-        """Yield sentences on rates, uncertainties and scatter."""
         kinds = dict.fromkeys(measured.description for measured in self.data if measured.rate is not None)
         if kinds:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
@@ -331,7 +322,6 @@ class WearFit:
         yield "the band has the uncertainty of the measured wear alone, not that of loads, geometry or law"
 
     def _specimen_notes(self) -> Iterator[str]:
-        """Yield sentences on stations, and on values whose station is not stated."""
         count, unnamed = len(self.stations), [measured for measured in self.data if measured.station is None]
         if count > 1:
             yield (
@@ -465,18 +455,10 @@ def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _WearModel:
-    """Results of a simulation for all data sets, and for other readings of rates, at any coefficient.
-
-    Attributes
-    ----------
-    simulation : HipSimulation
-    start : float
-        Coefficient of the runs whose exposure is varied.
-    data : tuple of MeasuredWear
-    """
+    """Results of a simulation for all data sets, and for other readings of rates, at any coefficient."""
 
     simulation: HipSimulation
-    start: float
+    start: float  # coefficient of the runs whose exposure is varied
     data: tuple[MeasuredWear, ...]
 
     @cached_property
@@ -536,21 +518,11 @@ def _totals_of(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Nodes:
-    """Interpolation of ln(result) over ln(coefficient), linear beyond the outer nodes.
+    """Interpolation of ln(result) over ln(coefficient), linear beyond the outer nodes."""
 
-    Attributes
-    ----------
-    centre : float
-        ln(coefficient) of the middle node.
-    polynomials : array (degree + 1, results)
-        Coefficients by ascending power of ln(coefficient) minus the centre.
-    n_data : int
-        Number of the first results that belong to measured values.
-    """
-
-    centre: float
-    polynomials: Numbers
-    n_data: int
+    centre: float  # ln(coefficient) of the middle node
+    polynomials: Numbers  # by ascending power of ln(coefficient) minus the centre: (degree + 1, results)
+    n_data: int  # number of the first results that belong to measured values
 
     def interpolate(self, log_coefficient: float) -> Numbers:
         """Compute ln of all results at a value of ln(coefficient): (results,)."""
@@ -603,30 +575,17 @@ def _find_nodes(model: _WearModel) -> _Nodes:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _MeanCoefficient:
-    """Coefficient of all specimens.
-
-    Attributes
-    ----------
-    coefficient, half_band : float
-        Mean, and half of its 95 % band.
-    stations : dict of str to float
-    scatter : float
-        Relative standard deviation between specimens; NaN for one.
-    share : float
-        Estimated relative uncertainty of the readings; 1 for stated uncertainties.
-    widening : float
-    """
+    """Mean coefficient of all specimens, and half of its 95 % band."""
 
     coefficient: float
     half_band: float
     stations: dict[str, float]
-    scatter: float = nan
-    share: float = 1.0
+    scatter: float = nan  # relative standard deviation between specimens; NaN for one
+    share: float = 1.0  # estimated relative uncertainty of the readings; 1 for stated uncertainties
     widening: float = 1.0
 
 
 def _mean_coefficient(nodes: _Nodes, sets: Sequence[MeasuredWear], noise_estimated: bool) -> _MeanCoefficient:
-    """Compute the coefficient of each specimen, their mean and its band."""
     from scipy.stats import chi2, norm, t
 
     values, specimens = _join(sets), _specimens(sets)

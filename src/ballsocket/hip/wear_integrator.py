@@ -140,7 +140,6 @@ class WearIntegrator:
 
     @property
     def _ball_wear_per_cycle(self) -> Numbers:
-        """Worn depth of the ball per cycle in mm; empty for a ball without wear."""
         counterface, law = self._active.counterface, self.setup.ball_wear
         if counterface is None or law is None:
             return numpy.zeros(0)
@@ -190,9 +189,11 @@ class WearIntegrator:
 
     def _advance_block(self, count: float) -> None:
         """Integrate one block of cycles, whose length is limited by its error and the final count."""
-        decay_rate, remaining = self._max_decay_rate, count - self.cycles
+        decay_rate, remaining, creep_step = self._max_decay_rate, count - self.cycles, inf
+        if self.setup.creep:
+            creep_step = max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
         while True:
-            length = min(self.length, max_step_length(decay_rate), self._max_creep_step)
+            length = min(self.length, max_step_length(decay_rate), creep_step)
             # two last blocks share the remaining cycles equally
             length = remaining if length >= remaining else min(length, remaining / 2)
             block = integrate_step(
@@ -224,18 +225,8 @@ class WearIntegrator:
         self.depth[active.cells] = state_vector[:socket_cell_count]
         self.ball[active.ball_cells] = state_vector[socket_cell_count:-1]
 
-    @property
-    def _max_creep_step(self) -> float:
-        """Largest number of cycles in a block of a creeping liner; infinite without creep."""
-        if not self.setup.creep:
-            return inf
-        return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
-
     def _advance_creep_strain(self, creep: CreepLaw, seconds: float) -> None:
-        """Advance the creep strains by a time in s, under the mean pressures of a cycle.
-
-        Creep decreases this pressure: both are iterated.
-        """
+        """Advance the creep strains by a time in s under the mean pressures of a cycle, which creep decreases."""
         active, setup = self._active, self.setup
         weights = setup.cycle.seconds[setup.frame.loaded] / setup.cycle.duration
         recovered_strain, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
@@ -276,7 +267,6 @@ class WearIntegrator:
 
     @property
     def _contact_near_inactive_cells(self) -> bool:
-        """True if a contact is close to inactive cells."""
         depth = self.depth + self.creep_depth
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
         mask[self._active.cells] = False

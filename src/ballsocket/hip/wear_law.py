@@ -27,10 +27,7 @@ COEFFICIENT = "coefficient"
 
 _PRESSURE_STEP = 1e-6  # step of the pressure for the sensitivity of a law, relative to the largest pressure
 _PLAUSIBLE_FACTORS = 1e-9, 1e-4  # range of wear factors of materials in joints, in mm³/(N m)
-
-_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
-"""Force times length in a denominator, which people write without brackets."""
-
+_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")  # force times length in a denominator, without brackets
 _WEAR_FACTOR = "mm^3/(N m)"
 _FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")  # accepted units of a wear factor: each is for metres of sliding
 _ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")  # accepted units of a wear volume per energy
