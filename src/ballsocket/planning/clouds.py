@@ -19,11 +19,9 @@ from .meshes import LENGTH_UNITS, check_extent, length_of, read_mesh
 _MESH_SUFFIXES = (".stl", ".obj", ".ply")
 _CLOUD_SUFFIXES = (".xyz", ".csv", ".txt", ".asc", ".pts")
 _MAX_BYTES = 100_000_000  # largest size of a file of points
-
 _COMMENTS = ("#", "//", "%", "!")
 _AXES = ("x", "y", "z")
 _HEAD_LINES = 100  # number of lines in which heads, separators and the first points are searched
-
 _MICRON = {"µm": "um", "μm": "um", "micron": "um"}
 
 

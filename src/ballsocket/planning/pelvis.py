@@ -19,7 +19,6 @@ _ASIS_DISTANCES = (100.0, 400.0)
 
 _HEIGHTS = (30.0, 250.0)  # allowed distance in mm of the pubis from the line through both spines
 _MIN_SIDE_DISTANCE = 20.0  # distance in mm from the middle of the pelvis from which the side of a cup is clear
-
 _MIN_RIM_POINTS = 3
 _MIN_RIM_SPREAD = 0.15  # least width of the points of a rim over their length; below it they lie on a line
 _MAX_TILT = radians(60.0)  # largest angle of the vertical from the pelvic plane
@@ -155,7 +154,6 @@ def _check_distance(text: str, distance: float, allowed: tuple[float, float]) ->
 
 
 def _vertical(axes: Numbers, vertical: Any, pelvic_tilt: float | None) -> Numbers | None:
-    """Return the direction upwards in the pelvic frame."""
     if vertical is not None and pelvic_tilt is not None:
         raise ValueError("either vertical or pelvic_tilt is needed, got both")
     if pelvic_tilt is not None:

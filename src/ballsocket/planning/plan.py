@@ -23,15 +23,11 @@ CLEARANCE_REFUSAL = (
 )
 """Sentence on the difference of the radii of two files."""
 
-_MAX_DIFFERENCE = 1.0
-"""Largest difference in mm of the radii of a bore and its head; neighbouring sizes of heads differ by 2 mm."""
-
+_MAX_DIFFERENCE = 1.0  # largest difference in mm of the radii of bore and head; sizes of heads differ by 2 mm
 _ROUGH_RIM = 1.0  # root mean square distance in mm of rim points from their plane from which a note is given
-
 _UNCERTAIN_AXIS = radians(2.0)
 _UNEVEN_TUBERCLES = 10.0  # mm
 _ARCS = (radians(40.0), radians(340.0))
-
 _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
 
@@ -89,7 +85,6 @@ class HipPlan:
         return tuple(notes)
 
     def _orientation_notes(self) -> list[str]:
-        """Return sentences on landmarks, rim points and tilt."""
         frame, orientation, notes = self.frame, self.orientation, []
         if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
             notes.append(
