@@ -16,8 +16,7 @@ from .mesh import FilmMesh
 CentralShare = Callable[[FilmMesh, Numbers, Numbers], Numbers]
 """Function of mesh, spin and film thickness: share of central differences at each face, 0 to 1."""
 
-_SMOOTH, _FRONT = 0.1, 0.3
-"""Largest relative change of a smooth film across a face, and the least of a front."""
+_SMOOTH, _FRONT = 0.1, 0.3  # largest relative change of a smooth film across a face, and the least of a front
 
 
 def all_central(mesh: FilmMesh, spin: Numbers, thickness: Numbers) -> Numbers:

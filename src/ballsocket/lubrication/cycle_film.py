@@ -33,11 +33,8 @@ SETTLED_CHANGE = 0.1
 _MARCHED, _MOST_MARCHED = 3, 10
 """Least and largest number of cycles that are followed instant by instant: one before the core's drift."""
 
-_NO_FILM = 1e-30
-"""Film in mm, and area in mm², that count as none."""
-
-_FLOODED = 3.0
-"""Film around the contacts, relative to the largest inlet film of the cycle."""
+_NO_FILM = 1e-30  # film in mm, and area in mm², that count as none
+_FLOODED = 3.0  # film around the contacts, relative to the largest inlet film of the cycle
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

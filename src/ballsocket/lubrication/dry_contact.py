@@ -28,11 +28,8 @@ if TYPE_CHECKING:
 _SAMPLES = (0.25, 0.75)
 """Positions in a cell of the cup, as fractions of its width, at which the film's pressure is sampled."""
 
-_RINGS_OUTSIDE = 2
-"""Rings of lubricant around the contact."""
-
-_MIN_RINGS = 8
-"""Smallest number of rings in a contact."""
+_RINGS_OUTSIDE = 2  # rings of lubricant around the contact
+_MIN_RINGS = 8  # smallest number of rings in a contact
 
 _CONTINUED_CELL_ERROR = 0.12
 """Relative error of the wave times the number of rings, where the pressure continues beyond the edge; measured."""

@@ -26,14 +26,9 @@ CELL_WIDTH = radians(2.0)
 MAX_ERROR = 0.1
 """Largest estimated error of a valid film."""
 
-_MAX_RATE = 1e6
-"""Largest rotation rate about an axis in rad/s."""
-
-_THINNEST = 1e-6
-"""Film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid."""
-
-_WATER_DENSITY = 1e-9
-"""Density of water in t/mm³, which is about that of joint fluid and oil."""
+_MAX_RATE = 1e6  # largest rotation rate about an axis in rad/s
+_THINNEST = 1e-6  # film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid
+_WATER_DENSITY = 1e-9  # density of water in t/mm³, which is about that of joint fluid and oil
 
 _MAX_REYNOLDS_NUMBER = 1440.0
 """Reynolds number U h/ν of a laminar film.

@@ -25,17 +25,10 @@ from .inlet import SpringEdge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-_IN_CONTACT = 0.5
-"""Interpolated share of contact from which a point counts as in contact."""
-
-_CELL_WIDTH = radians(1.0)
-"""Width in rad of the cells of the drift, whatever the cells of the bore are."""
-
-_MARGIN_CELLS = 3
-"""Number of rings of these cells around the contact."""
-
-_NO_ROTATION = 1e-9
-"""Net rotation in rad that counts as none."""
+_IN_CONTACT = 0.5  # interpolated share of contact from which a point counts as in contact
+_CELL_WIDTH = radians(1.0)  # width in rad of the cells of the drift, whatever the cells of the bore are
+_MARGIN_CELLS = 3  # number of rings of these cells around the contact
+_NO_ROTATION = 1e-9  # net rotation in rad that counts as none
 
 
 class LoadedInstant(Protocol):

@@ -59,11 +59,8 @@ _ELASTIC = _MeshSettings(
 _CELLS_OF_SIDES, _MAX_MERIDIANS = 9.0, 72
 """Number of cells in a ring times the angle of the sides in rad, and the largest number of cells."""
 
-_LEAST_MARGIN = radians(3.0)
-"""Smallest angle in rad between the contact and the end of the mesh."""
-
-_MAX_OUT_OF_ROUND = radians(5.0)
-"""Largest difference in rad of the angles from the load to the edge of a contact."""
+_LEAST_MARGIN = radians(3.0)  # smallest angle in rad between the contact and the end of the mesh
+_MAX_OUT_OF_ROUND = radians(5.0)  # largest difference in rad of the angles from the load to the edge of a contact
 
 _MAX_EDGE_RINGS, _MIN_RINGS_OF_INLET = 150, 2.0
 """Largest number of finest rings between the edges of all contacts, and the smallest number in an inlet length."""
@@ -71,8 +68,7 @@ _MAX_EDGE_RINGS, _MIN_RINGS_OF_INLET = 150, 2.0
 _THICK, _THINNING = 4.0, 4.0
 """First film over the roughness of the dry gap on the mesh, and the ratio of the viscosities on the way to thinner."""
 
-_THINNING_STEPS = 30
-"""Largest number of Newton steps from one viscosity to the next."""
+_THINNING_STEPS = 30  # largest number of Newton steps from one viscosity to the next
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,8 +12,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 
-_NO_OFFSET = 1e-9
-"""Angle in rad between two normals of a face that counts as none."""
+_NO_OFFSET = 1e-9  # angle in rad between two normals of a face that counts as none
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,11 +14,8 @@ import scipy.sparse.linalg
 from ..core.arrays import Numbers
 from .balance import Balance
 
-_RESIDUAL = 1e-5
-"""Residual of GMRES relative to the right side; Newton's next step removes it."""
-
-_MAX_KRYLOV, _MAX_RESTARTS = 60, 3
-"""Number of directions of GMRES, and largest number of times that it restarts."""
+_RESIDUAL = 1e-5  # residual of GMRES relative to the right side; Newton's next step removes it
+_MAX_KRYLOV, _MAX_RESTARTS = 60, 3  # number of directions of GMRES, and largest number of times that it restarts
 
 
 class Softness(Protocol):

@@ -20,27 +20,15 @@ from .carried_film import CentralShare, all_central
 from .mesh import FilmMesh
 from .newton_system import CellUnknown, NewtonSystem, Softness
 
-_LARGEST_FALL = 0.6
-"""Largest part of a cell's film that one Newton step may take away."""
-
-_SHARE_UPDATES = 3
-"""Number of Newton steps after which the share of central differences is fixed."""
-
-_GROWTH = 1.8
-"""Growth of the time steps on the way to the steady film."""
-
-_MAX_TIME_STEPS = 40
-"""Number of time steps on the way to the steady film after which it counts as not converged."""
-
-_EASY_ITERATIONS = 10
-"""Number of Newton steps up to which the next time step grows."""
+_LARGEST_FALL = 0.6  # largest part of a cell's film that one Newton step may take away
+_SHARE_UPDATES = 3  # number of Newton steps after which the share of central differences is fixed
+_GROWTH = 1.8  # growth of the time steps on the way to the steady film
+_MAX_TIME_STEPS = 40  # number of time steps on the way to the steady film after which it counts as not converged
+_EASY_ITERATIONS = 10  # number of Newton steps up to which the next time step grows
 
 
-_FARTHEST = 100.0
-"""Displacement of the ball, relative to the largest gap, at which an iteration ends without a result."""
-
-_MAX_LOAD_ERROR = 1e-3
-"""Largest error of the balance of the load, relative to the load."""
+_FARTHEST = 100.0  # displacement of the ball, relative to the largest gap, at which an iteration ends without a result
+_MAX_LOAD_ERROR = 1e-3  # largest error of the balance of the load, relative to the load
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -33,8 +33,7 @@ _ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
 _MAX_EDGE_TRAVEL = 1.0
 """Largest movement of the edge in a time step, in inlet lengths, that implicit Euler resolves to about 3 %."""
 
-_DRY_CELL = numpy.radians(4.0)
-"""Width in rad of the cells of the dry contacts, of which only axis and edge are used."""
+_DRY_CELL = numpy.radians(4.0)  # width in rad of the cells of the dry contacts, of which only axis and edge are used
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -20,17 +20,13 @@ import numpy
 from ..core.arrays import Numbers
 from .dry_contact import DryContact
 
-_COURANT = 0.8
-"""Largest part of the film of a cell that may leave it in one step."""
-
-_TINY = 1e-300
-"""Film in mm that keeps a quotient of zeros at zero."""
+_COURANT = 0.8  # largest part of the film of a cell that may leave it in one step
+_TINY = 1e-300  # film in mm that keeps a quotient of zeros at zero
 
 _EDGE_LENGTHS = 3.0
 """Distance from an elastic edge, in inlet lengths, within which the pressure of the film is not the dry one."""
 
-_FLOODED = 4.0
-"""Film around the contact, relative to the inlet film; the flow into the contact does not depend on it."""
+_FLOODED = 4.0  # film around the contact, relative to the inlet film; the flow into the contact does not depend on it
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
