@@ -7,7 +7,7 @@ its film changes over many cycles: `film_core` has its drift.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import acos, pi
 
@@ -16,8 +16,7 @@ import numpy
 from ..core.arrays import Numbers
 from .cycle_error import film_errors, refreshed_mean_error
 from .dry_contact import DryContact
-from .film_core import FilmMotion
-from .inlet import Edge
+from .film_core import CycleInstant, FilmMotion
 from .mesh import FilmMesh
 from .wave import FilmWave
 
@@ -35,42 +34,6 @@ _MARCHED, _MOST_MARCHED = 3, 10
 
 _NO_FILM = 1e-30  # film in mm, and area in mm², that count as none
 _FLOODED = 3.0  # film around the contacts, relative to the largest inlet film of the cycle
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CycleInstant:
-    """Dry contact and motion at one instant of a cycle.
-
-    Attributes
-    ----------
-    pressure : array (cells,)
-        Dry pressure in MPa.
-    axis : array (3,)
-        Unit vector along the load.
-    edge : Edge
-        Rise of the pressure at the edge.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    duration : float
-        Duration of the instant in s.
-    interrupted : bool
-        True if the ball was unloaded before this instant, so that lubricant covers the bore.
-    continuation : array (cells,), optional
-        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
-    """
-
-    pressure: Numbers
-    axis: Numbers
-    edge: Edge
-    spin: Numbers
-    duration: float
-    interrupted: bool = False
-    continuation: Numbers | None = None
-
-    @property
-    def signed_pressure(self) -> Numbers:
-        """Pressure (cells,) in MPa, negative outside where its continuation is known."""
-        return self.pressure if self.continuation is None else self.continuation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -271,17 +234,9 @@ def _carry_once(
 
 def _waves(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant]) -> list[FilmWave]:
     """Make the wave of each instant, with the film around the contacts of the whole cycle."""
-    contacts = [_contact(mesh, instant) for instant in instants]
-    speeds = [contact.speed(instant.spin) for contact, instant in zip(contacts, instants, strict=True)]
-    films = [
-        float(contact.edge.inlet_film(viscosity, numpy.asarray(speed)))
-        for contact, speed in zip(contacts, speeds, strict=True)
-    ]
-    flood = _FLOODED * max(films)
-    return [
-        FilmWave(contact=contact, viscosity=viscosity, spin=instant.spin, flood=flood)
-        for contact, instant in zip(contacts, instants, strict=True)
-    ]
+    waves = [FilmWave(contact=_contact(mesh, instant), viscosity=viscosity, spin=instant.spin) for instant in instants]
+    flood = _FLOODED * max(wave.inlet_film for wave in waves)
+    return [replace(wave, flood=flood) for wave in waves]
 
 
 def _contact(mesh: FilmMesh, instant: CycleInstant) -> DryContact:

@@ -197,11 +197,9 @@ def _continue_pressure(pressure: Numbers, mirrored: Numbers, outside: Numbers, e
 
 def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: int) -> DryContact:
     """Evaluate a contact of `Sphere` on a mesh about its force, as far as its outline."""
-    axis = numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
-    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
-    reach = float(numpy.arccos(numpy.clip((outline @ axis).min(), -1.0, 1.0)))
+    axis, angles = outline_angles(contact)
     width = half_angle / rings
-    edges = width * numpy.arange(ceil(reach / width) + _RINGS_OUTSIDE + 1)
+    edges = width * numpy.arange(ceil(float(angles.max()) / width) + _RINGS_OUTSIDE + 1)
     mesh = square_mesh(radius, edges, width).in_frame(frame_about(axis))
     return DryContact(
         mesh=mesh,
@@ -213,6 +211,13 @@ def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: 
         cut=bool(contact.edge_loaded),
         rings=rings,
     )
+
+
+def outline_angles(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
+    """Return the unit vector (3,) along the force of a contact, and the angles (n,) in rad from it to the outline."""
+    axis = numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
+    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
+    return axis, numpy.arccos(numpy.clip(outline @ axis, -1.0, 1.0))
 
 
 def square_mesh(radius: float, edges: Numbers, width: float) -> FilmMesh:
@@ -311,7 +316,6 @@ class ElasticSoftness:
 
     @property
     def _shape(self) -> tuple[int, int]:
-        """Numbers of rings and meridians."""
         return self.compliance.grid.rings, self.compliance.grid.meridians
 
     @cached_property

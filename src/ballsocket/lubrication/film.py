@@ -226,21 +226,15 @@ def film(
     allowed = "a cell is 0.0035 to 0.175 rad wide, which is 0.2 to 10 degrees"
     require("cell_width", width, radians(0.2) <= width <= radians(10.0), allowed)
     dry = dry_contact(contact, width)
-    fields = _without_entrainment(dry)
+    none = numpy.where(dry.inside, 0.0, numpy.nan)  # without entrainment
+    fields = {**_on_dry(dry), "thickness": none, "central": 0.0, "minimum": 0.0, "error": 0.0}
     if dry.speed(rate) > 1e-9 * dry.radius * numpy.linalg.norm(rate):
         fields = METHODS[method](contact, dry, rate, lubricant.viscosity_mpa)
     common = {"status": Status.OK, "displacement": numpy.full(3, numpy.nan), "dry": dry}
     return FilmResult(contact=contact, method=method, lubricant=lubricant, spin=rate, **{**common, **fields})
 
 
-def _without_entrainment(dry: DryContact) -> dict[str, Any]:
-    """Return the film of a ball that does not turn across the load: none."""
-    thickness = numpy.where(dry.inside, 0.0, numpy.nan)
-    return {**_on_dry(dry), "thickness": thickness, "central": 0.0, "minimum": 0.0, "error": 0.0}
-
-
 def _on_dry(dry: DryContact) -> dict[str, Any]:
-    """Return the cells and the pressure of a dry contact."""
     return {"directions": dry.mesh.direction, "areas": dry.mesh.area, "pressure": dry.pressure}
 
 
@@ -280,7 +274,8 @@ def _solve_wave(contact: Contact, dry: DryContact, spin: Numbers, viscosity: flo
     """Carry the inlet film over the dry contact by the kinematic wave."""
     wave = FilmWave(contact=dry, viscosity=viscosity, spin=spin)
     film, steady = wave.solve_steady()
-    central = _central(dry, film)
+    height = dry.mesh.direction @ dry.axis
+    central = float(film[height > height.max() - 1e-9].mean())  # of the cells next to the load
     return {
         **_on_dry(dry),
         "thickness": numpy.where(dry.inside, film, numpy.nan),
@@ -289,12 +284,6 @@ def _solve_wave(contact: Contact, dry: DryContact, spin: Numbers, viscosity: flo
         "error": dry.cell_error / dry.rings + dry.edge.wave_error(viscosity, dry.speed(spin), dry.contact_radius),
         "status": Status.OK if steady else Status.NOT_CONVERGED,
     }
-
-
-def _central(dry: DryContact, film: Numbers) -> float:
-    """Compute the mean film in mm of the cells next to the load."""
-    height = dry.mesh.direction @ dry.axis
-    return float(film[height > height.max() - 1e-9].mean())
 
 
 def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
@@ -317,7 +306,6 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
 
 
 def _number(value: float) -> float | None:
-    """Return a number, or None if it is not finite."""
     return float(value) if numpy.isfinite(value) else None
 
 

@@ -15,13 +15,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, pi, radians
-from typing import Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
 from .dry_contact import DryContact, frame_about, square_mesh
-from .inlet import SpringEdge
+from .inlet import Edge, SpringEdge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
@@ -31,33 +30,40 @@ _MARGIN_CELLS = 3  # number of rings of these cells around the contact
 _NO_ROTATION = 1e-9  # net rotation in rad that counts as none
 
 
-class LoadedInstant(Protocol):
-    """Interface of the pressure and motion of one instant, such as `CycleInstant`."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CycleInstant:
+    """Dry contact and motion at one instant of a cycle.
 
-    @property
-    def pressure(self) -> Numbers:
-        """Dry pressure in MPa: (cells,)."""
-        ...
+    Attributes
+    ----------
+    pressure : array (cells,)
+        Dry pressure in MPa.
+    axis : array (3,)
+        Unit vector along the load.
+    edge : Edge
+        Rise of the pressure at the edge.
+    spin : array (3,)
+        Rotation rate of the ball in rad/s.
+    duration : float
+        Duration of the instant in s.
+    interrupted : bool
+        True if the ball was unloaded before this instant, so that lubricant covers the bore.
+    continuation : array (cells,), optional
+        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
+    """
 
-    @property
-    def spin(self) -> Numbers:
-        """Rotation rate of the ball in rad/s: (3,)."""
-        ...
-
-    @property
-    def duration(self) -> float:
-        """Duration in s."""
-        ...
-
-    @property
-    def interrupted(self) -> bool:
-        """True if the ball was unloaded before."""
-        ...
+    pressure: Numbers
+    axis: Numbers
+    edge: Edge
+    spin: Numbers
+    duration: float
+    interrupted: bool = False
+    continuation: Numbers | None = None
 
     @property
     def signed_pressure(self) -> Numbers:
-        """Dry pressure in MPa, negative outside where its continuation is known: (cells,)."""
-        ...
+        """Pressure (cells,) in MPa, negative outside where its continuation is known."""
+        return self.pressure if self.continuation is None else self.continuation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,11 +73,11 @@ class FilmMotion:
     Attributes
     ----------
     mesh : FilmMesh
-    instants : sequence of LoadedInstant
+    instants : sequence of CycleInstant
     """
 
     mesh: FilmMesh
-    instants: Sequence[LoadedInstant]
+    instants: Sequence[CycleInstant]
 
     @cached_property
     def rotations(self) -> Numbers:
@@ -135,7 +141,9 @@ class FilmMotion:
         cells = numpy.arange(self.drift_mesh.cells)
         for rotation, instant in zip(self.rotations, self.instants, strict=True):
             nodes, weights = self.triangles.locate(self.drift_mesh.direction[cells] @ rotation.T)
-            cells = cells[(weights * _edge_level(instant)[nodes]).sum(axis=1) > 0]
+            continued = instant.continuation is not None
+            level = instant.signed_pressure if continued else (instant.pressure > 0) - _IN_CONTACT  # 0 at the edge
+            cells = cells[(weights * level[nodes]).sum(axis=1) > 0]
         mask[cells] = True
         return mask
 
@@ -228,13 +236,6 @@ def _with_neighbours(mesh: FilmMesh, mask: Numbers) -> Numbers:
         wider[mesh.second[mask[mesh.first]]] = wider[mesh.first[mask[mesh.second]]] = True
         mask = wider
     return numpy.flatnonzero(mask)
-
-
-def _edge_level(instant: LoadedInstant) -> Numbers:
-    """Return a field (cells,) that is positive in the contact and 0 at its edge."""
-    if instant.signed_pressure is instant.pressure:
-        return (instant.pressure > 0) - _IN_CONTACT
-    return instant.signed_pressure
 
 
 class Triangles:

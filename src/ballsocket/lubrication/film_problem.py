@@ -14,10 +14,9 @@ from ..core.arrays import Numbers
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
 from ..problem.gaps import LinearGap, select_gap
-from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about
+from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about, outline_angles
 from .inlet import SpringEdge
 from .mesh import FilmMesh, graded_rings, polar_mesh
-from .newton_system import Softness
 from .reynolds import FilmProblem, FilmState, develop_film, solve_steady
 
 if TYPE_CHECKING:
@@ -128,7 +127,6 @@ class ContactFilm:
         return state
 
     def _thickened(self, ratio: float) -> FilmProblem:
-        """Return the problem with its viscosity times a ratio."""
         return replace(self.problem, viscosity=ratio * self.problem.viscosity)
 
 
@@ -251,14 +249,8 @@ def _edge_bounds(contact: Contact) -> tuple[float, float]:
     """Compute the smallest and the largest angle in rad from the load to the edge of a contact."""
     if not isinstance(contact, OffAxisContact):
         return float(contact.half_angle), float(contact.half_angle)
-    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
-    angle = numpy.arccos(numpy.clip(outline @ _load_axis(contact), -1.0, 1.0))
-    return float(angle.min()), float(angle.max())
-
-
-def _load_axis(contact: OffAxisContact) -> Numbers:
-    """Compute the unit vector along the force of a contact."""
-    return numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
+    _, angles = outline_angles(contact)
+    return float(angles.min()), float(angles.max())
 
 
 def _bore_mask(contact: Contact, mesh: FilmMesh) -> Numbers:
@@ -271,7 +263,7 @@ def _bore_mask(contact: Contact, mesh: FilmMesh) -> Numbers:
 
 def _yielding(
     contact: Contact, dry: DryContact, grid: Grid, frame: Numbers, in_bore: Numbers
-) -> tuple[float, Softness | None]:
+) -> tuple[float, ElasticSoftness | None]:
     """Return the compliance of the springs in mm/MPa, and the displacements of elastic bodies."""
     from ..elasticity.off_axis.surfaces import ClosedShell  # slow to import
 

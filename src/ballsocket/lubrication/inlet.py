@@ -7,7 +7,7 @@ p = G s on springs, p = A sqrt(s) in elastic bodies, with the arc s from the edg
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy
 
@@ -27,50 +27,6 @@ edge: 0.79610, 0.79620 and 0.79620 on 243, 485 and 964 points. `tests/lubricatio
 """
 
 
-class Edge(Protocol):
-    """Interface of the edge of a dry contact, which sets the film."""
-
-    @property
-    def prescribed(self) -> bool:
-        """True if the inlet film is prescribed, False if it follows from the pressure within the contact."""
-        ...
-
-    @property
-    def outlet_ratio(self) -> float:
-        """Film at the constriction of the outlet over the film of its streamline."""
-        ...
-
-    @property
-    def leakage(self) -> float:
-        """Relative loss of film on the way across the contact to its thinnest point, which the inlet neglects."""
-        ...
-
-    @property
-    def cell_error(self) -> float:
-        """Relative error of the wave times the number of rings of cells, where the pressure ends at the edge."""
-        ...
-
-    def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
-        """Compute the film in mm at surface speeds U across the edge in mm/s; viscosity in MPa s."""
-        ...
-
-    def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
-        """Compute the length in mm over which the inlet changes the dry pressure."""
-        ...
-
-    def distance(self, pressure: Numbers) -> Numbers:
-        """Estimate the distance from the edge in mm at dry pressures in MPa."""
-        ...
-
-    def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
-        """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge."""
-        ...
-
-    def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
-        """Estimate the relative error of a thin film on a contact of a radius in mm."""
-        ...
-
-
 @dataclass(frozen=True, kw_only=True)
 class SpringEdge:
     """Edge of a contact on radial springs.
@@ -86,10 +42,10 @@ class SpringEdge:
     slope: float
     modulus: float
 
-    prescribed: ClassVar[bool] = False
-    outlet_ratio: ClassVar[float] = 1.0
-    leakage: ClassVar[float] = 0.4
-    cell_error: ClassVar[float] = 0.4
+    prescribed: ClassVar[bool] = False  # the inlet film follows from the pressure within the contact
+    outlet_ratio: ClassVar[float] = 1.0  # film at the constriction of the outlet over the film of its streamline
+    leakage: ClassVar[float] = 0.4  # relative loss of film on the way to its thinnest point, which the inlet neglects
+    cell_error: ClassVar[float] = 0.4  # of the wave, times the rings of cells, where the pressure ends at the edge
 
     def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the film in mm at surface speeds U across the edge in mm/s; viscosity in MPa s."""
@@ -129,7 +85,7 @@ class ElasticEdge:
     coefficient: float
     modulus: float
 
-    prescribed: ClassVar[bool] = True
+    prescribed: ClassVar[bool] = True  # for these constants see `SpringEdge`
     outlet_ratio: ClassVar[float] = OUTLET_RATIO
     leakage: ClassVar[float] = 0.1
     cell_error: ClassVar[float] = 0.0
@@ -161,3 +117,7 @@ class ElasticEdge:
     def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
         """Estimate the relative error of a thin film on a contact of a radius in mm: (ℓ/a)^(2/3)."""
         return float((self.inlet_length(viscosity, numpy.asarray(speed)) / radius) ** (2 / 3))
+
+
+Edge = SpringEdge | ElasticEdge
+"""Edge of a dry contact, which sets the film."""

@@ -11,6 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..elasticity.off_axis.directions import unit_vectors
 
 _NO_OFFSET = 1e-9  # angle in rad between two normals of a face that counts as none
 
@@ -194,7 +195,7 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
     last = slice(starts[-2], starts[-1])
     return FilmMesh(
         area=(radius**2 * -numpy.diff(numpy.cos(ring_edges)) * step)[ring],
-        direction=_directions(theta[ring], phi),
+        direction=numpy.stack(list(unit_vectors(theta[ring], phi)), axis=-1),
         first=first,
         second=second,
         width=width,
@@ -291,14 +292,6 @@ def _tangent_bases(directions: Numbers) -> Numbers:
 def _east(phi: Numbers) -> Numbers:
     """Compute the unit tangents (..., 3) towards growing azimuth."""
     return numpy.stack([-numpy.sin(phi), numpy.cos(phi), numpy.zeros_like(phi)], axis=-1)
-
-
-def _directions(theta: Numbers, phi: Numbers) -> Numbers:
-    """Compute unit vectors (..., 3) at polar and azimuth angles in rad."""
-    return numpy.stack(
-        numpy.broadcast_arrays(numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)),
-        axis=-1,
-    )
 
 
 def _meridian_tangents(theta: Numbers, phi: Numbers) -> Numbers:

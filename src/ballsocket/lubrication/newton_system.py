@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy
 import scipy.sparse
@@ -14,21 +14,11 @@ import scipy.sparse.linalg
 from ..core.arrays import Numbers
 from .balance import Balance
 
+if TYPE_CHECKING:
+    from .dry_contact import ElasticSoftness
+
 _RESIDUAL = 1e-5  # residual of GMRES relative to the right side; Newton's next step removes it
 _MAX_KRYLOV, _MAX_RESTARTS = 60, 3  # number of directions of GMRES, and largest number of times that it restarts
-
-
-class Softness(Protocol):
-    """Interface of the displacements of elastic surfaces under pressures."""
-
-    @property
-    def diagonal(self) -> Numbers:
-        """Displacement of each cell in mm per pressure on it in MPa (cells,)."""
-        ...
-
-    def __call__(self, pressure: Numbers) -> Numbers:
-        """Compute the displacements in mm (cells,) under pressures in MPa (cells,)."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -75,7 +65,7 @@ class NewtonSystem:
     unknown : CellUnknown
     compliance : array (cells,)
         Displacement of the surface per pressure on springs in mm/MPa.
-    softness : Softness or None
+    softness : ElasticSoftness or None
         Further displacements, of elastic bodies.
     direction : array (cells, 3)
         Normals of the cells; the film falls by `direction @ shift`.
@@ -88,7 +78,7 @@ class NewtonSystem:
     balance: Balance
     unknown: CellUnknown
     compliance: Numbers
-    softness: Softness | None
+    softness: ElasticSoftness | None
     direction: Numbers
     weight: Numbers
     missing_force: Numbers | None

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf, isfinite
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -18,7 +19,10 @@ from ..core.arrays import Numbers
 from .balance import add_storage, balance_cells
 from .carried_film import CentralShare, all_central
 from .mesh import FilmMesh
-from .newton_system import CellUnknown, NewtonSystem, Softness
+from .newton_system import CellUnknown, NewtonSystem
+
+if TYPE_CHECKING:
+    from .dry_contact import ElasticSoftness
 
 _LARGEST_FALL = 0.6  # largest part of a cell's film that one Newton step may take away
 _SHARE_UPDATES = 3  # number of Newton steps after which the share of central differences is fixed
@@ -73,7 +77,7 @@ class FilmProblem:
         Pressure of the lubricant at the rim in MPa.
     force : array (3,) or None
         Load on the ball in N; None holds the ball where it is.
-    softness : Softness, optional
+    softness : ElasticSoftness, optional
         Further displacements of the surfaces, of elastic bodies.
     central_share : CentralShare
         Share of central differences in the carried film at each face; the rest is the film upstream.
@@ -86,7 +90,7 @@ class FilmProblem:
     compliance: Numbers
     rim_pressure: Numbers
     force: Numbers | None = None
-    softness: Softness | None = None
+    softness: ElasticSoftness | None = None
     central_share: CentralShare = all_central
 
     def displacement(self, pressure: Numbers) -> Numbers:
@@ -174,7 +178,6 @@ def advance(
 
 
 def _is_physical(problem: FilmProblem, state: FilmState) -> bool:
-    """Return True if the film is positive in all cells and the pressure carries the load."""
     if not problem.thickness(state).min() > 0:
         return False
     if problem.force is None:

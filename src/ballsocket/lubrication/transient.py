@@ -29,7 +29,6 @@ _ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
 )
 """Carried film and number of parts of a time step, in the order of the attempts."""
 
-
 _MAX_EDGE_TRAVEL = 1.0
 """Largest movement of the edge in a time step, in inlet lengths, that implicit Euler resolves to about 3 %."""
 
@@ -292,7 +291,6 @@ def film_over_steps(
 
 
 def _finite(name: str, values: Array) -> Numbers:
-    """Return finite numbers as an array."""
     array = numpy.asarray(check_numeric(name, values), dtype=float)
     require(name, array, numpy.isfinite(array), "a number is finite")
     return array
@@ -307,5 +305,4 @@ def _edge_shifts(model: Model, joint: Joint, loads: Numbers) -> Numbers:
 
 
 def _press(model: Model, joint: Joint, force: float) -> Contact:
-    """Press one joint with one load in N."""
     return check_single_contact(model.press(joint, force=float(force)))
