@@ -13,16 +13,10 @@ from .mesh import FilmMesh
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Balance:
-    """Outflow of each cell in mm³/s, and its derivatives.
+    """Outflow of each cell in mm³/s, and its derivatives."""
 
-    Attributes
-    ----------
-    outflow : array (cells,)
-    by_pressure, by_void, by_thickness : sparse matrix (cells, cells)
-        Derivatives by pressure (MPa), void fraction and film thickness (mm).
-    """
-
-    outflow: Numbers
+    outflow: Numbers  # (cells,)
+    # (cells, cells), its derivatives by pressure (MPa), void fraction and film thickness (mm)
     by_pressure: scipy.sparse.csr_matrix
     by_void: scipy.sparse.csr_matrix
     by_thickness: scipy.sparse.csr_matrix

@@ -38,46 +38,24 @@ _FLOODED = 3.0  # film around the contacts, relative to the largest inlet film o
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleFilm:
-    """Film over a cycle, after a number of cycles.
+    """Film over a cycle, after a number of cycles."""
 
-    Attributes
-    ----------
-    area : array (cells,)
-        Areas of the cells in mm².
-    thickness : array (instants, cells)
-        Film thickness in mm; NaN outside the contacts.
-    core : array (instants, cells)
-        Mask of the film that fresh lubricant does not reach within a cycle.
-    central, minimum : array (instants,)
-        Film in mm at the load, and the smallest in the contact.
-    error : array (instants,)
-        Estimated relative error of the central and the smallest film: of the wave, of the cells, and of changes that
-        cells and instants smear.
-    refreshed_mean_error : float
-        Estimated relative error of the mean of `refreshed_mean` over the cycle. It contains the cells at the edge.
-    drift : float
-        Angle in rad by which the film turns in a cycle, while the ball returns.
-    cycles : int
-        Number of cycles from a flooded bore.
-    change : float
-        Mean change of the film in the last cycle, relative to the mean film.
-    settled : bool
-        True if the mean film of the core is expected to fall by at most 10 % while the number of cycles doubles.
-    smallest_settled : bool
-        True if the smallest film of the core is. It falls where the film turns about a point of the core.
-    """
-
-    area: Numbers
-    thickness: Numbers
-    core: Numbers
-    central: Numbers
-    minimum: Numbers
+    area: Numbers  # (cells,), areas of the cells in mm²
+    thickness: Numbers  # (instants, cells), film thickness in mm; NaN outside the contacts
+    core: Numbers  # (instants, cells), mask of the film that fresh lubricant does not reach within a cycle
+    central: Numbers  # (instants,), film in mm at the load
+    minimum: Numbers  # (instants,), smallest film in mm in the contact
+    # (instants,), estimated relative error of the central and the smallest film: of the wave, of the cells, and of
+    # changes that cells and instants smear
     error: Numbers
+    # estimated relative error of the mean of `refreshed_mean` over the cycle; it contains the cells at the edge
     refreshed_mean_error: float
-    drift: float
-    cycles: int
-    change: float
+    drift: float  # angle in rad by which the film turns in a cycle, while the ball returns
+    cycles: int  # number of cycles from a flooded bore
+    change: float  # mean change of the film in the last cycle, relative to the mean film
+    # True if the mean film of the core is expected to fall by at most 10 % while the number of cycles doubles
     settled: bool
+    # the same for the smallest film of the core, which falls where the film turns about a point of the core
     smallest_settled: bool
 
     @property

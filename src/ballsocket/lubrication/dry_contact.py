@@ -37,44 +37,20 @@ _CONTINUED_CELL_ERROR = 0.12
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DryContact:
-    """Pressure of a dry contact on a mesh, with its edge.
+    """Pressure of a dry contact on a mesh, with its edge."""
 
-    Attributes
-    ----------
-    mesh : FilmMesh
-        Cells of the bore at and around the contact, in the frame of the contact.
-    pressure : array (cells,)
-        Dry pressure in MPa.
-    edge : Edge
-        Rise of the pressure at the edge.
-    axis : array (3,)
-        Unit vector along the load.
-    half_angle : float
-        Half angle of the contact in rad.
-    radius : float
-        Radius of the bore in mm.
-    cut : bool
-        True if the rim of the bore cuts the contact.
-    rings : int
-        Number of rings of cells in the contact; 1 of a contact whose cells are not about its load.
-    region : array (cells,), optional
-        Mask of the cells that count as contact; those under pressure by default.
-    continuation : array (cells,), optional
-        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
-    level : array (cells,), optional
-        Field that is 0 at the edge and positive inside; the continued pressure by default.
-    """
-
-    mesh: FilmMesh
-    pressure: Numbers
-    edge: Edge
-    axis: Numbers
-    half_angle: float
-    radius: float
-    cut: bool = False
-    rings: int = 1
-    region: Numbers | None = None
+    mesh: FilmMesh  # cells of the bore at and around the contact, in the frame of the contact
+    pressure: Numbers  # (cells,), dry pressure in MPa
+    edge: Edge  # rise of the pressure at the edge
+    axis: Numbers  # (3,), unit vector along the load
+    half_angle: float  # half angle of the contact in rad
+    radius: float  # radius of the bore in mm
+    cut: bool = False  # True if the rim of the bore cuts the contact
+    rings: int = 1  # number of rings of cells in the contact; 1 of a contact whose cells are not about its load
+    region: Numbers | None = None  # (cells,), mask of the cells that count as contact; those under pressure by default
+    # (cells,), pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default
     continuation: Numbers | None = None
+    # (cells,), field that is 0 at the edge and positive inside; the continued pressure by default
     level: Numbers | None = None
 
     @property
@@ -242,23 +218,13 @@ class CupCorrection:
     A closed shell and a ball have the same compliance about every axis through the centre of the bore, so also about
     that of the film's mesh. The rim of a real cup, a chamfer or an interface that slides change the displacements by a
     field that is smooth in the contact. It is computed on the rings about the axis of the cup.
-
-    Attributes
-    ----------
-    operator : AxisymmetricOperator
-        From pressures in MPa on the grid of the cup to the difference of both displacements in mm.
-    grid : Grid
-        Rings about the axis of the cup.
-    to_cup : sparse matrix (cells of the cup, cells of the film)
-        Mean pressures of the cells of the cup.
-    to_film : sparse matrix (cells of the film, cells of the cup)
-        Interpolation of the displacements.
     """
 
+    # from pressures in MPa on the grid of the cup to the difference of both displacements in mm
     operator: AxisymmetricOperator
-    grid: Grid
-    to_cup: Any
-    to_film: Any
+    grid: Grid  # rings about the axis of the cup
+    to_cup: Any  # sparse (cells of the cup, cells of the film), mean pressures of the cells of the cup
+    to_film: Any  # sparse (cells of the film, cells of the cup), interpolation of the displacements
 
     @classmethod
     def of(cls, model: Sphere, joint: Joint, film_grid: Grid, frame: Numbers) -> CupCorrection:
@@ -290,21 +256,12 @@ class CupCorrection:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticSoftness:
-    """Displacements of bore and ball per pressure, on cells numbered as in `polar_mesh`.
+    """Displacements of bore and ball per pressure, on cells numbered as in `polar_mesh`."""
 
-    Attributes
-    ----------
-    compliance : Compliance
-        Compliance about the axis of the mesh, on a grid with the same number of cells in every ring.
-    mask : array (cells of the grid,)
-        Mask of the cells of the film; the others lie beyond the end of the bore.
-    correction : CupCorrection, optional
-        Further displacements of a cup that is not a closed shell.
-    """
-
+    # compliance about the axis of the mesh, on a grid with the same number of cells in every ring
     compliance: Compliance
-    mask: Numbers
-    correction: CupCorrection | None = None
+    mask: Numbers  # (cells of the grid,), mask of the cells of the film; the others lie beyond the end of the bore
+    correction: CupCorrection | None = None  # further displacements of a cup that is not a closed shell
 
     @classmethod
     def of(cls, surface: Surface, joint: Joint, grid: Grid) -> ElasticSoftness:

@@ -32,32 +32,15 @@ _NO_ROTATION = 1e-9  # net rotation in rad that counts as none
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleInstant:
-    """Dry contact and motion at one instant of a cycle.
+    """Dry contact and motion at one instant of a cycle."""
 
-    Attributes
-    ----------
-    pressure : array (cells,)
-        Dry pressure in MPa.
-    axis : array (3,)
-        Unit vector along the load.
-    edge : Edge
-        Rise of the pressure at the edge.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    duration : float
-        Duration of the instant in s.
-    interrupted : bool
-        True if the ball was unloaded before this instant, so that lubricant covers the bore.
-    continuation : array (cells,), optional
-        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
-    """
-
-    pressure: Numbers
-    axis: Numbers
-    edge: Edge
-    spin: Numbers
-    duration: float
-    interrupted: bool = False
+    pressure: Numbers  # (cells,), dry pressure in MPa
+    axis: Numbers  # (3,), unit vector along the load
+    edge: Edge  # rise of the pressure at the edge
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    duration: float  # duration of the instant in s
+    interrupted: bool = False  # True if the ball was unloaded before this instant, so that lubricant covers the bore
+    # (cells,), pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default
     continuation: Numbers | None = None
 
     @property
@@ -68,13 +51,7 @@ class CycleInstant:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmMotion:
-    """Rotation of the film over a cycle, half of that of the ball.
-
-    Attributes
-    ----------
-    mesh : FilmMesh
-    instants : sequence of CycleInstant
-    """
+    """Rotation of the film over a cycle, half of that of the ball."""
 
     mesh: FilmMesh
     instants: Sequence[CycleInstant]

@@ -72,27 +72,13 @@ _THINNING_STEPS = 30  # largest number of Newton steps from one viscosity to the
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactFilm:
-    """Reynolds' equation of a contact, with its start.
-
-    Attributes
-    ----------
-    problem : FilmProblem
-    start : FilmState
-        Dry contact with the ball lifted to a film.
-    inside : array (cells,)
-        Mask of the cells within the edge of the dry contact, where it is widest.
-    first_ring : int
-        Number of cells at the load.
-    thickening : float
-        Viscosity at which the start is a good estimate, over that of the lubricant.
-    settings : _MeshSettings
-    """
+    """Reynolds' equation of a contact, with its start."""
 
     problem: FilmProblem
-    start: FilmState
-    inside: Numbers
-    first_ring: int
-    thickening: float
+    start: FilmState  # dry contact with the ball lifted to a film
+    inside: Numbers  # (cells,), mask of the cells within the edge of the dry contact, where it is widest
+    first_ring: int  # number of cells at the load
+    thickening: float  # viscosity at which the start is a good estimate, over that of the lubricant
     settings: _MeshSettings
 
     @property

@@ -29,18 +29,10 @@ edge: 0.79610, 0.79620 and 0.79620 on 243, 485 and 964 points. `tests/lubricatio
 
 @dataclass(frozen=True, kw_only=True)
 class SpringEdge:
-    """Edge of a contact on radial springs.
+    """Edge of a contact on radial springs."""
 
-    Attributes
-    ----------
-    slope : float
-        Slope G of the dry pressure at the edge in MPa/mm.
-    modulus : float
-        Foundation modulus K in MPa/mm.
-    """
-
-    slope: float
-    modulus: float
+    slope: float  # slope G of the dry pressure at the edge in MPa/mm
+    modulus: float  # foundation modulus K in MPa/mm
 
     prescribed: ClassVar[bool] = False  # the inlet film follows from the pressure within the contact
     outlet_ratio: ClassVar[float] = 1.0  # film at the constriction of the outlet over the film of its streamline
@@ -72,18 +64,10 @@ class SpringEdge:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticEdge:
-    """Edge of a contact of elastic bodies.
+    """Edge of a contact of elastic bodies."""
 
-    Attributes
-    ----------
-    coefficient : float
-        Coefficient A of the dry pressure at the edge, p = A sqrt(s), in MPa/mm^½.
-    modulus : float
-        Effective modulus E* of both bodies in MPa.
-    """
-
-    coefficient: float
-    modulus: float
+    coefficient: float  # coefficient A of the dry pressure at the edge, p = A sqrt(s), in MPa/mm^½
+    modulus: float  # effective modulus E* of both bodies in MPa
 
     prescribed: ClassVar[bool] = True  # for these constants see `SpringEdge`
     outlet_ratio: ClassVar[float] = OUTLET_RATIO

@@ -57,31 +57,15 @@ class CellUnknown:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NewtonSystem:
-    """Linear balance of a Newton step for the unknowns of the cells and the shift of the ball.
-
-    Attributes
-    ----------
-    balance : Balance
-    unknown : CellUnknown
-    compliance : array (cells,)
-        Displacement of the surface per pressure on springs in mm/MPa.
-    softness : ElasticSoftness or None
-        Further displacements, of elastic bodies.
-    direction : array (cells, 3)
-        Normals of the cells; the film falls by `direction @ shift`.
-    weight : array (3, cells)
-        Force of a unit pressure on each cell in mm².
-    missing_force : array (3,) or None
-        Load less the integral of the pressure in N; None holds the ball where it is.
-    """
+    """Linear balance of a Newton step for the unknowns of the cells and the shift of the ball."""
 
     balance: Balance
     unknown: CellUnknown
-    compliance: Numbers
-    softness: ElasticSoftness | None
-    direction: Numbers
-    weight: Numbers
-    missing_force: Numbers | None
+    compliance: Numbers  # (cells,), displacement of the surface per pressure on springs in mm/MPa
+    softness: ElasticSoftness | None  # further displacements, of elastic bodies
+    direction: Numbers  # (cells, 3), normals of the cells; the film falls by `direction @ shift`
+    weight: Numbers  # (3, cells), force of a unit pressure on each cell in mm²
+    missing_force: Numbers | None  # (3,), load less the integral of the pressure in N; None holds the ball where it is
 
     def solve(self) -> tuple[Numbers, Numbers]:
         """Solve for the unknown of each cell and the shift of the ball in mm."""
@@ -144,23 +128,12 @@ class NewtonSystem:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _SpringsFactor:
-    """Sparse factor of the balance of the cells, bordered by the three displacements of the ball.
-
-    Attributes
-    ----------
-    factor : SuperLU
-    scale : array (cells,)
-        Factors of the rows before the factorisation.
-    by_shift : array (cells, 3)
-        Derivative of the outflow by the shift of the ball.
-    load : array (3, cells)
-        Derivative of the force on the ball by the unknowns.
-    """
+    """Sparse factor of the balance of the cells, bordered by the three displacements of the ball."""
 
     factor: scipy.sparse.linalg.SuperLU
-    scale: Numbers
-    by_shift: Numbers
-    load: Numbers
+    scale: Numbers  # (cells,), factors of the rows before the factorisation
+    by_shift: Numbers  # (cells, 3), derivative of the outflow by the shift of the ball
+    load: Numbers  # (3, cells), derivative of the force on the ball by the unknowns
 
     @cached_property
     def _response(self) -> Numbers:

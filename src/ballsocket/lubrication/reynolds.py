@@ -37,60 +37,28 @@ _MAX_LOAD_ERROR = 1e-3  # largest error of the balance of the load, relative to 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmState:
-    """Pressure, vapour and position of the ball.
+    """Pressure, vapour and position of the ball."""
 
-    Attributes
-    ----------
-    pressure : array (cells,)
-        Pressure above the vapour pressure in MPa.
-    void : array (cells,)
-        Fraction of the film that is vapour, 0 to 1.
-    eccentricity : array (3,)
-        Displacement of the ball from the centre of the cup in mm.
-    converged : bool
-    iterations : int
-    """
-
-    pressure: Numbers
-    void: Numbers
-    eccentricity: Numbers
+    pressure: Numbers  # (cells,), pressure above the vapour pressure in MPa
+    void: Numbers  # (cells,), fraction of the film that is vapour, 0 to 1
+    eccentricity: Numbers  # (3,), displacement of the ball from the centre of the cup in mm
     converged: bool = True
     iterations: int = 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmProblem:
-    """Film between a ball and a cup whose surface yields in proportion to the pressure.
-
-    Attributes
-    ----------
-    mesh : FilmMesh
-    viscosity : float
-        Viscosity in MPa s.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    gap : array (cells,)
-        Film thickness in mm of the centred ball on the undeformed cup.
-    compliance : array (cells,)
-        Displacement of the surface per pressure in mm/MPa; zeros on a rigid cup.
-    rim_pressure : array (rim faces,)
-        Pressure of the lubricant at the rim in MPa.
-    force : array (3,) or None
-        Load on the ball in N; None holds the ball where it is.
-    softness : ElasticSoftness, optional
-        Further displacements of the surfaces, of elastic bodies.
-    central_share : CentralShare
-        Share of central differences in the carried film at each face; the rest is the film upstream.
-    """
+    """Film between a ball and a cup whose surface yields in proportion to the pressure."""
 
     mesh: FilmMesh
-    viscosity: float
-    spin: Numbers
-    gap: Numbers
-    compliance: Numbers
-    rim_pressure: Numbers
-    force: Numbers | None = None
-    softness: ElasticSoftness | None = None
+    viscosity: float  # viscosity in MPa s
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    gap: Numbers  # (cells,), film thickness in mm of the centred ball on the undeformed cup
+    compliance: Numbers  # (cells,), displacement of the surface per pressure in mm/MPa; zeros on a rigid cup
+    rim_pressure: Numbers  # (rim faces,), pressure of the lubricant at the rim in MPa
+    force: Numbers | None = None  # (3,), load on the ball in N; None holds the ball where it is
+    softness: ElasticSoftness | None = None  # further displacements of the surfaces, of elastic bodies
+    # share of central differences in the carried film at each face; the rest is the film upstream
     central_share: CentralShare = all_central
 
     def displacement(self, pressure: Numbers) -> Numbers:

@@ -31,22 +31,12 @@ _FLOODED = 4.0  # film around the contact, relative to the inlet film; the flow 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmWave:
-    """Flow of a thin film over a dry contact.
-
-    Attributes
-    ----------
-    contact : DryContact
-    viscosity : float
-        Viscosity in MPa s.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    flood : float
-        Film around the contact in mm, and largest film within it; by default four times the inlet film.
-    """
+    """Flow of a thin film over a dry contact."""
 
     contact: DryContact
-    viscosity: float
-    spin: Numbers
+    viscosity: float  # viscosity in MPa s
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    # film around the contact in mm, and largest film within it; by default four times the inlet film
     flood: float = 0.0
 
     @cached_property
