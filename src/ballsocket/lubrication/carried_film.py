@@ -36,5 +36,4 @@ def smooth_share(mesh: FilmMesh, spin: Numbers, thickness: Numbers) -> Numbers:
     """
     across = numpy.abs(thickness[mesh.second] - thickness[mesh.first])
     step = across / numpy.minimum(thickness[mesh.second], thickness[mesh.first])
-    share: Numbers = numpy.clip((_FRONT - step) / (_FRONT - _SMOOTH), 0.0, 1.0)
-    return share
+    return numpy.asarray(numpy.clip((_FRONT - step) / (_FRONT - _SMOOTH), 0.0, 1.0))

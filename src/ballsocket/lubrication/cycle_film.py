@@ -263,7 +263,6 @@ def _summarise(
     drift: _Drift,
     cycles: int,
 ) -> CycleFilm:
-    """Collect central and smallest films, and the errors, of the last cycle."""
     central = _at_loads(motion, waves, thickness)
     return CycleFilm(
         area=motion.mesh.area,

@@ -61,8 +61,7 @@ class DryContact:
     @property
     def inside(self) -> Numbers:
         """Mask of the cells in contact (cells,)."""
-        mask: Numbers = self.pressure > 0 if self.region is None else self.region
-        return mask
+        return numpy.asarray(self.pressure > 0 if self.region is None else self.region)
 
     @property
     def signed_pressure(self) -> Numbers:
@@ -250,8 +249,7 @@ class CupCorrection:
     def __call__(self, pressure: Numbers) -> Numbers:
         """Compute the difference of the displacements in mm (cells,) under pressures in MPa (cells,)."""
         on_cup = (self.to_cup @ pressure).reshape(1, self.grid.rings, self.grid.meridians)
-        displacement: Numbers = self.to_film @ self.operator(on_cup).ravel()
-        return displacement
+        return numpy.asarray(self.to_film @ self.operator(on_cup).ravel())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -299,7 +299,7 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
         "thickness": film,
         "central": float(case.central(film)),
         "minimum": float(case.minimum(film)),
-        "error": case.error,
+        "error": case.settings.error,
         "status": Status.OK if state.converged else Status.NOT_CONVERGED,
         "displacement": state.eccentricity,
     }

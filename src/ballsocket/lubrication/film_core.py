@@ -73,8 +73,7 @@ class FilmMotion:
         """Rotation vector (3,) in rad by which the film turns in a cycle."""
         from scipy.spatial.transform import Rotation  # slow to import
 
-        vector: Numbers = Rotation.from_matrix(self.rotations[-1]).as_rotvec()
-        return vector
+        return numpy.asarray(Rotation.from_matrix(self.rotations[-1]).as_rotvec())
 
     @property
     def duration(self) -> float:
@@ -146,8 +145,7 @@ class FilmMotion:
         nodes, weights = self.triangles.locate(directions)
         gradient = self.mesh.gradient(field, nodes.ravel()).reshape(*nodes.shape, 3)
         steps = self.mesh.radius * (directions[:, None, :] - self.mesh.direction[nodes])
-        values: Numbers = (weights * (field[nodes] + (gradient * steps).sum(axis=2) / 2)).sum(axis=1)
-        return values
+        return numpy.asarray((weights * (field[nodes] + (gradient * steps).sum(axis=2) / 2)).sum(axis=1))
 
     @cached_property
     def _drift_triangles(self) -> Triangles:

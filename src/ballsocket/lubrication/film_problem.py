@@ -81,20 +81,13 @@ class ContactFilm:
     thickening: float  # viscosity at which the start is a good estimate, over that of the lubricant
     settings: _MeshSettings
 
-    @property
-    def error(self) -> float:
-        """Estimated relative error of the films."""
-        return self.settings.error
-
     def central(self, thickness: Numbers) -> Numbers:
         """Compute the mean film in mm at the load from films (..., cells)."""
-        mean: Numbers = thickness[..., : self.first_ring].mean(axis=-1)
-        return mean
+        return numpy.asarray(thickness[..., : self.first_ring].mean(axis=-1))
 
     def minimum(self, thickness: Numbers) -> Numbers:
         """Compute the smallest film in mm within the edge of the dry contact from films (..., cells)."""
-        least: Numbers = thickness[..., self.inside].min(axis=-1)
-        return least
+        return numpy.asarray(thickness[..., self.inside].min(axis=-1))
 
     def solve_steady(self) -> FilmState:
         """Solve for the steady film, from thick films to thin ones.
@@ -243,8 +236,7 @@ def _bore_mask(contact: Contact, mesh: FilmMesh) -> Numbers:
     """Return the mask of the cells within the bore (cells,): where the rim cuts the mesh, the film ends."""
     if not isinstance(contact, OffAxisContact):
         return numpy.ones(mesh.cells, dtype=bool)
-    mask: Numbers = mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint)))
-    return mask
+    return numpy.asarray(mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint))))
 
 
 def _yielding(
@@ -277,8 +269,7 @@ def _gap(contact: Contact, mesh: FilmMesh) -> Numbers:
     reach = mesh.direction @ displacement
     shape = kind(clearance=clearance, socket_radius=radius)
     angle = numpy.arccos(numpy.clip(reach / length, -1.0, 1.0))
-    gap: Numbers = reach - shape.displacement(angle, length - clearance) + depth
-    return gap
+    return numpy.asarray(reach - shape.displacement(angle, length - clearance) + depth)
 
 
 def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> int:

@@ -84,8 +84,7 @@ class NewtonSystem:
         if self.softness is not None:
             film = film + self.softness(pressure)
         balance = self.balance
-        change: Numbers = balance.by_pressure @ pressure + balance.by_thickness @ film + balance.by_void @ void
-        return change
+        return numpy.asarray(balance.by_pressure @ pressure + balance.by_thickness @ film + balance.by_void @ void)
 
     def _factorise(self) -> _SpringsFactor:
         """Factorise the system in which each elastic cell yields under its own pressure alone."""
@@ -142,8 +141,7 @@ class _SpringsFactor:
 
     def _solve_cells(self, right_side: Numbers) -> Numbers:
         """Solve for the unknowns at a fixed ball."""
-        solution: Numbers = self.factor.solve((self.scale * right_side.T).T)
-        return solution
+        return numpy.asarray(self.factor.solve((self.scale * right_side.T).T))
 
     def solve(self, right_side: Numbers, load_error: Numbers | None) -> tuple[Numbers, Numbers]:
         """Solve for unknowns and shift; without a load the ball stays where it is."""

@@ -29,8 +29,6 @@ _SHARE_UPDATES = 3  # number of Newton steps after which the share of central di
 _GROWTH = 1.8  # growth of the time steps on the way to the steady film
 _MAX_TIME_STEPS = 40  # number of time steps on the way to the steady film after which it counts as not converged
 _EASY_ITERATIONS = 10  # number of Newton steps up to which the next time step grows
-
-
 _FARTHEST = 100.0  # displacement of the ball, relative to the largest gap, at which an iteration ends without a result
 _MAX_LOAD_ERROR = 1e-3  # largest error of the balance of the load, relative to the load
 

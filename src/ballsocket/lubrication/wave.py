@@ -280,8 +280,7 @@ def limited_slope(twice_mean: Numbers, centred: Numbers) -> Numbers:
     It is their harmonic mean, and 0 where their signs differ.
     """
     product = (twice_mean - centred) * centred
-    slope: Numbers = 2 * numpy.maximum(product, 0.0) / (twice_mean + _TINY)
-    return slope
+    return numpy.asarray(2 * numpy.maximum(product, 0.0) / (twice_mean + _TINY))
 
 
 def godunov_flow(
