@@ -141,7 +141,6 @@ def accuracies(
 
 
 def _concatenate(first: Joint, second: Joint) -> Joint:
-    """Concatenate two families of joints, both of arrays."""
     pairs = zip(first.numbers(), second.numbers(), strict=True)
     shapes = [numpy.ones(len(joint.ball_radius)) for joint in (first, second)]
     return first.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])

@@ -97,7 +97,6 @@ def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
 
 
 def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:
-    """Convert three numbers to floats."""
     first, second, third = (float(number) for number in numbers)
     return first, second, third
 

@@ -87,7 +87,6 @@ class Figure:
 
 
 def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
-    """Merge panels with the same title."""
     groups: dict[str, list[Panel]] = {}
     for panel in panels:
         groups.setdefault(panel.title, []).append(panel)
@@ -103,7 +102,6 @@ FIT = "Eq. (18), Table 3"
 
 
 def _curve(model: str, case: str, x: Any, y: Any) -> FigureLine:
-    """Create a curve from arrays."""
     return FigureLine(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
 
 

@@ -72,7 +72,6 @@ def full_plan() -> Plan:
 def _ledgers(
     reference: Model, claims: tuple[Claim, ...], elsewhere: tuple[Claim, ...]
 ) -> dict[str, Mapping[str, Piece]]:
-    """Return the parts of the claims: those of the paper and those of other authors."""
     return {
         part: {row.identifier: Summary(partial(_judge, row.name, reference)) for row in table}
         for part, table in (("claims", claims), ("elsewhere", elsewhere))

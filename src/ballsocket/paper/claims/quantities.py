@@ -256,7 +256,6 @@ def dense_elements(size: float = 0.05) -> FiniteElement:
 
 
 def _element_count(contact: Contact) -> float:
-    """Return the number of elements of a meshed contact."""
     assert isinstance(contact, MeshedContact)
     return float(contact.mesh.elements)
 
