@@ -305,10 +305,6 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
     }
 
 
-def _number(value: float) -> float | None:
-    return float(value) if numpy.isfinite(value) else None
-
-
 METHODS: dict[str, Callable[[Contact, DryContact, Numbers, float], dict[str, Any]]] = {
     "inlet": _solve_inlet,
     "wave": _solve_wave,
