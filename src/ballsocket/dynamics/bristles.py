@@ -159,7 +159,6 @@ def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array,
 
 
 def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
-    """Compute the dot product of two deflections."""
     return sum(
         (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
         first_deflection[0] * second_deflection[0],
