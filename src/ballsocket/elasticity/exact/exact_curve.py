@@ -63,7 +63,6 @@ class ExactCurve(ModelWrapper):
         object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of all joints and loads on the Chebyshev curve of each joint."""
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
         )

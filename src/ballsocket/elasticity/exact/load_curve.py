@@ -83,7 +83,6 @@ class LoadCurve:
         )
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
-        """Solve the contacts under loads by Newton's method; return them and the relative residuals."""
         state = self.state(angle, points)
         if kind == "half_angle":
             return state, numpy.zeros_like(load)
@@ -96,7 +95,6 @@ class LoadCurve:
         return state, abs(residual)
 
     def _clip_angles(self, angle: Numbers) -> Numbers:
-        """Clip angles to the largest computed one, and replace NaN by it."""
         return numpy.where(angle < self._max_computed_angle, angle, self._max_computed_angle)
 
     @cached_property
@@ -129,7 +127,6 @@ class LoadCurve:
 
     @cached_property
     def _knot_state(self) -> AbelState:
-        """Contacts at all tabulated half angles, valid or not."""
         return AbelState(kernel=self.kernel, gap=self.gap, intervals=_KNOT_INTERVALS)
 
     @cached_property

@@ -59,15 +59,13 @@ _FIT_STEPS = 8
 
 def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedState, Array]:
     """Solve for the dimensionless contact under a positive load, and its last correction; NaN beyond the tables."""
-    inverse, scaled = INVERSES[kind], curves.scaled_load(kind, load)
+    inverse, scaled = INVERSES[kind], load * curves.load_scale(kind)
     steps = RIGID_STEPS if curves.joint.ball is None else ELASTIC_STEPS
 
     def residual(root: Array) -> Pair:
-        """Compute the residual of the load at a trial value of the unknown, and its slope."""
         return inverse.residual(root, scaled, curves.curve)
 
     def solve(root: Array) -> Array:
-        """Take the Newton steps from a first value of the unknown."""
         for _ in range(steps):
             root = limited_newton_step(root, *residual(root))
         return root
