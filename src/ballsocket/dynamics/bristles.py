@@ -128,8 +128,7 @@ def bristle_forces(
     return force, released_rate, dissipated
 
 
-_TRANSITION_SPEED_SQUARED = 1e-30
-"""Square of the transition speed in (mm/s)²; too small to change the slip."""
+_TRANSITION_SPEED_SQUARED = 1e-30  # square of the transition speed in (mm/s)²; too small to change the slip
 
 
 def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:

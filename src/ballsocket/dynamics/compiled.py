@@ -169,8 +169,7 @@ def load_from_contact(centre, contact, velocity, spin, constants):  # type: igno
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
-_BLOCK_SIZE = 256
-"""Number of states whose energies are computed before their loads; the separate loops are faster."""
+_BLOCK_SIZE = 256  # number of states whose energies are computed before their loads; the separate loops are faster
 
 
 @cache

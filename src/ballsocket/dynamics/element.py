@@ -34,8 +34,7 @@ from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tens
 
 _log = logging.getLogger("ballsocket.dynamics")
 
-_DEPTHS = 129
-"""Number of indentations at which validity is evaluated."""
+_DEPTHS = 129  # number of indentations at which validity is evaluated
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)

@@ -114,8 +114,7 @@ def energy_derivatives_of_number(
     return energy, force, (force * (exponent - 1.0) + energy * inverse_indentation * curvature) * inverse_indentation
 
 
-_MIN_INDENTATION = 1e-150
-"""Smallest indentation in mm whose energy does not underflow in an intermediate result."""
+_MIN_INDENTATION = 1e-150  # smallest indentation in mm whose energy does not underflow in an intermediate result
 
 
 def energy_derivatives_of_array(
@@ -190,8 +189,7 @@ def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbe
     return initial_work + numpy.cumsum(numpy.diff(log_depths) * ((forces * gauss_indentations) @ weights))
 
 
-_GAUSS_NODES = 16
-"""Number of Gauss points between two indentations."""
+_GAUSS_NODES = 16  # number of Gauss points between two indentations
 
 
 @dataclass(frozen=True, kw_only=True)

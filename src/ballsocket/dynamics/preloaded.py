@@ -39,8 +39,7 @@ NODES = 7
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
 
-_PIECES = 24
-"""Number of polynomial pieces of a curve over ln e."""
+_PIECES = 24  # number of polynomial pieces of a curve over ln e
 
 _SHALLOWEST, _LARGEST_STRAIN = 0.02, 0.1
 """First tabulated displacement over the interference, and last one over the thickness of the liner."""
@@ -253,8 +252,7 @@ def _weighted_sum(weights: Sequence[float], values: Any) -> Array:
 _WEIGHTS = numpy.round(numpy.linalg.inv(numpy.vander(node_cosines(), increasing=True)), 12).tolist()
 """Coefficients of the Lagrange polynomials w_j(t): (powers, nodes), the lowest power first."""
 
-_CENTRE = 1e-9
-"""Displacement in mm below which the direction of the displacement does not matter."""
+_CENTRE = 1e-9  # displacement in mm below which the direction of the displacement does not matter
 
 
 def displacement_from_equilibrium(

@@ -82,8 +82,7 @@ def simulate(
     return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
 
-_MAX_STEPS = 1e8
-"""Largest number of steps of a simulation."""
+_MAX_STEPS = 1e8  # largest number of steps of a simulation
 
 
 @dataclass(frozen=True)
@@ -188,8 +187,7 @@ def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"
 
 
-_MASS_RANGE = (1e-100, 1e100)
-"""Range of masses and moments of inertia whose products are neither zero nor infinite."""
+_MASS_RANGE = (1e-100, 1e100)  # range of masses and moments of inertia whose products are neither zero nor infinite
 
 
 def _check_mass_or_inertia(name: str, value: Any) -> float:
@@ -206,8 +204,7 @@ def _check_positive_number(name: str, value: Any) -> float:
     return checked
 
 
-_TOLERANCE = 1e-10
-"""Relative and absolute tolerance of the integration."""
+_TOLERANCE = 1e-10  # relative and absolute tolerance of the integration
 
 _STATE_SIZE = 15
 """Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""

@@ -49,8 +49,7 @@ _FITTED_RANGES = (
 )
 """Range of joints for the fitted estimate of the changes on a hemisphere."""
 
-_SAFETY = 2.0
-"""Safety factor on that estimate: the 1st percentile of estimate over change is 0.6."""
+_SAFETY = 2.0  # safety factor on that estimate: the 1st percentile of estimate over change is 0.6
 
 
 @dataclass(frozen=True, kw_only=True)

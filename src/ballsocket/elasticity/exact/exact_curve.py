@@ -94,5 +94,4 @@ def exact_stress_ratio(joint: Joint, half_angle: Array) -> Array:
     return contact.von_mises / contact.max_pressure
 
 
-_CLEARANCE = 1e-3
-"""Clearance over the socket radius of the joint whose stress ratio stands for all clearances."""
+_CLEARANCE = 1e-3  # clearance over the socket radius of the joint whose stress ratio stands for all clearances

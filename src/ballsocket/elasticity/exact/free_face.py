@@ -27,8 +27,7 @@ MODES = 40
 POLAR_TERMS = 12
 """Number of polynomials along the meridian."""
 
-_RADIAL = 5
-"""Degree of the polynomials through each layer."""
+_RADIAL = 5  # degree of the polynomials through each layer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -24,11 +24,8 @@ from .kernel import Kernel
 from .load_curve import LoadCurve, knot_window
 from .modes import ElasticBall, Socket
 
-_ITERATIONS = 3
-"""Fixed-point iterations before the extrapolation."""
-
-_POINTS = 48
-"""Points of integration over a contact."""
+_ITERATIONS = 3  # fixed-point iterations before the extrapolation
+_POINTS = 48  # points of integration over a contact
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

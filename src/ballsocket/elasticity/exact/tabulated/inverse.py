@@ -41,20 +41,14 @@ from .curves import (
     tabulated_state,
 )
 
-_LOG_OFFSET = -1.0
-"""Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
-
-_END = _LOG_OFFSET + 1e-12
-"""Upper end of the unknown, which includes the widest contact itself."""
+_LOG_OFFSET = -1.0  # value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero
+_END = _LOG_OFFSET + 1e-12  # upper end of the unknown, which includes the widest contact itself
 
 RIGID_STEPS, ELASTIC_STEPS = 1, 3
 """Newton steps from the start to errors below 1e-6, with a rigid ball and with an elastic one; the start has none."""
 
-_START_COUNTS = (12, 13, 20)
-"""Numbers of Chebyshev polynomials of ν, R2/L and half angle in the start."""
-
-_FIT_STEPS = 8
-"""Newton steps to the half angles that the start is fitted to."""
+_START_COUNTS = (12, 13, 20)  # numbers of Chebyshev polynomials of ν, R2/L and half angle in the start
+_FIT_STEPS = 8  # Newton steps to the half angles that the start is fitted to
 
 
 def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedState, Array]:
@@ -80,11 +74,8 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
     return shift_state(state, shift), shift
 
 
-_SCALAR_STEPS = 16
-"""Largest number of Newton steps from the estimate for a single press."""
-
-_SCALAR_TOLERANCE = 1e-4
-"""Newton step of a single press after which its error is below 1e-7."""
+_SCALAR_STEPS = 16  # largest number of Newton steps from the estimate for a single press
+_SCALAR_TOLERANCE = 1e-4  # Newton step of a single press after which its error is below 1e-7
 
 
 def half_angle_of_root(root: Array) -> Array:
