@@ -147,7 +147,6 @@ def _corner(radius: float, angle: float) -> Numbers:
 
 
 def _draw_ball(axes: Axes, contact: OffAxisContact) -> None:
-    """Draw the displaced ball."""
     from matplotlib.patches import Circle
 
     middle = float(contact.displacement @ lateral(contact)), float(contact.displacement[2])

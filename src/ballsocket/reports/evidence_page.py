@@ -146,22 +146,14 @@ def _joint_picture(record: Record) -> dict[str, str]:
 def _matrix_pictures(record: Record) -> list[dict[str, str]]:
     """Return a picture of each mapped result over the matrix; none for a single case."""
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
-    return [
-        {
-            "address": svg_address(figures.matrix_figure(record, name)),
-            "title": NAMES[name].title,
-            "caption": _map_caption(record, name),
-        }
-        for name in names
-    ]
-
-
-def _map_caption(record: Record, name: str) -> str:
-    """Describe the figure of a result over the matrix."""
-    limited = any(limit["name"] == name for limit in record["limits"])
-    crosses = " × marks cases that break the limit." if limited else ""
-    title = NAMES[name].title
-    return f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
+    limited = {limit["name"] for limit in record["limits"]}
+    pictures = []
+    for name in names:
+        title, crosses = NAMES[name].title, " × marks cases that break the limit." if name in limited else ""
+        caption = f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
+        address = svg_address(figures.matrix_figure(record, name))
+        pictures.append({"address": address, "title": title, "caption": caption})
+    return pictures
 
 
 def _cases(rows: list[Record]) -> dict[str, Any]:

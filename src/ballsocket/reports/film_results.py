@@ -15,7 +15,7 @@ from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
 from .cup_map import on_page
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, new_figure
-from .terminal import console, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def _draw_section(axes: Axes, film: FilmResult) -> None:
 
 def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
     """Print films of several models as a table, with their notes."""
-    terminal = console(units)
+    terminal = Terminal(units)
     print_joint(terminal, films[0].contact.joint)
     first = films[0]
     rate, viscosity = float(numpy.linalg.norm(first.spin)), 1e3 * first.lubricant.viscosity

@@ -17,7 +17,7 @@ from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
 from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
-from .terminal import console, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -109,8 +109,7 @@ def _draw_curve(
             axes.axhline(factor * end, label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
     if quantity.name == "edge_distance" and numpy.nanmin(shown, initial=0.0) < 0:
         axes.axhline(0.0, linestyle=":", color=INK, linewidth=1.8, label="the contact reaches the rim")
-    axes.set_xlabel(CUP[name].label())
-    axes.set_ylabel(label)
+    axes.set(xlabel=CUP[name].label(), ylabel=label)
     axes.grid(alpha=0.3)
 
 
@@ -141,8 +140,7 @@ def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Qua
     _hatch(axes, x, y, ~orientations.held.T, _LOST_BALL_HATCH, "the load leaves the bore")
     _hatch(axes, x, y, numpy.isposinf(values).T, _RIM_HATCH, "the rim digs in: unbounded pressure")
     _mark(axes, orientations)
-    axes.set_xlabel(CUP["inclination"].label())
-    axes.set_ylabel(CUP["anteversion"].label())
+    axes.set(xlabel=CUP["inclination"].label(), ylabel=CUP["anteversion"].label())
     axes.set_title(label, fontsize=10)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
@@ -258,7 +256,7 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (),
 
     Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
     """
-    terminal = console(units)
+    terminal = Terminal(units)
     print_joint(terminal, orientations.joint)
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}

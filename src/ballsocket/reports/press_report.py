@@ -84,42 +84,6 @@ class PressedDesign:
         return self.file.joint.name or "A ball in its socket"
 
 
-def press_report(
-    comparison: Comparison,
-    file: JointFile,
-    leading: str,
-    units: Units = Units.SI,
-    surroundings: LocalUncertainty | None = None,
-    day: date | None = None,
-    command: str = "",
-) -> str:
-    """Return the page of single contacts of one joint as HTML.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    file : JointFile
-        Joint with its cup, load and head of the report.
-    leading : str
-        Name of the model whose contact gets the verdict; the exact one if there is one.
-    units : Units
-        Units of every number.
-    surroundings : LocalUncertainty, optional
-        Sensitivity of the results to each number and to the tolerances.
-    day : date, optional
-        Date of the page; by default today.
-    command : str
-        Options of the command line that compute the results from the joint file.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
-    """
-    design = PressedDesign(comparison=comparison, file=file, leading=leading, uncertainty=surroundings, command=command)
-    return designs_report([design], units, day)
-
-
 def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
     """Return the page of one design, or of several with a table that compares them, as HTML.
 

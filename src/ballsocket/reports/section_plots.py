@@ -227,8 +227,7 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     high = max(part.position[1].max() for part in section.parts)
     axes.set_xlim(-extent, extent)
     axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
-    axes.set_xlabel("distance from the load axis [mm]")
-    axes.set_ylabel("height [mm]")
+    axes.set(xlabel="distance from the load axis [mm]", ylabel="height [mm]")
     axes.spines[["top", "right"]].set_visible(False)
 
 

@@ -42,7 +42,7 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
 
     Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
     """
-    terminal, ordered = console(units), _exact_first(comparison)
+    terminal, ordered = Terminal(units), _exact_first(comparison)
     print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
@@ -86,7 +86,7 @@ def _omitted_text(comparison: Comparison, shown: Sequence[Column], units: Units)
 
 def print_curve(contact: Contact) -> None:
     """Print contacts at increasing loads as a table of the main quantities, and the notes."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
     columns = [column for column in COLUMNS if column.attribute in HEADLINE]
     values = [column.values_of(contact) for column in columns]
@@ -106,11 +106,6 @@ class Terminal(Console):
     def __init__(self, units: Units = Units.SI) -> None:
         super().__init__(highlight=False)
         self.units = units
-
-
-def console(units: Units = Units.SI) -> Terminal:
-    """Create a console that does not colour numbers."""
-    return Terminal(units)
 
 
 def text_table(
