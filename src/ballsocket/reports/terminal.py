@@ -120,7 +120,7 @@ def text_table(
     for head in heads:
         table.add_column(Text(head), justify="left" if head in left else "right", no_wrap=head not in folded)
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(Text(cell) if isinstance(cell, str) else cell for cell in row))  # "[nm]" is no style of rich
     return table
 
 
