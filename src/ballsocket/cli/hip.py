@@ -99,7 +99,11 @@ def hip(
     runs = []
     stems = _short_names(files)
     for stem, name, hip_file in zip(stems, _titles(hip_files, stems), hip_files, strict=True):
-        history = _simulate(hip_file, store / stem if store is not None and several else store, name if several else "")
+        folder, shown_name = (store and store / stem, f" {name}") if several else (store, "")
+        with _progress_bar(f"wearing{shown_name}", hip_file.cycles, "cycles") as progress:
+            history = hip_file.use.after(
+                hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=folder
+            )
         runs.append(HipRun(name=name, history=history, bands=_uncertainty_bands(hip_file, history, engine)))
     if as_json:
         _echo_runs(runs, files)
@@ -133,13 +137,6 @@ def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
     """Return the name that each file states, else its short name; equal names have the short name beside."""
     names = [hip_file.name or stem for hip_file, stem in zip(hip_files, stems, strict=True)]
     return [f"{name} ({stem})" if names.count(name) > 1 else name for name, stem in zip(names, stems, strict=True)]
-
-
-def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
-    with _progress_bar(f"wearing {name}".strip(), hip_file.cycles, "cycles") as progress:
-        return hip_file.use.after(
-            hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=store
-        )
 
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:

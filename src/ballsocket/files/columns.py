@@ -299,10 +299,6 @@ def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_CO
     choice : HeadChoice
         Columns that get another name, or that are not used.
 
-    Returns
-    -------
-    NumberTable
-
     Raises
     ------
     ValueError

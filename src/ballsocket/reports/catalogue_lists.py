@@ -68,13 +68,11 @@ _NARROW = 72  # columns: lists are paragraphs below
 
 def print_models(models: Iterable[ModelInfo]) -> None:
     """Print the catalogue of models with validity and sources."""
-    rows = [(model.name, model.title, _validity_text(model), _sources(model)) for model in models]
+    rows = []
+    for model in models:
+        promised = [] if model.promise is None else [f"{model.promise}:"]
+        rows.append((model.name, model.title, "\n".join([*promised, *map(str, model.validity)]), _sources(model)))
     _print_rows(("model", "title", "valid for", "source"), rows, gap=1)
-
-
-def _validity_text(model: ModelInfo) -> str:
-    promised = [] if model.promise is None else [f"{model.promise}:"]
-    return "\n".join([*promised, *map(str, model.validity)])
 
 
 def print_presets() -> None:

@@ -39,10 +39,6 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     units : Units
         Units of every number.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError

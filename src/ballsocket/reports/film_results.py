@@ -42,16 +42,7 @@ _CORE_LEVEL = 0.5
 
 
 def film_figure(film: FilmResult) -> Figure:
-    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load.
-
-    Parameters
-    ----------
-    film : FilmResult
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load."""
     figure = new_figure(10.4, 4.6)
     map_axes, section_axes = figure.subplots(1, 2)
     colours = _draw_map(map_axes, film)
@@ -161,16 +152,7 @@ def _cells(film: FilmResult) -> list[str]:
 
 
 def cycle_film_figure(film: Film) -> Figure:
-    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact.
-
-    Parameters
-    ----------
-    film : Film
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact."""
     figure = new_figure(10.4, 7.2 if film.carried else 3.8)
     if film.carried is None:
         _draw_course(figure.subplots(), film)

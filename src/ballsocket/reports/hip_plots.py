@@ -232,10 +232,6 @@ def course_figure(phase: Numbers, courses: Mapping[str, Numbers], title: str) ->
     courses : mapping of str to array (instants,)
         Values by the label of their axis; NaN where there is none.
     title : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     figure = new_figure(6.4, 1.6 * len(courses) + 0.9)
     panels = figure.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]

@@ -11,7 +11,6 @@ from ..hip.bands import Bands
 from ..hip.film import WAVE_NOTE
 from ..hip.hamrock_dowson import CONFORMITY_NOTE
 from ..hip.history import History
-from ..hip.rim import ClosestApproach
 from . import hip_plots
 from .figure_files import figure_bytes
 from .hip_tables import (
@@ -169,18 +168,12 @@ def _first_cycle(history: History) -> str:
 def _rim_approach(history: History) -> str:
     """Describe the least distance to the rim with instant and location, new and at the end, and the radiograph."""
     nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
-    sentences = (
-        f"{stage} the contact {_distance_words(worst)} at {worst.location}"
-        for stage, worst in nearest.items()
-        if worst is not None
-    )
+    sentences = []
+    for stage, worst in nearest.items():
+        if worst is not None:
+            near = f"comes within {worst.distance:.3g} mm of the rim"
+            words = near if worst.distance > 0 else f"reaches the rim ({worst.kind})"
+            sentences.append(f"{stage} the contact {words} at {worst.location}")
     distances = "; ".join(sentences)
     line = radiograph_line(history)
     return f"{distances}. {line[:1].upper()}{line[1:]}" if distances else "nothing is pressed"
-
-
-def _distance_words(worst: ClosestApproach) -> str:
-    """Describe the distance to the rim, or the kind of contact there."""
-    if worst.distance > 0:
-        return f"comes within {worst.distance:.3g} mm of the rim"
-    return f"reaches the rim ({worst.kind})"

@@ -44,10 +44,6 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     limits : sequence of Limit
         Limits that are drawn as dashed lines.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -68,8 +64,10 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     if is_map:
         axes_pair[1].set_ylabel("")
     _draw_legend(figure)
-    fixed = "" if is_map else f"; {_fixed_angle(orientations)}"
-    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}") + fixed
+    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}")
+    if not is_map:
+        name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
+        title += f"; {name} {_degree_text(float(getattr(orientations, name)[0]))}"
     figure.suptitle(title, fontsize=10, parse_math=False)
     return figure
 
@@ -111,11 +109,6 @@ def _draw_curve(
         axes.axhline(0.0, linestyle=":", color=INK, linewidth=1.8, label="the contact reaches the rim")
     axes.set(xlabel=CUP[name].label(), ylabel=label)
     axes.grid(alpha=0.3)
-
-
-def _fixed_angle(orientations: Orientations) -> str:
-    name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
-    return f"{name} {_degree_text(float(getattr(orientations, name)[0]))}"
 
 
 def _draw_legend(figure: Figure) -> None:
@@ -186,14 +179,10 @@ def _mark(axes: Axes, orientations: Orientations) -> None:
 
 def load_text(orientations: Orientations) -> str:
     """Describe the load with its direction in the body."""
-    load = ", ".join(f"{CONTACT[name].symbol} {_number(name, value)}" for name, value in orientations.load.items())
+    shown = {CONTACT[name].symbol: (value, CONTACT[name].shown) for name, value in orientations.load.items()}
+    load = ", ".join(f"{symbol} {value * unit.factor:.4g} {unit.text}" for symbol, (value, unit) in shown.items())
     along = ", ".join(f"{part:g}" for part in orientations.model.direction)
     return f"{load} along ({along}); arc of cover {degrees(orientations.model.cup.arc_of_cover):.4g}°"
-
-
-def _number(name: str, value: float) -> str:
-    unit = CONTACT[name].shown
-    return f"{value * unit.factor:.4g} {unit.text}"
 
 
 LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")

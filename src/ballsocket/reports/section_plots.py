@@ -85,10 +85,6 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
         Contact whose pressure and load are drawn.
     units : Units
         Units of the dimensions.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     figure = new_figure(6.6, 5.4)
     axes = figure.add_subplot()

@@ -299,8 +299,9 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
         points = (_point_text(study, end.place, units) for end in (low, high))
         table.add_row(name, _unit(name, units), *numbers, *points)
     print_columns(Terminal(), table)
-    verdicts = _verdict_counts(report.verdicts)
-    Terminal().print(f"{study.status.size} points, {report.valid} of them valid{verdicts}")
+    verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
+    yields = f"; yield stress: {verdicts}" if verdicts else ""
+    Terminal().print(f"{study.status.size} points, {report.valid} of them valid{yields}")
     for note in report.notes(study):
         Terminal().print(f"  {note}")
 
@@ -319,12 +320,6 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
         reason = undecided_reason(study, limits)
         Terminal().print(f"undecided: {reason}; the table has the kept designs only")
     _print_held(held_in(study))
-
-
-def _verdict_counts(counts: Mapping[Verdict, int]) -> str:
-    """Write the verdicts on the yield stress with their numbers of points; empty without a utilisation."""
-    numbers = ", ".join(f"{count} {verdict.word}" for verdict, count in counts.items() if count)
-    return f"; yield stress: {numbers}" if numbers else ""
 
 
 def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
