@@ -80,6 +80,10 @@ class ImplantOptions:
         Path | None,
         typer.Option(help="Points of a worn bore: .xyz, .csv, .txt, .asc, .pts, or a mesh of the bore. Default: none."),
     ] = None
+    head_diameter: Annotated[
+        str | None,
+        typer.Option(help="Measured diameter in mm of the head that wore the bore of --worn. Default: not known."),
+    ] = None
     stl_units: Annotated[str, typer.Option(help="Unit of the meshes and points: mm, cm, m, um or in.")] = "mm"
     placed: Annotated[
         str | None,
@@ -99,7 +103,13 @@ class ImplantOptions:
 
     def read_wear(self) -> WornBore | None:
         """Measure the wear of the points, if there are any."""
-        return None if self.worn is None else measure_wear(read_points(self.worn, units=self.stl_units))
+        if self.worn is None:
+            if self.head_diameter is not None:
+                raise ValueError("--head-diameter is the head that wore a measured bore: it needs --worn")
+            return None
+        diameter = None if self.head_diameter is None else parse("head_diameter", self.head_diameter, Kind.LENGTH)
+        head_radius = None if diameter is None else diameter / 2.0
+        return measure_wear(read_points(self.worn, units=self.stl_units), head_radius=head_radius)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -278,9 +278,13 @@ _STANDARD_GRAVITY = 9.80665  # m/s²
 _TYPICAL_MASS = 75.0  # kg, of a patient
 _BODY_WEIGHT = re.compile(r"(%?)\s*(?:BW|body\s*weights?)", re.IGNORECASE)
 
+_MARKED = re.compile(r"\s*[-+]?\d+[,' \u202f\u00a0]\d")
+
 
 def _refusal(name: str, value: Any, kind: str) -> str:
     hint = _weight_hint(str(value)) if kind == Kind.FORCE else ""
+    if _MARKED.match(str(value)):
+        hint = "; write a decimal point, and nothing between thousands"
     return f"{name} = {shown(value)} is not {Kind(kind).example}{hint}"
 
 

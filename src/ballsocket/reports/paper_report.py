@@ -17,8 +17,7 @@ from ..core.quantities import JOINT
 from ..core.storage.atomic_files import write_atomically, write_csv, write_text
 from ..model_catalogue import judge
 from ..models.foundation import HessForsbach
-from ..paper.accuracy import RANGES, THICKNESS
-from ..paper.cases import OUTER_RADII, RATIOS
+from ..paper.cases import OUTER_RADII, RANGES, RATIOS, THICKNESS
 from ..paper.claims import SCALE
 from ..paper.curves import FIT, Figure, Map, Panel
 from ..paper.plan import ELEMENTS

@@ -99,9 +99,7 @@ def make_folder(path: Path) -> None:
 def write_atomically(path: Path) -> Iterator[Path]:
     """Yield a draft path to write to, and move the draft to `path` at the end.
 
-    An error in the block discards the draft. The draft has the same file name.
-
-    The draft is a file or a folder.
+    The draft is a file or a folder of the same name. An error in the block discards it.
 
     Raises
     ------
@@ -274,13 +272,13 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
         Computes the array.
     """
     path = _cached_path(key)
-    array = _read_cached_array(path)
-    if array is None:
-        array = compute()
-        with suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_arrays(path, rings=array)
-            _remove_oldest_files(path.parent)
+    with suppress(OSError, ValueError, KeyError):  # missing or damaged
+        return read_arrays(path)["rings"]
+    array = compute()
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_arrays(path, rings=array)
+        _remove_oldest_files(path.parent)
     return array
 
 
@@ -290,7 +288,6 @@ def is_array_cached(key: object) -> bool:
 
 
 def _cached_path(key: object) -> Path:
-    """Return the path of the cached array of these inputs."""
     return cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
 
 
@@ -303,14 +300,6 @@ def cache_folder() -> Path:
     if folder:
         return Path(folder)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
-
-
-def _read_cached_array(path: Path) -> Numbers | None:
-    """Read a cached array; return None if the file is missing or damaged."""
-    try:
-        return read_arrays(path)["rings"]
-    except (OSError, ValueError, KeyError):
-        return None
 
 
 def _remove_oldest_files(folder: Path) -> None:
