@@ -271,11 +271,7 @@ def sensitivity(
         correlation=parse_correlations(correlation or ()),
     )
     output.print(
-        lambda: {
-            "version": __version__,
-            "model": result.attrs["model"],
-            **study_tables.sensitivity_summary(result),
-        },
+        lambda: {"version": __version__, "model": result.attrs["model"], **study_tables.sensitivity_summary(result)},
         lambda: study_tables.print_sensitivity(result),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))

@@ -215,13 +215,8 @@ class PressedJoint:
             result["friction"] = None if contact is None else friction.torques(contact)
         pull_out = None if self.pulled is None else self.pulled.summary()
         preload = {} if self.wear_depth_to_loosen is None else {"wear_depth_to_loosen": self.wear_depth_to_loosen}
-        further = {
-            "assumptions": self.assumptions,
-            "preload": preload,
-            "orientation": self.orientation,
-            "pull_out": pull_out,
-        }
-        return {**summary, **{key: part for key, part in further.items() if part}}
+        further = {"assumptions": self.assumptions, "preload": preload, "orientation": self.orientation}
+        return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:
@@ -292,7 +287,7 @@ def press(
         friction_options.check_pull_out(models, assumed_arc)
         if off_axis.name not in models:
             direction_options.refuse()
-        if off_axis.name in models:
+        else:
             sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
             timed: Any = TimedModel(with_gap(sphere, model_options.gap))
             models[off_axis.name] = timed
