@@ -138,7 +138,6 @@ class ForceElementOptions:
 
 
 def _number_in(target: str, name: str, text: str, example: str) -> float:
-    """Convert the text of a number, with or without a unit, to a target unit."""
     try:
         number, unit = split_quantity(text)
         return convert(number, parse_units(unit or target), parse_units(target))
@@ -204,19 +203,15 @@ def fmu(
     check_ending("out", out, ".fmu")
     unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(out), version=fmi)
     written = unit.write(out)
-    echo_path(written.path, _rest_text(unit.element))
+    start = ""
+    if isinstance(unit.element, PreloadedElement):
+        position = ", ".join(f"{1e-3 * component:.4g}" for component in unit.element.rest_position)
+        start = f": starts at rest, with force 0 at position ({position}) m"
+    echo_path(written.path, start)
     for extra_path in write_cross_check(unit.element, out):
         echo_path(extra_path)
     if written.missing:
         print_message(written.missing)
-
-
-def _rest_text(element: ForceElement | PreloadedElement) -> str:
-    """Return the start position of a preloaded ball as text; empty for other joints."""
-    if not isinstance(element, PreloadedElement):
-        return ""
-    position = ", ".join(f"{1e-3 * component:.4g}" for component in element.rest_position)
-    return f": starts at rest, with force 0 at position ({position}) m"
 
 
 def identifier(path: Path) -> str:

@@ -184,16 +184,8 @@ class FrictionOptions:
 class PressedJoint:
     """Results of one joint of the command, with remarks on their computation.
 
-    Attributes
-    ----------
-    assumptions : list of str
-        Sentences on what was assumed for a preloaded joint.
-    wear_depth_to_loosen : float or None
-        Uniform wear of the bore in mm at which a preloaded joint loses its preload; None without a preload.
-    orientation : dict
-        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
-    pulled : PullOut or None
-        Pull-out force, if requested.
+    For a preloaded joint, `assumptions` are sentences, and `wear_depth_to_loosen` is the uniform wear of the bore in mm
+    that ends the preload. `orientation` has the angles of the cup in degrees by each definition, if it has any.
     """
 
     file: JointFile

@@ -228,19 +228,9 @@ class NumberTable:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CellTable:
-    """Cells below column heads.
+    """Cells below column heads, each row with its line in the file; Excel files have cells of numbers.
 
-    Attributes
-    ----------
-    title : str
-        Name of the file, and of the sheet if there are several.
-    heads : tuple of Head
-    rows : sequence of (int, sequence of str or float)
-        Line in the file and cells of each row; Excel files have cells of numbers.
-    separator : str
-        Separator of cells in text.
-    left_out : mapping of str to int
-        Numbers of lines that are not used, by their description.
+    `title` has the sheet if there are several. `left_out` has the numbers of lines that are not used, by description.
     """
 
     title: str

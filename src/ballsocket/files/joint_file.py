@@ -419,11 +419,7 @@ _PARTS = ("liner", "ball", "shell", "backing", "cup")
 def joint_in(tables: JointTables, folder: Path) -> JointFile:
     """Create the joint of a file from its tables, or read it by its name.
 
-    Parameters
-    ----------
-    tables : JointTables
-        `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
-    folder : Path
+    `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
 
     Raises
     ------

@@ -56,14 +56,9 @@ Rows = list[tuple[str, ...]]
 
 
 def evidence_page(record: Record, digest: str = "") -> str:
-    """Return the page of a pack as HTML.
+    """Return the page of a pack as HTML, from the record of `evidence.pack.gather_evidence`.
 
-    Parameters
-    ----------
-    record : mapping
-        See `evidence.pack.gather_evidence`.
-    digest : str
-        Digest of the pack, see `evidence.folder.digest`; omitted if empty.
+    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty.
     """
     with default_style():
         context = {

@@ -41,15 +41,7 @@ _HEADS = {
 
 @dataclass(frozen=True, kw_only=True)
 class HipRun:
-    """Simulation of one hip with its name and its bands, if any.
-
-    Attributes
-    ----------
-    name : str
-        Name of the hip in tables and figures, such as that of its file.
-    history : History
-    bands : Bands, optional
-    """
+    """Simulation of one hip with its bands, if any, and its name in tables and figures, such as that of its file."""
 
     name: str
     history: History

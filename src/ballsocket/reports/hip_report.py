@@ -63,23 +63,12 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
 def hip_report(
     history: History, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
 ) -> str:
-    """Return the page of a wear simulation as HTML.
-
-    Parameters
-    ----------
-    history : History
-        Results of the simulation.
-    bands : Bands, optional
-        Bands of patients who differ, for two more sections.
-    name : str
-        Name of the hip in the title.
-    details : ReportDetails
-        Head of the page.
+    """Return the page of a wear simulation as HTML; bands of patients who differ have two more sections.
 
     Raises
     ------
     ValueError, OSError
-        As `pages.logo_address`.
+        As `pages.logo_address`, for the logo of the head.
     """
     sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
     if history.use.unworn_checks:

@@ -64,15 +64,7 @@ def check_page_path(path: Path) -> None:
 
 
 def write_page(page: str, path: Path, paper: str = "A4") -> None:
-    """Write a page as HTML, or printed as PDF, according to the ending of `path`.
-
-    Parameters
-    ----------
-    page : str
-        HTML that needs no other file.
-    path : Path
-    paper : str
-        Size of the sheets of a PDF: "A4" or "letter".
+    """Write a page as HTML, or printed as PDF on sheets of "A4" or "letter", according to the ending of `path`.
 
     Raises
     ------

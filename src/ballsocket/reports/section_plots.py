@@ -73,18 +73,9 @@ _LINE = {"color": INK, "linewidth": 0.8}
 
 
 def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units: Units = Units.SI) -> Figure:
-    """Draw ball, liner and backing in section, with diameters, magnified clearance, pressure and load.
+    """Draw ball, liner and backing in section, with diameters, magnified clearance, and pressure and load of a contact.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint without axes.
-    cup : Cup
-        Cup with the arc of cover.
-    contact : Contact, optional
-        Contact whose pressure and load are drawn.
-    units : Units
-        Units of the dimensions.
+    The joint has no axes, and the cup the arc of cover.
     """
     figure = new_figure(6.6, 5.4)
     axes = figure.add_subplot()
