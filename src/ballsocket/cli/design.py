@@ -12,6 +12,7 @@ import typer
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
+from ..core.storage.atomic_files import check_ending
 from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
@@ -249,7 +250,7 @@ def sensitivity(
     """
     output.check()
     if csv is not None:
-        study_tables.check_csv(csv)
+        check_ending("", csv, ".csv")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     file = joint_options.read(joint)
     distributions = _unique(map(parse_distribution, spread))
@@ -270,11 +271,7 @@ def sensitivity(
         correlation=parse_correlations(correlation or ()),
     )
     output.print(
-        lambda: {
-            "version": __version__,
-            "model": result.attrs["model"],
-            **study_tables.sensitivity_summary(result),
-        },
+        lambda: {"version": __version__, "model": result.attrs["model"], **study_tables.sensitivity_summary(result)},
         lambda: study_tables.print_sensitivity(result),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))

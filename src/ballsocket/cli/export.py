@@ -14,7 +14,7 @@ import typer
 
 from ..core.checks import known_name, shown
 from ..core.kinds import Kind
-from ..core.storage.atomic_files import check_parent_folder
+from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
@@ -138,7 +138,6 @@ class ForceElementOptions:
 
 
 def _number_in(target: str, name: str, text: str, example: str) -> float:
-    """Convert the text of a number, with or without a unit, to a target unit."""
     try:
         number, unit = split_quantity(text)
         return convert(number, parse_units(unit or target), parse_units(target))
@@ -201,36 +200,18 @@ def fmu(
     """
     from ..export.fmu import Fmu, write_cross_check
 
-    path = checked_path(out, ".fmu")
-    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(path), version=fmi)
-    written = unit.write(path)
-    echo_path(written.path, _rest_text(unit.element))
-    for extra_path in write_cross_check(unit.element, path):
+    check_ending("out", out, ".fmu")
+    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(out), version=fmi)
+    written = unit.write(out)
+    start = ""
+    if isinstance(unit.element, PreloadedElement):
+        position = ", ".join(f"{1e-3 * component:.4g}" for component in unit.element.rest_position)
+        start = f": starts at rest, with force 0 at position ({position}) m"
+    echo_path(written.path, start)
+    for extra_path in write_cross_check(unit.element, out):
         echo_path(extra_path)
     if written.missing:
         print_message(written.missing)
-
-
-def _rest_text(element: ForceElement | PreloadedElement) -> str:
-    """Return the start position of a preloaded ball as text; empty for other joints."""
-    if not isinstance(element, PreloadedElement):
-        return ""
-    position = ", ".join(f"{1e-3 * component:.4g}" for component in element.rest_position)
-    return f": starts at rest, with force 0 at position ({position}) m"
-
-
-def checked_path(out: Path, ending: str) -> Path:
-    """Return a path that can be written and has the required ending.
-
-    Raises
-    ------
-    ValueError
-        Another ending, or a missing folder.
-    """
-    if out.suffix.lower() != ending:
-        raise ValueError(f"out {str(out)!r} must end in {ending}")
-    check_parent_folder(out)
-    return out
 
 
 def identifier(path: Path) -> str:
@@ -281,7 +262,7 @@ def deck(
     The folder also gets the results to expect.
     """
     if out.suffix.lower() in _FILE_ENDINGS:
-        checked_path(out, ".inp")
+        check_ending("out", out, ".inp")
     file = joint_options.read(joint)
     if file.joint.clearance < 0:
         raise ValueError(

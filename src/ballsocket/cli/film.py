@@ -151,11 +151,7 @@ def film(
         for contact in _contacts(film_options, file, load.read(file), direction_options, cup_options)
     ]
     output.print(
-        lambda: {
-            "version": __version__,
-            "joint": file.joint.summary(),
-            "results": [film.summary() for film in films],
-        },
+        lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
         lambda: print_films(films, units),
     )
     output.draw(lambda: film_figure(films[0]))

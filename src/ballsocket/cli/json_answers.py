@@ -24,7 +24,10 @@ from ..problem.presets import joints, materials
 from ..reports.catalogue_lists import source_summary
 
 Answer = Mapping[str, Any]
+"""JSON answer of a command."""
+
 Arguments = Sequence[str]
+"""Name of a command, and its arguments."""
 
 
 def echo_json(answer: Answer) -> None:
@@ -44,13 +47,6 @@ def echo_json(answer: Answer) -> None:
 
 def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
     """Add `valid`, `error`, `notes`, `sources` and `next` to an answer that lacks them.
-
-    Parameters
-    ----------
-    answer : mapping
-        JSON answer of a command.
-    arguments : sequence of str
-        Name of the command and its arguments.
 
     Returns
     -------
@@ -75,17 +71,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
 
 
 def several_joints(answers: Sequence[Answer], names: Sequence[str], arguments: Arguments) -> dict[str, Any]:
-    """Return the answer of `press` for several joints: each with its provenance, and all their notes and next steps.
-
-    Parameters
-    ----------
-    answers : sequence of mapping
-        JSON answer of each joint.
-    names : sequence of str
-        Files or presets of the joints, as in the arguments.
-    arguments : sequence of str
-        Name of the command and its arguments.
-    """
+    """Return the answer of `press` for several joints: each with its provenance, and all their notes and next steps."""
     joints: list[dict[str, Any]] = []
     for answer, name in zip(answers, names, strict=True):
         single = [part for part in arguments if part == name or part not in names]
@@ -145,15 +131,7 @@ class NextStep:
 
 
 def next_steps(answer: Answer, arguments: Arguments) -> list[NextStep]:
-    """Return the commands that are useful after a JSON answer.
-
-    Parameters
-    ----------
-    answer : mapping
-        JSON answer with `valid` and `notes`.
-    arguments : sequence of str
-        Name of the command and its arguments.
-    """
+    """Return the commands that are useful after a JSON answer with `valid` and `notes`."""
     if not arguments or arguments[0] not in _NEXT_STEPS:
         return []
     return list(_NEXT_STEPS[arguments[0]](answer, [argument for argument in arguments if argument != "--json"]))
@@ -212,7 +190,11 @@ def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
     has_load = any(name in point for name in ("force", "indentation"))
     load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
-    replaced = (option for option in _JOINT_OPTIONS if _dimensions_of_option(option) & set(map(_dimension_of, point)))
+    varied, replaced = set(map(_dimension_of, point)), []
+    for option in _JOINT_OPTIONS:
+        name = option.removeprefix("--").replace("-", "_")
+        if {_dimension_of(name), _dimension_of(f"liner_{name}")} & varied:
+            replaced.append(option)
     step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
     yield NextStep(step, "the best joint by every model")
 
@@ -221,12 +203,6 @@ def _dimension_of(name: str) -> str:
     """Return the dimension that a parameter determines: of a diameter, the radius."""
     dimension = DIAMETERS.get(name, name)
     return "liner_thickness" if dimension == "outer_radius" else dimension
-
-
-def _dimensions_of_option(option: str) -> set[str]:
-    """Return the dimensions that an option of the joint may determine."""
-    name = option.removeprefix("--").replace("-", "_")
-    return {_dimension_of(name), _dimension_of(f"liner_{name}")}
 
 
 def _as_option(name: str, value: float) -> Iterator[str]:

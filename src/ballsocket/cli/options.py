@@ -342,10 +342,8 @@ def choose_executor(workers: int | None, scheduler: str | None, default: Engine)
 
 # --- groups of options in the signature of a command ---
 
-Command = Callable[..., None]
 
-
-def expand_groups(command: Command) -> Command:
+def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command whose groups of options are expanded to single parameters, for typer.
 
     typer makes an option of each parameter in the signature of a function. A group is a dataclass whose fields are

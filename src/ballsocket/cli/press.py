@@ -184,16 +184,8 @@ class FrictionOptions:
 class PressedJoint:
     """Results of one joint of the command, with remarks on their computation.
 
-    Attributes
-    ----------
-    assumptions : list of str
-        Sentences on what was assumed for a preloaded joint.
-    wear_depth_to_loosen : float or None
-        Uniform wear of the bore in mm at which a preloaded joint loses its preload; None without a preload.
-    orientation : dict
-        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
-    pulled : PullOut or None
-        Pull-out force, if requested.
+    For a preloaded joint, `assumptions` are sentences, and `wear_depth_to_loosen` is the uniform wear of the bore in mm
+    that ends the preload. `orientation` has the angles of the cup in degrees by each definition, if it has any.
     """
 
     file: JointFile
@@ -215,13 +207,8 @@ class PressedJoint:
             result["friction"] = None if contact is None else friction.torques(contact)
         pull_out = None if self.pulled is None else self.pulled.summary()
         preload = {} if self.wear_depth_to_loosen is None else {"wear_depth_to_loosen": self.wear_depth_to_loosen}
-        further = {
-            "assumptions": self.assumptions,
-            "preload": preload,
-            "orientation": self.orientation,
-            "pull_out": pull_out,
-        }
-        return {**summary, **{key: part for key, part in further.items() if part}}
+        further = {"assumptions": self.assumptions, "preload": preload, "orientation": self.orientation}
+        return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:
@@ -292,7 +279,7 @@ def press(
         friction_options.check_pull_out(models, assumed_arc)
         if off_axis.name not in models:
             direction_options.refuse()
-        if off_axis.name in models:
+        else:
             sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
             timed: Any = TimedModel(with_gap(sphere, model_options.gap))
             models[off_axis.name] = timed

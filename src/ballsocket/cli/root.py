@@ -52,13 +52,8 @@ class CommandEntry:
     hidden: bool = False
 
 
-_ENTRIES: dict[str, CommandEntry] = {}
-"""Entries of the commands by name, in the order of the help."""
-
-
-def add_commands(entries: Mapping[str, CommandEntry]) -> None:
-    """Add commands to the program without importing them."""
-    _ENTRIES.update(entries)
+ENTRIES: dict[str, CommandEntry] = {}
+"""Commands of the program by name, in the order of the help; they are imported when they are called."""
 
 
 class PlainCommand(TyperCommand):
@@ -112,7 +107,7 @@ class CommandGroup(TyperGroup):
         imported = dict(self.commands)
         self.commands = {
             name: imported.get(name) or Placeholder(name=name, help=entry.summary, hidden=entry.hidden)
-            for name, entry in _ENTRIES.items()
+            for name, entry in ENTRIES.items()
         }
 
     def get_params(self, ctx: Any) -> list[Any]:
@@ -128,7 +123,7 @@ class CommandGroup(TyperGroup):
         """Return a command by its name, imported if necessary, with the arguments that follow it."""
         name = args[0]
         if isinstance(self.commands.get(name), Placeholder):
-            import_module(_ENTRIES[name].module)
+            import_module(ENTRIES[name].module)
             imported: Any = typer.main.get_command(self.program)
             self.commands[name] = imported.commands[name]
         return super().resolve_command(ctx, args)
@@ -149,13 +144,13 @@ CommandGroup.program = app
 
 def load_commands() -> dict[str, Callable[..., None]]:
     """Import all commands, and return their functions by name in the order of the help."""
-    for entry in _ENTRIES.values():
+    for entry in ENTRIES.values():
         import_module(entry.module)
     functions: dict[str, Any] = {}
     for command in CommandGroup.program.registered_commands:
         assert command.callback is not None
         functions[command.name or command.callback.__name__.replace("_", "-")] = command.callback
-    return {name: functions[name] for name in _ENTRIES}
+    return {name: functions[name] for name in ENTRIES}
 
 
 def _print_version(requested: bool) -> None:

@@ -230,12 +230,8 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
     """Convert the tables of a joint file, or of the command line; see `read_joint`."""
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
-    load = tables.load or LoadTable()
-    return replace(file, load=_load_of(load), aim=_aim_of(load), report=_details_of(tables.report or ReportTable()))
-
-
-def _details_of(table: ReportTable) -> ReportDetails:
-    return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
+    load, report = tables.load or LoadTable(), tables.report or ReportTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load), report=ReportDetails(**report.stated()))
 
 
 def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
@@ -245,7 +241,7 @@ def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
 
 def report_details(table: ReportTable, folder: Path) -> ReportDetails:
     """Return the head of a report from its table; the path of the logo starts at a folder."""
-    return _logo_in(folder, _details_of(table))
+    return _logo_in(folder, ReportDetails(**table.stated()))
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
@@ -423,11 +419,7 @@ _PARTS = ("liner", "ball", "shell", "backing", "cup")
 def joint_in(tables: JointTables, folder: Path) -> JointFile:
     """Create the joint of a file from its tables, or read it by its name.
 
-    Parameters
-    ----------
-    tables : JointTables
-        `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
-    folder : Path
+    `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
 
     Raises
     ------

@@ -15,18 +15,10 @@ from .schema import QuantityValue, Table, Value, choices_schema
 
 @dataclass(frozen=True)
 class Key:
-    """Key of a table of files, for the documentation.
+    """Key of a table of files, for the documentation, with its accepted values in words.
 
-    Attributes
-    ----------
-    table : str
-        Head of its table, such as "[joint]" or "[[backing]]"; empty at the top of the file.
-    name : str
-    values : str
-        Accepted values in words.
-    default : str
-        Default as the file writes it; "required", or empty without a default.
-    meaning : str
+    `table` is the head of its table, such as "[joint]" or "[[backing]]", and empty at the top of the file. `default` is
+    as the file writes it, "required", or empty without a default.
     """
 
     table: str

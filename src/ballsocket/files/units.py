@@ -32,7 +32,6 @@ _TOKEN = re.compile(
     | (?P<sign>[*/()\u00b7\u00d7])""",
     re.ASCII | re.VERBOSE,
 )
-_PRODUCT_SIGNS = ("*", "/", "·", "×")
 _SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 
@@ -210,7 +209,7 @@ def _product(tokens: list[re.Match[str]]) -> dict[str, float]:
         if following == ")":
             return units
         sign = -1 if following == "/" else 1
-        if following in _PRODUCT_SIGNS:
+        if following in ("*", "/", "·", "×"):
             tokens.pop()
 
 

@@ -14,7 +14,7 @@ from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
 from ..studies.calibration import Calibration
 from .style import single_axes
-from .terminal import console, print_columns, print_folded, text_table
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -117,7 +117,7 @@ _DARK = 0.72  # of the colours
 
 def print_calibration(fit: Calibration) -> None:
     """Print a fitted modulus with its residual and the error of the closed form that uses it."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, str(fit.joint), "bold")
     low, high = float(fit.force.min()), float(fit.force.max())
     constants = ", ".join(f"{number:.6g}" for number in fit.modulus.constants)
@@ -137,7 +137,7 @@ def print_calibration(fit: Calibration) -> None:
 
 def print_table_3(columns: Sequence[TableColumn]) -> None:
     """Print Table 3 of the paper beside the same fit to the exact solution."""
-    terminal = console()
+    terminal = Terminal()
     table = text_table(["", *(f"ν {column.poisson:g}" for column in columns)], left=("",))
     for i, name in enumerate(("C1", "C2", "C3")):
         table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))
@@ -171,12 +171,12 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
         forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
         pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
         table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
-    print_columns(console(), table)
+    print_columns(Terminal(), table)
 
 
 def print_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> None:
     """Print the force components (N) of a tilted contact beside those of CalculiX."""
-    terminal, size = console(), float(numpy.linalg.norm(rival))
+    terminal, size = Terminal(), float(numpy.linalg.norm(rival))
     for name, mine, its in zip(("towards the rim", "across", "towards the dome"), ours, rival, strict=True):
         off = 100 * (mine - its) / size
         terminal.print(f"  {name:<18} {mine:>12.6g} N, ccx {its:>12.6g} N, {off:+.2f} % of the load")

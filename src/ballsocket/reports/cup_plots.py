@@ -39,10 +39,6 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     units : Units
         Units of every number.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -147,7 +143,6 @@ def _corner(radius: float, angle: float) -> Numbers:
 
 
 def _draw_ball(axes: Axes, contact: OffAxisContact) -> None:
-    """Draw the displaced ball."""
     from matplotlib.patches import Circle
 
     middle = float(contact.displacement @ lateral(contact)), float(contact.displacement[2])

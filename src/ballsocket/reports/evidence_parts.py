@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from math import inf, prod, radians
+from math import inf, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -141,18 +141,13 @@ def matrix_figure(record: Record, name: str = "max_pressure") -> Figure:
     order = [axis_names.index(name) for name in rows[0]["case"]]
     combined = [[(*row, *column) for column in _combinations(across)] for row in _combinations(down)]
     cases = [[tuple(case[index] for index in order) for case in line] for line in combined]
-    values = numpy.array([[_number(table[case]["numbers"].get(key)) for case in line] for line in cases])
+    values = numpy.array([[table[case]["numbers"].get(key) for case in line] for line in cases], dtype=float)
     figure, axes = single_axes(min(11.0, 3.4 + 0.62 * values.shape[1]), min(9.0, 2.2 + 0.34 * values.shape[0]))
     drawn = axes.imshow(values, cmap="cividis", aspect="auto")
     figure.colorbar(drawn, label=_UNITS.get(name) or NAMES[name].head(NAMES[name].written), pad=0.02)
     _tick(axes, down, across)
     _mark(axes, values, record, name, cases)
     return figure
-
-
-def _number(value: Any) -> float:
-    """Convert a value of the record to a number; NaN for None."""
-    return numpy.nan if value is None else float(value)
 
 
 _UNITS = {"edge_distance": "[mm]", "wear_rate": "[mm³/10⁶]"}
@@ -163,11 +158,7 @@ def _sides(rows: Sequence[Record]) -> tuple[list[Axis], list[Axis]]:
     """Distribute the axes of the matrix over two sides of about the same length."""
     axes = [(key, list(dict.fromkeys(row["case"][key] for row in rows))) for key in rows[0]["case"]]
     splits = [(axes[:split], axes[split:]) for split in range(len(axes) + 1)]
-    return min(splits, key=lambda pair: abs(2 * _count(pair[0]) - _count(pair[1])))
-
-
-def _count(axes: Sequence[Axis]) -> int:
-    return prod(len(values) for _, values in axes)
+    return min(splits, key=lambda pair: abs(2 * len(_combinations(pair[0])) - len(_combinations(pair[1]))))
 
 
 def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:

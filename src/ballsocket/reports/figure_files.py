@@ -15,7 +15,7 @@ from ..core.display import Plot, register_plot
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = ("png", "svg", "pdf")
+FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that `save` writes."""
 
 
@@ -27,11 +27,9 @@ def check_format(path: Path) -> None:
     ValueError
         Another ending, or a folder that does not exist.
     """
-    from ..core.storage.atomic_files import check_parent_folder
+    from ..core.storage.atomic_files import check_ending
 
-    if path.suffix.lower().lstrip(".") not in FORMATS:
-        raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
-    check_parent_folder(path)
+    check_ending("figure", path, *FORMATS)
 
 
 def save(figure: Figure, path: str | Path) -> None:

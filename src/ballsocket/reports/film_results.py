@@ -15,7 +15,7 @@ from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
 from .cup_map import on_page
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, new_figure
-from .terminal import console, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -42,16 +42,7 @@ _CORE_LEVEL = 0.5
 
 
 def film_figure(film: FilmResult) -> Figure:
-    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load.
-
-    Parameters
-    ----------
-    film : FilmResult
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load."""
     figure = new_figure(10.4, 4.6)
     map_axes, section_axes = figure.subplots(1, 2)
     colours = _draw_map(map_axes, film)
@@ -135,7 +126,7 @@ def _draw_section(axes: Axes, film: FilmResult) -> None:
 
 def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
     """Print films of several models as a table, with their notes."""
-    terminal = console(units)
+    terminal = Terminal(units)
     print_joint(terminal, films[0].contact.joint)
     first = films[0]
     rate, viscosity = float(numpy.linalg.norm(first.spin)), 1e3 * first.lubricant.viscosity
@@ -161,16 +152,7 @@ def _cells(film: FilmResult) -> list[str]:
 
 
 def cycle_film_figure(film: Film) -> Figure:
-    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact.
-
-    Parameters
-    ----------
-    film : Film
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact."""
     figure = new_figure(10.4, 7.2 if film.carried else 3.8)
     if film.carried is None:
         _draw_course(figure.subplots(), film)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.display import plain_number
-from ..core.storage.atomic_files import check_parent_folder, write_csv
+from ..core.storage.atomic_files import write_csv
 from ..hip.bands import Bands
 from ..hip.history import History
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .hip_tables import print_notes, table_with_units
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
-from .terminal import console, print_columns, print_folded, print_joint
+from .terminal import Terminal, print_columns, print_folded, print_joint
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -41,15 +41,7 @@ _HEADS = {
 
 @dataclass(frozen=True, kw_only=True)
 class HipRun:
-    """Simulation of one hip with its name and its bands, if any.
-
-    Attributes
-    ----------
-    name : str
-        Name of the hip in tables and figures, such as that of its file.
-    history : History
-    bands : Bands, optional
-    """
+    """Simulation of one hip with its bands, if any, and its name in tables and figures, such as that of its file."""
 
     name: str
     history: History
@@ -99,7 +91,7 @@ def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str, fact
 
 def print_comparison(runs: Sequence[HipRun], units: Units = Units.SI) -> None:
     """Print the wear of several hips, one below the other at each report, and the notes of each."""
-    terminal = console(units)
+    terminal = Terminal(units)
     for run in runs:
         print_joint(terminal, run.history.use.joint, f"; {run.history.use.cycle.name}", f"{run.name}: ")
     print_columns(terminal, _table(runs))
@@ -151,7 +143,7 @@ def _notes_with_names(runs: Sequence[HipRun]) -> dict[str, list[str]]:
 
 def print_wear_fit(fit: WearFit) -> None:
     """Print a fitted wear coefficient with its band, its value for each kind of rate, and the measured wear."""
-    terminal, use = console(), fit.simulation
+    terminal, use = Terminal(), fit.simulation
     print_folded(terminal, f"{use.joint}; {use.cycle.name}: coefficient of the wear law {fit.law_name!r}", "bold")
     band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
     table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
@@ -233,19 +225,6 @@ def _draw_fit(axes: Axes, fit: WearFit, runs: Sequence[History], quantity: str) 
                 rate_label = label and label.replace("measured", f"measured {measured.rate} rate")
                 axes.plot([begin, end], [first, last], "--", color=colour, label=rate_label)
             label = None
-
-
-def check_table(path: Path) -> None:
-    """Check that a path ends in .csv and that its folder exists.
-
-    Raises
-    ------
-    ValueError
-        Another ending, or a folder that does not exist.
-    """
-    if path.suffix.lower() != ".csv":
-        raise ValueError(f"table {str(path)!r} must end in .csv")
-    check_parent_folder(path)
 
 
 def write_table(path: Path, runs: Sequence[HipRun]) -> Path:

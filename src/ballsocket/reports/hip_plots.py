@@ -225,17 +225,7 @@ def share_figure(bands: Bands) -> Figure:
 def course_figure(phase: Numbers, courses: Mapping[str, Numbers], title: str) -> Figure:
     """Draw quantities over a cycle, in panels below each other.
 
-    Parameters
-    ----------
-    phase : array (instants,)
-        Phases in % of the cycle.
-    courses : mapping of str to array (instants,)
-        Values by the label of their axis; NaN where there is none.
-    title : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    `phase` (instants,) is in %; `courses` has values (instants,) by the label of their axis, NaN where there is none.
     """
     figure = new_figure(6.4, 1.6 * len(courses) + 0.9)
     panels = figure.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]

@@ -20,7 +20,7 @@ from ..hip.film import Film
 from ..hip.history import History
 from ..hip.variability import INFLUENCED_RESULTS
 from ..lubrication.friction import Stribeck
-from .terminal import Terminal, console, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 _WEAR_UNITS = {
@@ -178,7 +178,7 @@ def sobol_lines(bands: Bands) -> Iterator[str]:
 
 def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None:
     """Print the name of a hip, if any, the first cycle, the wear at each report, contacts, film, accuracy and notes."""
-    terminal, use, first = console(units), history.use, history.use.first
+    terminal, use, first = Terminal(units), history.use, history.use.first
     print_joint(terminal, use.joint, start=f"{name}: " if name else "")
     remark = f" ({use.cycle.remark})" if use.cycle.remark else ""
     print_folded(
@@ -209,7 +209,7 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
 
 def print_bands(bands: Bands, units: Units = Units.SI) -> None:
     """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
-    terminal = console(units)
+    terminal = Terminal(units)
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
     table = table_with_units(band_units(bands))
     tail = (1 - bands.level) / 2
@@ -237,21 +237,23 @@ def radiograph_line(history: History) -> str:
 
 def print_notes(notes: Iterable[str], units: Units = Units.SI) -> None:
     """Print notes, each on its own line."""
-    terminal = console(units)
+    terminal = Terminal(units)
     for note in notes:
         print_folded(terminal, note, "dim")
 
 
 def _wear_table(history: History) -> Table:
     cycles_per_year = history.use.cycle.per_year
-    heads = dict(_WEAR_UNITS) if cycles_per_year is None else {"time": "years", **_WEAR_UNITS}
-    if history.use.creep is None:
-        del heads["creep"]
-    table = table_with_units(heads)
+    table = table_with_units({**({} if cycles_per_year is None else {"time": "years"}), **wear_units(history)})
     for report, (*cells, rim) in zip(history.reports, wear_rows(history), strict=True):
         time = () if cycles_per_year is None else (f"{report.cycles / cycles_per_year:.4g}",)
         table.add_row(*time, *cells, f"{rim:.4g}")
     return table
+
+
+def wear_units(history: History) -> dict[str, str]:
+    """Return the heads of the wear table with their units, without creep for a liner that does not creep."""
+    return {head: unit for head, unit in _WEAR_UNITS.items() if history.use.creep is not None or head != "creep"}
 
 
 def wear_rows(history: History) -> Iterator[tuple[Any, ...]]:

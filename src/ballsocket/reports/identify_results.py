@@ -15,7 +15,7 @@ from ..identification.posterior import CONVERGED, Posterior
 from ..identification.result import IdentificationResult
 from ..identification.sensitivity import Sensitivity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure, single_axes
-from .terminal import console, print_columns, print_folded, text_table
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -188,7 +188,7 @@ _ROWS = 5
 
 def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
     """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
-    terminal, information = console(), result.information
+    terminal, information = Terminal(), result.information
     print_folded(terminal, f"{result.model.name} fitted to {_data_text(result)}", "bold")
     print_columns(terminal, _table(result, posterior))
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"

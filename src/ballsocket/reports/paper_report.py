@@ -24,7 +24,7 @@ from ..paper.plan import ELEMENTS
 from . import accuracy_results
 from .pages import data_address, render_page
 from .style import LEGEND, finish, in_matplotlib, line_of
-from .terminal import console, print_columns, print_folded, text_table
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,7 +146,7 @@ def _tally(findings: Iterable[Row]) -> str:
 
 def print_verdicts(results: Mapping[str, Sequence[Any]]) -> None:
     """Print the verdict on each claim, the scale of the words, and the number of each verdict."""
-    terminal = console()
+    terminal = Terminal()
     heads = ("claim", "verdict")
     rows = [(finding["name"], finding["text"]) for finding in (*results["claims"], *results["elsewhere"])]
     print_columns(terminal, text_table(heads, rows, left=heads, folded=heads))
@@ -339,8 +339,7 @@ def _draw_map(axes: Axes, field: Map) -> None:
     label = f"outer radius {OUTER_RADII[0]:g}, {OUTER_RADII[1]:g} mm"
     axes.legend(handles=[limit], labels=[label], loc="upper right", **LEGEND)
     axes.set_ylim(field.y[0], field.y[-1])
-    axes.set_xlabel(field.x_label)
-    axes.set_ylabel(field.y_label)
+    axes.set(xlabel=field.x_label, ylabel=field.y_label)
     axes.set_title(field.title, fontsize=10)
 
 

@@ -12,7 +12,7 @@ from ..planning.implants import ImplantFit
 from ..planning.pelvis import CupOrientation, PelvicFrame
 from ..planning.plan import HipPlan
 from ..planning.worn_bores import WornBore
-from .terminal import console, print_columns, print_folded
+from .terminal import Terminal, print_columns, print_folded
 
 _Row = tuple[str, str, str]
 
@@ -22,7 +22,7 @@ _MESH_ERROR = 0.005
 
 def print_plan(plan: HipPlan, remarks: Iterable[str]) -> None:
     """Print the table of a plan and remarks below it."""
-    terminal, table = console(), Table(box=None, pad_edge=False)
+    terminal, table = Terminal(), Table(box=None, pad_edge=False)
     for title in ("quantity", "value", "accuracy"):
         table.add_column(title, no_wrap=title == "value")
     for row in (

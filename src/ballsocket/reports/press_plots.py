@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -150,7 +150,9 @@ def plot(contacts: Mapping[str, Contact], units: Units = Units.SI) -> Figure:
         return cup_figure(single, units)
     chosen = select_curves(shown)
     models: Any = {name: contact.model for name, contact in chosen.items()}
-    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen), units=units)
+    omitted = ", ".join(name for name in shown if name not in chosen)
+    note = f"not drawn: {omitted}" if omitted else ""
+    return press_figure(chosen, force_curves(chosen, models), note=note, units=units)
 
 
 def select_curves(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
@@ -167,11 +169,6 @@ def _coincide(contact: Contact, exact: Contact) -> bool:
     """Return whether two contacts agree within 0.1 %, so that their curves coincide."""
     ratios = [getattr(contact, name) / getattr(exact, name) for name in ("force", "indentation", "max_pressure")]
     return all(abs(ratio - 1) < 1e-3 for ratio in ratios)
-
-
-def _omission_note(shown: Iterable[str], chosen: Mapping[str, Contact]) -> str:
-    names = [name for name in shown if name not in chosen]
-    return f"not drawn: {', '.join(names)}" if names else ""
 
 
 _PARTS = {

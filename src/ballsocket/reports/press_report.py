@@ -84,42 +84,6 @@ class PressedDesign:
         return self.file.joint.name or "A ball in its socket"
 
 
-def press_report(
-    comparison: Comparison,
-    file: JointFile,
-    leading: str,
-    units: Units = Units.SI,
-    surroundings: LocalUncertainty | None = None,
-    day: date | None = None,
-    command: str = "",
-) -> str:
-    """Return the page of single contacts of one joint as HTML.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    file : JointFile
-        Joint with its cup, load and head of the report.
-    leading : str
-        Name of the model whose contact gets the verdict; the exact one if there is one.
-    units : Units
-        Units of every number.
-    surroundings : LocalUncertainty, optional
-        Sensitivity of the results to each number and to the tolerances.
-    day : date, optional
-        Date of the page; by default today.
-    command : str
-        Options of the command line that compute the results from the joint file.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
-    """
-    design = PressedDesign(comparison=comparison, file=file, leading=leading, uncertainty=surroundings, command=command)
-    return designs_report([design], units, day)
-
-
 def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
     """Return the page of one design, or of several with a table that compares them, as HTML.
 
@@ -179,29 +143,11 @@ def joint_report(
     day: date | None = None,
     title: str = "",
 ) -> str:
-    """Return the page of a joint as HTML.
+    """Return the page of a joint without axes as HTML that needs no other file.
 
-    Parameters
-    ----------
-    file : JointFile
-        Joint without axes, with its cup and load.
-    sections : mapping of str to tuple of str
-        Sections between the inputs and the joint file: title and HTML by id.
-    lede : str
-        HTML above the sections.
-    units : Units
-        Units of the drawing and the inputs.
-    contact : Contact, optional
-        Contact of the checks; it is drawn if it lies on the axis.
-    day : date, optional
-        Date of the page; by default today.
-    title : str
-        Title; by default the joint's name.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    Below `lede`, which is HTML, the page has the checks of the contact, a drawing with an axial contact, the inputs,
+    the given sections (title and HTML by id), and the joint file. By default its date is today, and its title the
+    joint's name.
     """
     everything = _joint_sections(file, dict(sections), units, contact)
     return _page(title or file.joint.name or "A ball in its socket", everything, file.report, day, lede)

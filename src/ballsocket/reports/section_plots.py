@@ -73,22 +73,9 @@ _LINE = {"color": INK, "linewidth": 0.8}
 
 
 def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units: Units = Units.SI) -> Figure:
-    """Draw ball, liner and backing in section, with diameters, magnified clearance, pressure and load.
+    """Draw ball, liner and backing in section, with diameters, magnified clearance, and pressure and load of a contact.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint without axes.
-    cup : Cup
-        Cup with the arc of cover.
-    contact : Contact, optional
-        Contact whose pressure and load are drawn.
-    units : Units
-        Units of the dimensions.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    The joint has no axes, and the cup the arc of cover.
     """
     figure = new_figure(6.6, 5.4)
     axes = figure.add_subplot()
@@ -227,8 +214,7 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     high = max(part.position[1].max() for part in section.parts)
     axes.set_xlim(-extent, extent)
     axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
-    axes.set_xlabel("distance from the load axis [mm]")
-    axes.set_ylabel("height [mm]")
+    axes.set(xlabel="distance from the load axis [mm]", ylabel="height [mm]")
     axes.spines[["top", "right"]].set_visible(False)
 
 

@@ -87,8 +87,7 @@ def design_map(
         if best is not None:
             position = (best[axis] * units.unit_of(QUANTITIES[axis]).factor for axis in (across, up))
             axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set_xlabel(_label(across, units))
-        axes.set_ylabel(_label(up, units))
+        axes.set(xlabel=_label(across, units), ylabel=_label(up, units))
         axes.set_title(_label(name, units), fontsize=10)
     figure.suptitle(_title(study, units), fontsize=10, parse_math=False)
     counts = count_verdicts(study, limits)

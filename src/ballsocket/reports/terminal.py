@@ -42,13 +42,23 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
 
     Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
     """
-    terminal, ordered = console(units), _exact_first(comparison)
+    terminal, ordered, exact = Terminal(units), comparison, comparison.get(reference.name)
+    if exact is not None and exact.valid:
+        ordered = replace(comparison, contacts={reference.name: exact, **comparison.contacts})
     print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
     for line in _strength_lines(ordered):
         print_folded(terminal, line, "")
-    for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
+    symbols = ", ".join(f"{column.symbol} {column.title}" for column in shown)
+    deviating = any(ordered.deviation(name) is not None for name in ordered)
+    lines = [f"{symbols}; Δ % from {reference.name}" if deviating else symbols]
+    known = [*_pole_columns(ordered), *(column.attribute for column in shown)]
+    omitted = [column for column in units.columns_of(ordered.joint) if column.attribute not in known]
+    if omitted:
+        text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
+        lines.append(f"not shown, the terminal is too narrow: {text}")
+    for line in (*lines, *remarks, *ordered.notes()):
         print_folded(terminal, line, "dim")
 
 
@@ -63,30 +73,9 @@ def _strength_lines(comparison: Comparison) -> Iterator[str]:
     yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())
 
 
-def _exact_first(comparison: Comparison) -> Comparison:
-    exact = comparison.get(reference.name)
-    if exact is None or not exact.valid:
-        return comparison
-    return replace(comparison, contacts={reference.name: exact, **comparison.contacts})
-
-
-def _symbols_text(comparison: Comparison, columns: Sequence[Column]) -> str:
-    symbols = ", ".join(f"{column.symbol} {column.title}" for column in columns)
-    deviating = any(comparison.deviation(name) is not None for name in comparison)
-    return f"{symbols}; Δ % from {reference.name}" if deviating else symbols
-
-
-def _omitted_text(comparison: Comparison, shown: Sequence[Column], units: Units) -> tuple[str, ...]:
-    hidden = _pole_columns(comparison)
-    columns = units.columns_of(comparison.joint)
-    omitted = [column for column in columns if column.attribute not in hidden and column not in shown]
-    text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
-    return (f"not shown, the terminal is too narrow: {text}",) if omitted else ()
-
-
 def print_curve(contact: Contact) -> None:
     """Print contacts at increasing loads as a table of the main quantities, and the notes."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
     columns = [column for column in COLUMNS if column.attribute in HEADLINE]
     values = [column.values_of(contact) for column in columns]
@@ -108,11 +97,6 @@ class Terminal(Console):
         self.units = units
 
 
-def console(units: Units = Units.SI) -> Terminal:
-    """Create a console that does not colour numbers."""
-    return Terminal(units)
-
-
 def text_table(
     heads: Iterable[str],
     rows: Iterable[Sequence[str | Text]] = (),
@@ -125,7 +109,7 @@ def text_table(
     for head in heads:
         table.add_column(Text(head), justify="left" if head in left else "right", no_wrap=head not in folded)
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(Text(cell) if isinstance(cell, str) else cell for cell in row))  # "[nm]" is no style of rich
     return table
 
 

@@ -47,6 +47,20 @@ def check_parent_folder(path: Path) -> None:
         raise ValueError(f"cannot write {path.name}: {str(path.parent)!r} is not a folder; create it first")
 
 
+def check_ending(noun: str, path: Path, *endings: str) -> None:
+    """Check that a path has one of the endings, and that its parent folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, in a message that begins with the noun, or a folder that does not exist.
+    """
+    if path.suffix.lower() not in endings:
+        allowed = (" or " if len(endings) == 2 else ", ").join(endings)
+        raise ValueError(f"{noun} {str(path)!r} must end in {allowed}".strip())
+    check_parent_folder(path)
+
+
 # a drive of Windows has a single letter
 _ADDRESS = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/+(.*)", re.DOTALL)
 
