@@ -8,8 +8,7 @@ from typing import Any
 
 from .widgets.fields import Field
 
-MAX_REQUEST_LENGTH = 300_000
-"""Characters of one request: an uploaded joint file is shorter."""
+MAX_REQUEST_LENGTH = 300_000  # characters of one request: an uploaded joint file is shorter
 
 
 def read_request(text: str | bytes) -> dict[str, Any] | None:

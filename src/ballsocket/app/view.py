@@ -28,9 +28,7 @@ from .widgets.fields import Field
 from .widgets.settings import Setting
 from .widgets.words import alert
 
-STRESS_PAUSE = 0.4
-"""Seconds without a change until the stress of the model itself is computed for the checks."""
-
+STRESS_PAUSE = 0.4  # seconds without a change until the stress of the model itself is computed for the checks
 T = TypeVar("T")
 
 
@@ -217,5 +215,4 @@ _FILE_WRITERS: dict[str, Callable[[ScreenContent], bytes]] = {
     "PDF": _report,  # printed by `print_page`
     "TOML": lambda content: toml_of(content.file).encode("utf-8"),
 }
-FILE_KINDS = tuple(_FILE_WRITERS)
-"""Pictures, numbers, a report, a joint file."""
+FILE_KINDS = tuple(_FILE_WRITERS)  # pictures, numbers, a report, a joint file

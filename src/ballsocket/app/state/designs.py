@@ -16,9 +16,7 @@ from ...files.joint_toml import written_tables
 from ...files.toml import MAX_FILE_SIZE, parse_toml, toml_text
 from .screen import START, Screen, link_of, read_link
 
-MAX_DESIGNS = 50
-"""Largest number of designs in a browser and in a session file."""
-
+MAX_DESIGNS = 50  # largest number of designs in a browser and in a session file
 _DESIGN, _PAGE = "design", "page"
 _JOINT_KEYS = (*JointFileTable.__struct_fields__, "preset")
 _NOT_SAVED = (*_JOINT_KEYS, "theme")

@@ -34,8 +34,7 @@ class EvidenceQuestion:
             check_names([getattr(self, name)], known, f"as {name}")
 
 
-DEFAULT_QUESTION = EvidenceQuestion()
-"""Question of a page without a link."""
+DEFAULT_QUESTION = EvidenceQuestion()  # question of a page without a link
 
 
 def question_pairs(inputs: EvidenceQuestion) -> list[tuple[str, str]]:

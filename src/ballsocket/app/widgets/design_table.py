@@ -59,8 +59,7 @@ class Cell:
         return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
 
 
-Designs = Mapping[str, ComparedDesign]
-"""Designs by their names, the one on the screen first."""
+Designs = Mapping[str, ComparedDesign]  # designs by their names, the one on the screen first
 
 
 def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[str, str]) -> Designs:

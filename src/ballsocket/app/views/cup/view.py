@@ -41,6 +41,9 @@ _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
 <figure><figcaption>In three dimensions</figcaption><div id="cup-viewer"></div></figure></div>"""
 
+_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
+_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
+
 
 class CupView(LongView):
     """View of the load in the present cup, followed by a map over orientations."""
@@ -164,9 +167,6 @@ def _drawn(screen: Screen) -> dict[str, str]:
     }
 
 
-_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
-
-
 def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
     """Yield the numbers of a file by their names in JSON, each with its unit."""
     for name, value in contact.summary().items():
@@ -185,9 +185,6 @@ def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str
             internal = value / quantity.written.factor
             yield [_TITLES.get(name, quantity.title), reading.with_unit(quantity, internal)]
     yield ["contact at the rim", value_text(bool(contact.edge_loaded))]
-
-
-_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:

@@ -35,6 +35,7 @@ from .worker import EVIDENCE_SECONDS, EvidencePack, axes_of, gather_pack, phrase
 _NO_YES = ("no", "yes")
 _INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
+_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 
 
 class Evidence(LongView):
@@ -112,9 +113,6 @@ class Evidence(LongView):
         super().leave()
         if self._folder is not None:
             self._folder.cleanup()
-
-
-_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 
 
 def _allowable_limit(screen: Screen) -> str:
