@@ -155,7 +155,6 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 
 
 def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
-    """Format the printed quantities of a contact as rows of name, number and unit."""
     is_single = arrays.to_numpy(contact.indentation).size == 1
     rows = [
         (column.attribute, number_text(column.values_of(contact), 6 if is_single else 5, "no answer"), column.unit)

@@ -74,7 +74,6 @@ def _format_invalid_element(value: Array, valid: Array) -> str:
 
 
 def _array_shape(value: Array) -> tuple[int, ...]:
-    """Return the shape of an array; () for a number."""
     return tuple(getattr(value, "shape", ()))
 
 
@@ -134,10 +133,10 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
         A last axis that is not of length 3.
     """
     value = check_numeric(name, value)
-    shape = tuple(getattr(value, "shape", ()))
+    shape = _array_shape(value)
     if shape[-1:] != (3,):
         raise ValueError(f"{name} of shape {shape} is not allowed: its last axis holds {axes}")
-    return to_common_arrays(value)[0]
+    return value
 
 
 def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> Array:

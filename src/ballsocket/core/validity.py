@@ -85,7 +85,6 @@ class _AttributePath:
         self._names = path.split(".")
 
     def __call__(self, owner: Any) -> Any:
-        """Read the attribute of an owner."""
         for name in self._names:
             owner = getattr(owner, name)
         return owner

@@ -12,7 +12,7 @@ import numpy
 from ..contact import Contact
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_number, check_vectors, known_name, require
-from ..core.display import load_plot
+from ..core.display import finite_or_none, load_plot
 from ..core.records import Record
 from ..core.validity import Status
 from .dry_contact import DryContact, check_single_contact, dry_contact
@@ -141,10 +141,10 @@ class FilmResult(Record):
         return {
             "model": self.contact.model.name,
             "method": self.method,
-            "central_nm": _number(1e6 * self.central),
-            "minimum_nm": _number(1e6 * self.minimum),
-            "lambda": _number(self.ratio),
-            "error": _number(self.error),
+            "central_nm": finite_or_none(1e6 * self.central),
+            "minimum_nm": finite_or_none(1e6 * self.minimum),
+            "lambda": finite_or_none(self.ratio),
+            "error": finite_or_none(self.error),
             "valid": self.valid,
             "status": self.status.name,
             "notes": list(self.notes),

@@ -22,7 +22,7 @@ from typer.models import ArgumentInfo
 
 from ..core.checks import check_names, known_name, needs, shown
 from ..core.executors.processes import available_cores
-from ..core.input_files import AllowedFolders, resolve_path, restriction_variables
+from ..core.input_files import resolve_inside, resolve_path, restriction_variables
 from ..core.storage.atomic_files import cache_folder, write_text
 from ..files.toml import MAX_FILE_SIZE, read_toml
 from .tools import TOOLS, Commands, Tool, option, parameters
@@ -93,7 +93,7 @@ def _checked_operand(name: str, folder: Path) -> str:
     """Check that a name stays inside the folder, and return it as an operand, which does not begin like an option."""
     if Path(name).is_absolute():
         raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
-    AllowedFolders((resolve_path(folder),)).resolve(folder / name, name)
+    resolve_inside((resolve_path(folder),), folder / name, name)
     return f"./{name}" if name.startswith("-") else name
 
 

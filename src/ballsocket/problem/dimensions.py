@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 from math import floor, log10
 from types import MappingProxyType
@@ -41,6 +41,9 @@ _BASES = (
     frozenset({"clearance", "liner_thickness", "outer_radius"}),
 )
 """Lengths that determine a joint: two radial ones and one of the wall, or both of the wall and the clearance."""
+
+_STAYING_ORDER = ("ball_radius", "clearance", "socket_radius", *_WALLS)
+"""Lengths in the order in which they stay where another one is given."""
 
 STORED_AND_OUTER = ("ball_radius", "socket_radius", "clearance", "liner_thickness", "outer_radius")
 """Lengths without diameters and interference, in the order of messages."""
@@ -227,19 +230,13 @@ def fit_beside(varied: Iterable[str], stated: Iterable[str]) -> list[str]:
     return fitting
 
 
-def give(name: str, given: Iterable[str]) -> tuple[str, ...]:
+def give(name: str, given: Sequence[str]) -> tuple[str, ...]:
     """Return the names of the lengths that determine a joint once one more is given.
 
-    It takes the place of its diameter or radius, of the other length of the wall, or of one of three radial lengths: of
-    the socket's radius, or else of the clearance.
+    The others stay as far as they fit: the ball's radius first, then the clearance, the socket's radius and the wall.
     """
-    new = canonical(name)
-    others = {canonical(other): other for other in given}
-    others.pop(new, None)
-    for rivals in (_WALLS, _RADIAL_LENGTHS):
-        if new in rivals and {*rivals} <= {new, *others}:
-            del others[next(name for name in ("socket_radius", "clearance", *_WALLS) if name in rivals and name != new)]
-    return (*others.values(), name)
+    fitting = fit_beside((name,), sorted(given, key=lambda other: _STAYING_ORDER.index(canonical(other))))
+    return (*(other for other in given if other in fitting), name)
 
 
 def _value_text(value: Array) -> str:

@@ -105,10 +105,11 @@ class Processes:
         RuntimeError
             The worker process of a piece died more than `retries` times.
         """
+        workers = self.workers or available_cores()
         pending, deaths = deque(numbers), Counter[int]()
         while pending:
-            with _start_pool(self._n_workers, work) as pool:
-                for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * self._n_workers):
+            with _start_pool(workers, work) as pool:
+                for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * workers):
                     if future is _WORKER_DIED:
                         deaths[number] += 1
                         pending.append(number)
@@ -119,11 +120,6 @@ class Processes:
                 raise RuntimeError(
                     f"the worker process of piece {failed[0]} died {deaths[failed[0]]} times; run again to resume"
                 )
-
-    @property
-    def _n_workers(self) -> int:
-        """Number of worker processes."""
-        return self.workers or available_cores()
 
 
 def available_cores() -> int:
@@ -201,7 +197,6 @@ def _initialize_worker(work: Work) -> None:
 
 
 def _compute_piece(number: int) -> Any:
-    """Compute one piece with the work function of this worker process."""
     assert _work is not None
     return _work(number)
 
@@ -226,7 +221,6 @@ def exit_with_parent() -> None:
 
 
 def _watch_parent(parent: int) -> None:
-    """End this process after its parent process has ended."""
     while os.getppid() == parent:
         time.sleep(_PARENT_CHECK_INTERVAL)
     os._exit(_PARENT_ENDED)

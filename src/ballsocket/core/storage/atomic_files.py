@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
 from io import BytesIO
@@ -84,9 +85,7 @@ def make_folder(path: Path) -> None:
 def write_atomically(path: Path) -> Iterator[Path]:
     """Yield a draft path to write to, and move the draft to `path` at the end.
 
-    An error in the block discards the draft. The draft has the same file name.
-
-    The draft is a file or a folder.
+    The draft is a file or a folder of the same name. An error in the block discards it.
 
     Raises
     ------
@@ -163,6 +162,13 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
     """
     with write_atomically(path) as draft:
         draft.write_text(text, encoding=encoding)
+    return path
+
+
+def write_csv(path: Path, rows: Iterable[Iterable[Any]]) -> Path:
+    """Write rows as CSV atomically, and return its path; see `write_text`."""
+    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(rows)
     return path
 
 
@@ -252,13 +258,13 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
         Computes the array.
     """
     path = _cached_path(key)
-    array = _read_cached_array(path)
-    if array is None:
-        array = compute()
-        with suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_arrays(path, rings=array)
-            _remove_oldest_files(path.parent)
+    with suppress(OSError, ValueError, KeyError):  # missing or damaged
+        return read_arrays(path)["rings"]
+    array = compute()
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_arrays(path, rings=array)
+        _remove_oldest_files(path.parent)
     return array
 
 
@@ -268,7 +274,6 @@ def is_array_cached(key: object) -> bool:
 
 
 def _cached_path(key: object) -> Path:
-    """Return the path of the cached array of these inputs."""
     return cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
 
 
@@ -281,14 +286,6 @@ def cache_folder() -> Path:
     if folder:
         return Path(folder)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
-
-
-def _read_cached_array(path: Path) -> Numbers | None:
-    """Read a cached array; return None if the file is missing or damaged."""
-    try:
-        return read_arrays(path)["rings"]
-    except (OSError, ValueError, KeyError):
-        return None
 
 
 def _remove_oldest_files(folder: Path) -> None:

@@ -246,7 +246,6 @@ class ArrayPieceStore(PieceStore):
         return result
 
     def _piece_name(self, piece: int) -> str:
-        """Return the name of the file of a piece."""
         return f"{self.prefix}_{piece:06d}.npz"
 
     def _read_piece(self, piece: int) -> Any:
