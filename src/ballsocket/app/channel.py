@@ -54,7 +54,6 @@ class Channel:
             self._current[name] = self._pending[name] = value
 
     def put_fields(self, fields: Mapping[str, Field]) -> None:
-        """Set the inputs of the page."""
         for name, field in fields.items():
             value, refusal = self._refused.get(name, (None, {}))
             if refusal and value != field["value"]:

@@ -87,7 +87,6 @@ class Job:
         self._heard(key, news)
 
     def stop(self) -> None:
-        """End the process."""
         if self._timer is not None:
             self._timer.cancel()
         if self._run is not None:

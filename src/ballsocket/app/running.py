@@ -119,7 +119,6 @@ class Run:
 
 
 def _run(pipe: Connection, work: Work) -> None:
-    """Run the work inside the process."""
     exit_with_parent()
     limit_memory()
     try:

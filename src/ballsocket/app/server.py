@@ -244,7 +244,6 @@ class ExplorerServer:
 
     @property
     def pages(self) -> list[Page]:
-        """Pages that are open."""
         return [connection.page for connection in self.application.settings["sockets"].pages if connection.page]
 
     def start(self) -> None:

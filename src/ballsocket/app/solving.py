@@ -122,5 +122,4 @@ class SlowPresses:
         self._changed()
 
     def leave(self) -> None:
-        """End the process."""
         self.job.stop()

@@ -108,7 +108,6 @@ class View:
         self.change(**known[key].read(self.page.screen, value))
 
     def change(self, **changes: Any) -> None:
-        """Change fields of the screen by name."""
         self.page.ask(**changes)
 
     def put(self, **parts: str) -> None:

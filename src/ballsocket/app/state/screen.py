@@ -124,7 +124,6 @@ class Screen:
 
     @cached_property
     def link(self) -> str:
-        """Query of the link of this screen."""
         return link_of(self)
 
 

@@ -186,7 +186,6 @@ class UploadedCycle:
             raise ValueError(f"{shown(self.name)} is not a table of a cycle, which ends in {', '.join(_TABLES)}")
 
     def cycle(self, body_weight: float) -> Cycle:
-        """Read the table as a cycle."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"cycle{Path(self.name).suffix.lower()}"
             path.write_text(self.text, encoding="utf-8")

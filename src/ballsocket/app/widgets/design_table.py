@@ -54,7 +54,6 @@ class Cell:
 
     @property
     def html(self) -> str:
-        """Cell of a table in HTML."""
         small = f"<small>{escape(self.difference)}</small>" if self.difference else ""
         return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
 

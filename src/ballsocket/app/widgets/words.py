@@ -76,7 +76,6 @@ def axial_models_table(comparison: Comparison, reading: Reading, real: Contact |
 
 @lru_cache(maxsize=8)
 def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
-    """Return the columns of a table of models, each behind its heading in HTML."""
     return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
 
 

@@ -92,7 +92,6 @@ class CupView(LongView):
             self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
 
     def _ask_map(self, screen: Screen) -> None:
-        """Show the map of orientations, or the reason why there is none."""
         if "tilt" not in screen.file.aim:
             self.orientations.show(screen)
             return
