@@ -61,19 +61,15 @@ class Host(Protocol):
 
     def ask(self, **changes: Any) -> None:
         """Change fields of the screen by name."""
-        ...
 
     def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
         """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
-        ...
 
     def attempt(self, action: Callable[[], None]) -> None:
         """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
-        ...
 
     def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
         """Register the handler of a view's inputs, whose names start with the view and a dot."""
-        ...
 
 
 class View:

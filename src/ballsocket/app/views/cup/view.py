@@ -32,10 +32,7 @@ from ...widgets.words import VERDICT_KINDS, checked, column_of, number_cell, tru
 from .charts import angle_map
 from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
 
-_FIELDS = (
-    *("inclination", "anteversion", "tilt", "inwards", "forwards"),
-    *("arc_of_cover", "chamfer", "aim", "side"),
-)
+_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
