@@ -22,8 +22,7 @@ def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHan
         return None
 
 
-_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}
-"""Runs by their work, with the jobs that wait for them."""
+_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}  # runs by their work, with the jobs that wait for them
 
 
 def _work_key(work: Work) -> Hashable:

@@ -125,8 +125,7 @@ def curve(contact: Contact, largest: float) -> Contact | None:
     return _cached_curve(contact.joint, contact.model.name, min(ceil(end / _ANGLE_STEP) * _ANGLE_STEP, MAX_HALF_ANGLE))
 
 
-_ANGLE_STEP = 0.02
-"""Step in rad of the largest half angle of a curve, which stays while a slider moves a little."""
+_ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
 
 
 @lru_cache(maxsize=256)
@@ -152,8 +151,7 @@ def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
     return angle, numpy.asarray(contact.pressure(angle))
 
 
-_SMALLEST_AXIS = 1e-300
-"""Number below which powers of ten lose digits."""
+_SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
 
 
 def rounded_up(value: float) -> float:

@@ -187,7 +187,6 @@ class PageSocket(_Guarded, WebSocketHandler):
             self._open_page(request)
 
     def _open_page(self, request: dict[str, Any]) -> None:
-        """Make the page, unless too many are open."""
         if not self.settings["sockets"].admit(self):
             words = f"{MAX_SESSIONS} pages are open here already: try again later"
             self._write(json.dumps({"n": request["n"], "question": 0, "#trouble": alert(words)}))

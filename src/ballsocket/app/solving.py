@@ -43,8 +43,7 @@ def heavy(joint: Joint, name: str) -> bool:
     return is_curve_slow(catalogue[name], joint)
 
 
-_solved: OrderedDict[Key, SolvedPress] = OrderedDict()
-"""Results of slow presses: a contact precedes its curve."""
+_solved: OrderedDict[Key, SolvedPress] = OrderedDict()  # results of slow presses: a contact precedes its curve
 
 
 def solved(file: JointFile, name: str) -> Contact | str | None:

@@ -30,7 +30,9 @@ from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
 from .options import (
+    Force,
     GapName,
+    Indentation,
     JointName,
     JointOptions,
     ModelName,
@@ -56,15 +58,8 @@ class PressOptions:
 
     model: ModelName = None
     gap: GapName = None
-    force: Annotated[
-        str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
-    ] = None
-    indentation: Annotated[
-        str | None,
-        typer.Option(
-            help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."
-        ),
-    ] = None
+    force: Force = None
+    indentation: Indentation = None
 
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
@@ -169,14 +164,16 @@ def optimise(
     model = press_options.choose_model(file, {**ranges, **choices})
 
     def study_ranges(joint: Joint, fixed: Mapping[str, Any]) -> Any:
-        """Press a joint on a grid of all ranges."""
         count = points or _default_points(model)
         axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
         design = grid(**axes, **fixed, **load)
         return study(model, joint, design, quantities=_quantities(goals, limits))
 
     if len(goals) == 2:
-        _show_front(study_ranges(file.joint, choices), (goals[0], goals[1]), limits, output)
+        result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
+        front = pareto(result, both, limits)
+        output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
+        output.draw(lambda: study_plots.front_figure(result, front, both, limits))
         return
     if len(goals) != 1:
         raise ValueError(f"one result or two are minimised, got {len(goals)}")
@@ -188,13 +185,6 @@ def optimise(
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
     output.draw(lambda: study_plots.design_map(study_ranges(best.joint, sizes), limits, names, best=best.point))
-
-
-def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output: OutputOptions) -> None:
-    """Print and draw the Pareto front of two goals."""
-    front = pareto(result, goals, limits)
-    output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
-    output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
 class IntervalMethod(Choice):

@@ -28,7 +28,7 @@ from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .model_file import requested_model
-from .options import GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
+from .options import ArcOfCover, GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)
@@ -68,10 +68,7 @@ class ForceElementOptions:
         str | None,
         typer.Option(help="Combined roughness, the least film of --viscosity. Default: 0.001 mm."),
     ] = None
-    arc_of_cover: Annotated[
-        str | None,
-        typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
-    ] = None
+    arc_of_cover: ArcOfCover = None
 
     def element(self, file: JointFile) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
@@ -119,7 +116,6 @@ class ForceElementOptions:
         return element
 
     def _lubricant(self) -> Lubricant | None:
-        """Return the lubricant of the options; None for a dry socket."""
         if self.viscosity is None:
             if self.roughness is not None:
                 raise ValueError("--roughness is that of a film: add --viscosity")
@@ -131,7 +127,6 @@ class ForceElementOptions:
         return Lubricant(viscosity=viscosity, ball_roughness=0.0, cup_roughness=roughness)
 
     def _damping(self) -> Damping | None:
-        """Return the damping of the options; None without damping."""
         if self.restitution is None and self.impact_speed is None:
             return None if self.hysteresis is None else Damping(hysteresis=self.hysteresis)
         if self.hysteresis is not None:
@@ -244,13 +239,11 @@ def identifier(path: Path) -> str:
     return name if name[:1].isalpha() and name not in _RESERVED else f"joint_{name}"[:40]
 
 
-_MODELICA = "algorithm block connect constant discrete each encapsulated end equation external function initial inner"
-_MORE_MODELICA = (
-    "input loop model Modelica outer output package parameter partial record redeclare then type when within"
-)
-_PROGRAMS = "exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"
-_RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *f"{_MODELICA} {_MORE_MODELICA} {_PROGRAMS}".split()}
-
+_OTHER_KEYWORDS = """
+algorithm block connect constant discrete each encapsulated end equation external function initial inner input loop
+model Modelica outer output package parameter partial record redeclare then type when within
+exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"""
+_RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *_OTHER_KEYWORDS.split()}
 
 _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 

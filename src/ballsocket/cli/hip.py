@@ -16,7 +16,7 @@ from ..reports.unit_systems import Units
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
-from .root import FAILURE, app, echo_path
+from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
     from ..hip.bands import Bands
@@ -113,8 +113,7 @@ def hip(
     if csv is not None:
         write_table(csv, runs)
     if not all(run.history.converged for run in runs):
-        typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
-        raise typer.Exit(FAILURE)
+        fail("a contact did not balance its load (see the notes)")
 
 
 def _short_names(files: Sequence[Path]) -> list[str]:
@@ -134,7 +133,6 @@ def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
 
 
 def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
-    """Simulate the hip of a file with a progress bar."""
     with _progress_bar(f"wearing {name}".strip(), hip_file.cycles, "cycles") as progress:
         return hip_file.use.after(
             hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=store
@@ -142,7 +140,6 @@ def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
 
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
-    """Compute uncertainty bands of a simulation; None if the file has no uncertainty."""
     from ..hip.wear_uncertainty import uncertainty
 
     scatter = hip_file.uncertain
@@ -168,7 +165,6 @@ def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
 
 
 def _summarize_run(run: HipRun) -> dict[str, Any]:
-    """Return a simulation and its bands as a dictionary for JSON."""
     history, bands = run.history, run.bands
     answer = {"valid": history.valid and (bands is None or bands.valid), **history.summary()}
     if bands is not None:

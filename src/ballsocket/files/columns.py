@@ -193,9 +193,8 @@ class NumberTable:
         """
         counts = {**self.left_out, **unused}
         parts = [f"{count} {'line' if count == 1 else 'lines'} {place}" for place, count in counts.items() if count]
-        return (
-            f"{self.title}: {len(self) - sum(unused.values())} rows read, left out {', '.join(parts)}" if parts else ""
-        )
+        n_rows = len(self) - sum(unused.values())
+        return f"{self.title}: {n_rows} rows read, left out {', '.join(parts)}" if parts else ""
 
     def items(self) -> Iterator[tuple[Head, Numbers]]:
         """Yield each head with the numbers below it."""
@@ -273,19 +272,15 @@ class CellTable:
         )
         cells = [self.cells(head) for head in heads]
         mark = decimal_mark(chain.from_iterable(cells), self.separator)
-        columns = [numpy.array([cell_number(cell, mark) for _, cell in column]) for column in cells]
+        columns = tuple(numpy.array([cell_number(cell, mark) for _, cell in column]) for column in cells)
         gaps = {}
         for head, column, values in zip(heads, cells, columns, strict=True):
             if not numpy.isfinite(values).all():
                 line, cell = column[int(numpy.isfinite(values).argmin())]
                 gaps[head.name] = line, str(cell)
+        lines, left_out = tuple(line for line, _ in self.rows), self.left_out
         return NumberTable(
-            title=self.title,
-            heads=tuple(heads),
-            columns=tuple(columns),
-            lines=tuple(line for line, _ in self.rows),
-            gaps=gaps,
-            left_out=self.left_out,
+            title=self.title, heads=tuple(heads), columns=columns, lines=lines, gaps=gaps, left_out=left_out
         )
 
 
@@ -509,9 +504,8 @@ class _Block:
         body, left_out = _select_rows(self.rows, self.start)
         width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
         for line, cells in body:
-            if any(cell != "" for cell in cells[max(width, len(texts)) :]) or len(cells) < width * (
-                self.separator == " "
-            ):
+            is_wide = any(cell != "" for cell in cells[max(width, len(texts)) :])
+            if is_wide or (self.separator == " " and len(cells) < width):
                 raise ValueError(
                     f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas and empty "
                     "cells need semicolons or tabs between the cells, or quotes"

@@ -63,7 +63,6 @@ def _key(head: str, field: inspect.Field) -> Key:
 
 
 def _values(field: inspect.Field) -> str:
-    """Describe the accepted values of a key in words."""
     choices = choices_in(field.type)
     if choices:
         return ", ".join(choices)
@@ -124,7 +123,6 @@ def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, A
 
 
 def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a single type of values."""
     if isinstance(part, inspect.CustomType):
         value: type[Value] = part.cls
         definitions[value.__name__] = value.json_schema()

@@ -10,7 +10,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.grid import Grid
-from ..lubrication.cycle_film import CycleFilm, CycleInstant, carry_over_cycle
+from ..lubrication.cycle_film import CycleFilm, carry_over_cycle
+from ..lubrication.film_core import CycleInstant
 from ..lubrication.inlet import Edge, ElasticEdge, SpringEdge
 from ..lubrication.mesh import FilmMesh, polar_mesh, thinned_meridians
 from ..problem import Joint

@@ -111,11 +111,9 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
 
 @lru_cache(maxsize=8)
 def _compile_forward_model(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
-    """Compile the results of a forward model and their derivatives with JAX."""
     import jax
 
     def results_of_point(values: Any) -> Any:
-        """Compute the model results (data,) for one set of values of the unknowns."""
         return forward.results_at(values[None, :])[0]
 
     compiled: Callable[[Numbers], tuple[Any, Any]] = jax.jit(

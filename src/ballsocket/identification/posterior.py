@@ -164,7 +164,6 @@ def _start_ensemble_sampler(fitted: FittedModel, seed: int) -> Any:
 
 
 def _make_ensemble_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
-    """Create an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
@@ -201,10 +200,7 @@ class _StudentProposal:
 
 
 def _autocorrelation_time(chains: Numbers) -> float:
-    """Compute the integrated autocorrelation time of chains in steps, with Sokal's window.
-
-    The chains are (ensembles, steps, walkers).
-    """
+    """Compute the autocorrelation time in steps of chains (ensembles, steps, walkers), with Sokal's window."""
     steps = chains.shape[1]
     deviations = chains - chains.mean()
     power = abs(numpy.fft.rfft(deviations, 2 * steps, axis=1)) ** 2
@@ -216,10 +212,7 @@ def _autocorrelation_time(chains: Numbers) -> float:
 
 
 def _r_hat(chains: Numbers) -> float:
-    """Compute the convergence measure R-hat of chains (ensembles, steps, walkers), each split into halves.
-
-    Each ensemble is cut into halves.
-    """
+    """Compute the convergence measure R-hat of chains (ensembles, steps, walkers), each split into halves."""
     steps = chains.shape[1] // 2
     halves = numpy.concatenate([chains[:, :steps], chains[:, -steps:]]).reshape(2 * len(chains), -1)
     half_length = halves.shape[1]

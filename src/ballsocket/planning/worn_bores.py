@@ -173,8 +173,9 @@ class WornBore:
         if self.hidden_shift:
             notes.append(
                 f"{self.name}: the points do not show if the sphere is unworn: a head of its radius may have worn it, "
-                f"by a shift of up to {self.hidden_shift:.2g} mm, which the errors contain; measure surface that the "
-                "head does not reach, more than 90° from the direction of its load"
+                f"by a shift of up to {self.hidden_shift:.2g} mm, which the errors contain; the measured diameter of "
+                f"the head (--head-diameter) excludes this if it is more than {2e3 * self.radius_error:.2g} µm below "
+                "that of the bore, as does measured surface more than 90° from the direction of the load"
             )
         if self.ambiguous:
             notes.append(
@@ -194,7 +195,7 @@ class _Unworn:
     limit: float
 
 
-def measure_wear(cloud: PointCloud) -> WornBore:
+def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> WornBore:
     """Measure the wear of a bore.
 
     The volume is the integral of the depth over triangles between the points. Its error follows from the scatter of
@@ -205,10 +206,14 @@ def measure_wear(cloud: PointCloud) -> WornBore:
     ----------
     cloud : PointCloud
         Points of the bore alone: with some unworn surface, and without rim and outer surface.
+    head_radius : float, optional
+        Measured radius in mm of the head. It wears the bore to spheres of its radius: a sphere that is larger by more
+        than its error is unworn.
 
     Raises
     ------
     ValueError
+        A head that is larger than the bore, or has no positive radius.
         Points that are no bore: fewer than 200, off a sphere, inside the sphere of the others, or within 25° of their
         middle.
     """
@@ -226,8 +231,15 @@ def measure_wear(cloud: PointCloud) -> WornBore:
     local = _Neighbourhoods.of(points)
     spheres = _find_unworn(points, local, name)
     bores = [_integrate(cloud, local, sphere) for sphere in spheres]
+    unworn = bores[0]
+    if head_radius is not None and not 0.0 < head_radius <= unworn.radius + unworn.radius_error:
+        raise ValueError(
+            f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
+            f"{2 * unworn.radius:.6g} ± {2 * unworn.radius_error:.2g} mm; check the head and --stl-units"
+        )
     if len(bores) == 1:
-        return _add_hidden_shift(bores[0], points, local, spheres[0])
+        larger = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
+        return unworn if larger else _add_hidden_shift(unworn, points, local, spheres[0])
     volume_error, depth_error = (
         max(
             abs(getattr(bores[0], field) - getattr(bores[1], field)) + getattr(bores[1], f"{field}_error"),

@@ -73,7 +73,6 @@ def print_models(models: Iterable[ModelInfo]) -> None:
 
 
 def _validity_text(model: ModelInfo) -> str:
-    """Describe the promised accuracy of a model and its range of validity."""
     promised = [] if model.promise is None else [f"{model.promise}:"]
     return "\n".join([*promised, *map(str, model.validity)])
 
@@ -114,7 +113,6 @@ def print_preset(name: str) -> None:
 
 
 def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
-    """Return the numbers of a material or joint as pairs of title and text."""
     if isinstance(preset, Material):
         return [
             ("name", preset.name),
@@ -125,7 +123,6 @@ def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
 
 
 def _quantities(preset: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
-    """Return quantities of a material or joint as pairs of title and value with unit."""
     return [
         (quantity.title, f"{float(getattr(preset, name)):g} {quantity.written.text}".strip())
         for name, quantity in named.items()
@@ -141,7 +138,6 @@ def _sources(model: ModelInfo) -> str:
 
 
 def _preset_numbers(preset: Material | Joint) -> str:
-    """Describe the numbers of a material or joint in one line."""
     text = str(preset).removeprefix(preset.name)
     if isinstance(preset, Joint):
         return text.removeprefix(": ")

@@ -94,7 +94,6 @@ def conclusions(record: Record) -> list[str]:
 
 
 def _inputs(record: Record) -> dict[str, Any]:
-    """Return the tables of the model risk and of the inputs."""
     risk = record["risk"]
     return {
         "risk": [
@@ -114,7 +113,6 @@ def _inputs(record: Record) -> dict[str, Any]:
 
 
 def _matrix(record: Record) -> dict[str, Any]:
-    """Return limits and worst cases, the figures of the joint and of the matrix, and all cases."""
     worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
     return {
         "held": held_text(record["held"]),
@@ -140,7 +138,6 @@ def _final_wear(record: Record) -> Rows:
 
 
 def _joint_picture(record: Record) -> dict[str, str]:
-    """Return the picture of the joint with the largest pressure."""
     aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
     caption = f"The joint with the largest pressure.{aside}"
     return {"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}
@@ -168,7 +165,6 @@ def _map_caption(record: Record, name: str) -> str:
 
 
 def _cases(rows: list[Record]) -> dict[str, Any]:
-    """Return heads and rows of all cases with their results."""
     inputs, results = list(rows[0]["case"]), list(rows[0]["numbers"])
     return {
         "heads": [*(column_head(key) for key in (*inputs, *results)), "valid"],
@@ -184,7 +180,6 @@ def _cases(rows: list[Record]) -> dict[str, Any]:
 
 
 def _verification(record: Record) -> dict[str, Any]:
-    """Return the checks of the code, and every worst case by every method."""
     deviating = any(piece["deviation"] for piece in record["calculation"])
     return {
         "checks": [
@@ -235,7 +230,6 @@ def _grouped_notes(methods: Iterable[Record]) -> list[str]:
 
 
 def _validation(record: Record) -> dict[str, Any]:
-    """Return published results beside those of ballsocket, with their applicability to the question."""
     return {
         "claims": [
             (

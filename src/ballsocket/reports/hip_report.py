@@ -25,6 +25,7 @@ from .hip_tables import (
     contact_rows,
     radiograph_line,
     rim_lines,
+    wear_rows,
 )
 from .pages import check_page_path, letterhead, picture, render_page, write_page
 
@@ -133,14 +134,16 @@ def hip_report(
         notes=history.notes,
         first_cycle=_first_cycle(history),
         rim=_rim_approach(history),
-        wear={"heads": _wear_heads(history), "rows": _wear_rows(history)},
+        wear={
+            "heads": [head for head in _WEAR_HEADS if history.use.creep is not None or head != _CREEP_HEAD],
+            "rows": [(*cells, f"{rim:.3g}") for *cells, rim in wear_rows(history)],
+        },
         contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
         bands=None if bands is None else _band_table(bands),
     )
 
 
 def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
-    """Return the sections about patients who differ."""
     caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
     caption += (
         "."
@@ -162,7 +165,6 @@ def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str |
 
 
 def _band_table(bands: Bands) -> Mapping[str, Any]:
-    """Return the table of the bands with its sentences."""
     tail = (1 - bands.level) / 2
     return {
         "summary": band_summary(bands),
@@ -174,30 +176,11 @@ def _band_table(bands: Bands) -> Mapping[str, Any]:
 
 
 def _summary(history: History) -> str:
-    """Describe the result of the simulation in one sentence."""
     use, last = history.use, history.last
     return (
         f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
         f"after {last.cycles / 1e6:g} million cycles."
     )
-
-
-def _wear_heads(history: History) -> list[str]:
-    """Return the heads of the table of reports, without creep if the hip has no law of creep."""
-    return [head for head in _WEAR_HEADS if history.use.creep is not None or head != _CREEP_HEAD]
-
-
-def _wear_rows(history: History) -> list[tuple[str, ...]]:
-    """Return the wear at each report: the cells below `_wear_heads`."""
-    return [
-        (
-            f"{report.cycles / 1e6:g}",
-            *(f"{number:.4g}" for number in (report.volume, report.depth, report.penetration, report.max_pressure)),
-            *(() if history.use.creep is None else (f"{report.creep_depth:.4g}",)),
-            f"{report.edge_distance.min(initial=float('inf')):.3g}",
-        )
-        for report in history.reports
-    ]
 
 
 def _first_cycle(history: History) -> str:

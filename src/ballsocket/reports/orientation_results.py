@@ -16,8 +16,8 @@ from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
-from .style import BLUE, INK, LEGEND, VERMILLION
-from .terminal import console, print_columns, print_folded, print_joint
+from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
+from .terminal import console, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -53,12 +53,10 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     ValueError
         A single orientation.
     """
-    from .notebook_figure import NotebookFigure
-
     if orientations.status.size < 2:
         raise ValueError("a figure needs two values of an angle, got one orientation")
     is_map = min(orientations.status.shape) > 1
-    figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
+    figure = new_figure(10.4, 4.6)
     axes_pair = figure.subplots(1, 2, sharey=is_map)
     quantities = DERIVED["edge_distance"], CONTACT["max_pressure"]
     for axes, quantity in zip(axes_pair, quantities, strict=True):
@@ -117,7 +115,6 @@ def _draw_curve(
 
 
 def _fixed_angle(orientations: Orientations) -> str:
-    """Describe the angle that has one value."""
     name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
     return f"{name} {_degree_text(float(getattr(orientations, name)[0]))}"
 
@@ -197,7 +194,6 @@ def load_text(orientations: Orientations) -> str:
 
 
 def _number(name: str, value: float) -> str:
-    """Write a number after its symbol."""
     unit = CONTACT[name].shown
     return f"{value * unit.factor:.4g} {unit.text}"
 
@@ -294,7 +290,6 @@ def _limit_remarks(orientations: Orientations, limits: Sequence[Limit]) -> Itera
 
 
 def _range_text(orientations: Orientations, ends: tuple[float, float] | None) -> str:
-    """Describe the inclinations within the limits."""
     low, high = (_degree_text(orientations.inclination[index]) for index in (0, -1))
     if ends is None:
         return f"at no inclination from {low} to {high}"
@@ -317,9 +312,7 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit],
     """Make the table of a field: anteversion by inclination; a star marks an exceeded limit, "?" an undecided one."""
     codes = verdicts(orientations, limits)
     columns = range(len(orientations.inclination))
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
-        table.add_column(head, justify="right", no_wrap=True)
+    table = text_table(["", *map(_degree_text, orientations.inclination)])
     for j in range(len(orientations.anteversion)):
         marks = (_MARKS[codes[i, j]] if limits else "" for i in columns)
         cells = (_cell(orientations, values, i, j, mark, digits) for i, mark in zip(columns, marks, strict=True))
@@ -358,7 +351,6 @@ def _remarks(orientations: Orientations, units: Units) -> Iterator[str]:
 
 
 def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str:
-    """Describe the best orientation with its value."""
     inclination, anteversion, index = orientations.best(values)
     value = float(values.flat[index])
     is_distance = values is orientations.edge_distance
@@ -367,5 +359,4 @@ def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str
 
 
 def _degree_text(angle: float) -> str:
-    """Write an angle (rad) in degrees."""
     return f"{degrees(angle):.4g}°"

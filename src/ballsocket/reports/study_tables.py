@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +17,7 @@ from rich.text import Text
 from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..core.storage.atomic_files import check_parent_folder, write_csv
 from ..studies.file_formats import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
@@ -132,12 +131,10 @@ def _values(study: xarray.Dataset) -> dict[str, Any]:
 
 
 def _plain(values: numpy.ndarray) -> Any:
-    """Convert an array to a list for JSON."""
     return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
 def _ends_of(study: xarray.Dataset, name: str, report: StudyReport) -> dict[str, Any]:
-    """Summarise least, median and largest value of a result."""
     low, high = report.ends[name]
     if numpy.isnan(low.value):
         return {"least": None, "median": None, "largest": None}
@@ -222,9 +219,6 @@ def _pairs_summary(part: xarray.Dataset) -> dict[str, Any]:
     return {"pairs": pairs} if names else {}
 
 
-_CSV_HEAD = ("quantity", "index", "parameter", "other_parameter", "value", "low", "high")
-
-
 def check_csv(path: Path) -> None:
     """Check that a path ends in .csv and that its folder exists; raise ValueError otherwise."""
     if path.suffix.lower() != ".csv":
@@ -234,17 +228,16 @@ def check_csv(path: Path) -> None:
 
 def write_sensitivity(indices: xarray.Dataset, path: Path) -> None:
     """Write the shares of the variance with their intervals, and elasticities, to a CSV file, one value in a row."""
-    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(_CSV_HEAD)
-        for quantity, content in sensitivity_summary(indices)["quantities"].items():
-            rows = [([name], numbers) for name, numbers in content["numbers"].items()]
-            rows += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
-            for parameters, numbers in rows:
-                for name in (name for name in _INDEX_NAMES if name in numbers):
-                    values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
-                    cells = ("" if value is None else repr(value) for value in values)
-                    writer.writerow([quantity, name, *(*parameters, "")[:2], *cells])
+    rows: list[Sequence[str]] = [("quantity", "index", "parameter", "other_parameter", "value", "low", "high")]
+    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+        parts = [([name], numbers) for name, numbers in content["numbers"].items()]
+        parts += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
+        for parameters, numbers in parts:
+            for name in (name for name in _INDEX_NAMES if name in numbers):
+                values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
+                cells = ("" if value is None else repr(value) for value in values)
+                rows.append([quantity, name, *(*parameters, "")[:2], *cells])
+    write_csv(path, rows)
 
 
 _INDEX_NAMES = {
@@ -426,24 +419,20 @@ def print_sensitivity(indices: xarray.Dataset) -> None:
 
 
 def _interval_text(numbers: Mapping[str, Any], name: str) -> str:
-    """Write an index with its interval, if it has one."""
     value, low, high = (_number_text(numbers.get(f"{name}{end}")) for end in ("", "_low", "_high"))
     return f"{value} ({low}..{high})" if f"{name}_low" in numbers else value
 
 
 def _number_text(value: float | None) -> str:
-    """Write a share of the variance; nan for a missing one."""
     return "nan" if value is None else f"{round(value, 2) + 0.0:.2f}"  # without the sign of -0.00
 
 
 def _point_text(study: xarray.Dataset, flat: int, units: Units) -> str:
-    """Describe the varied parameters at a point."""
     at = coordinates(study, flat)
     return _parameter_text({name: at[name] for name in varying_parameters(study)}, units)
 
 
 def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
-    """Write parameters with symbol and value."""
     return ", ".join(
         f"{QUANTITIES[name].symbol if name in QUANTITIES else name} {_value_text(name, value, units)}"
         for name, value in at.items()
@@ -451,22 +440,18 @@ def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
 
 
 def _unit(name: str, units: Units = Units.SI) -> str:
-    """Return the unit of a quantity in tables."""
     return units.unit_of(QUANTITIES[name]).text
 
 
 def _factor(name: str, units: Units = Units.SI) -> float:
-    """Return the factor to the unit of tables."""
     return units.unit_of(QUANTITIES[name]).factor
 
 
 def _value_text(name: str, value: float | str, units: Units = Units.SI) -> str:
-    """Write a value in the unit of tables."""
     return value if isinstance(value, str) else f"{value * _factor(name, units):.4g}"
 
 
 def _table(*heads: str) -> Table:
-    """Make an empty table with dim heads."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     for head in heads:
         table.add_column(Text(head), no_wrap=not table.columns)

@@ -20,14 +20,9 @@ SampledFunction = Callable[[Numbers], Numbers]
 MAX_CORRELATED = 10
 """Largest number of parameters with Shapley effects, which need a set of samples for each subset of parameters."""
 
-_RESAMPLES = 999
-"""Number of bootstrap resamples."""
-
-_CHUNK_SIZE = 1 << 21
-"""Number of values in a chunk of resamples."""
-
-_DEFAULT_TERMS = 200
-"""Number of averaged terms for which memory is checked if it is not stated."""
+_RESAMPLES = 999  # number of bootstrap resamples
+_CHUNK_SIZE = 1 << 21  # number of values in a chunk of resamples
+_DEFAULT_TERMS = 200  # number of averaged terms for which memory is checked if it is not stated
 
 
 def check_sample_memory(count: int, n_terms: int = _DEFAULT_TERMS) -> None:
@@ -187,12 +182,10 @@ _CORRELATED_ORDERS = ("first_order", "total_order", "shapley")
 
 
 def _without(indices: Sequence[int], removed: int) -> tuple[int, ...]:
-    """Return indices without one of them."""
     return tuple(index for index in indices if index != removed)
 
 
 def _shapley_values(explained: dict[tuple[int, ...], Numbers], dimension: int) -> Iterator[Numbers]:
-    """Yield the Shapley value of each parameter from the explained shares of all subsets."""
     for index in range(dimension):
         yield numpy.sum(
             [

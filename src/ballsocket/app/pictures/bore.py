@@ -150,7 +150,6 @@ def _projection(reach: float) -> Callable[[numpy.ndarray], tuple[numpy.ndarray, 
 
 
 def _load_cross(x: float, y: float) -> Iterator[str]:
-    """Draw a cross at the direction of the load."""
     lines = f"M{x - 5:.1f},{y - 5:.1f}L{x + 5:.1f},{y + 5:.1f}M{x - 5:.1f},{y + 5:.1f}L{x + 5:.1f},{y - 5:.1f}"
     yield f'<path class="halo" d="{lines}"/><path class="cross" d="{lines}"/>'
 

@@ -65,7 +65,8 @@ def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
     """Draw liner and backing layers inside the cup's arc."""
     ends = list(pairwise(radii_of(file.joint)))
     kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
-    return [_sector(frame, *radii, file.cup.rim, kind) for radii, kind in zip(ends, kinds, strict=True)]
+    paths = [f"M{frame.arc(inner, file.cup.rim)}L{frame.arc(outer, -file.cup.rim)}Z" for inner, outer in ends]
+    return [f'<path class="part {kind}" d="{path}"/>' for kind, path in zip(kinds, paths, strict=True)]
 
 
 def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
@@ -82,10 +83,6 @@ def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highe
 def extent_of(file: JointFile) -> float:
     """Return half the width of the drawing in mm."""
     return radii_of(file.joint)[-1]
-
-
-def _sector(frame: DrawingFrame, inner: float, outer: float, rim: float, kind: str) -> str:
-    return f'<path class="part {kind}" d="M{frame.arc(inner, rim)}L{frame.arc(outer, -rim)}Z"/>'
 
 
 def _ball(file: JointFile, contact: Contact | None, tilt: float) -> tuple[Numbers, Numbers]:

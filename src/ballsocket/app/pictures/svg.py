@@ -67,8 +67,6 @@ def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: s
 
 
 Numbers = numpy.ndarray
-
-
 _STEPS = 240
 
 

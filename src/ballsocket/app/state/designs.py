@@ -23,8 +23,7 @@ _DESIGN, _PAGE = "design", "page"
 _JOINT_KEYS = (*JointFileTable.__struct_fields__, "preset")
 _NOT_SAVED = (*_JOINT_KEYS, "theme")
 _STEM_LENGTH = 60
-_DEVICES = re.compile(r"(con|prn|aux|nul|(com|lpt)\d)(\..*)?", re.IGNORECASE)
-"""Names that Windows refuses."""
+_DEVICES = re.compile(r"(con|prn|aux|nul|(com|lpt)\d)(\..*)?", re.IGNORECASE)  # names that Windows refuses
 
 
 def file_stem(name: str) -> str:
@@ -119,7 +118,6 @@ def _screens(content: Mapping[str, Any], screen: Screen) -> list[Screen]:
 
 
 def _design(number: int, table: Mapping[str, Any]) -> Screen:
-    """Read one design of a session file."""
     try:
         page = table.get(_PAGE, {})
         if not isinstance(page, dict):

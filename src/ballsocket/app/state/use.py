@@ -26,9 +26,7 @@ CONTACTS = ("springs", "shell", "cup")
 FIELDS = ("pressure", "film")
 LAWS = tuple(WEAR_LAWS)
 _TABLES = (".csv", ".txt", ".dat", ".mot", ".sto")
-_MAX_MILLIONS = 50.0
-"""Million cycles of a run."""
-
+_MAX_MILLIONS = 50.0  # million cycles of a run
 _NO_CREEP, _DEFAULT_CREEP = "no", "yes"
 _CREEP_PREFIX = "creep_"
 

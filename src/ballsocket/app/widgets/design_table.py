@@ -140,7 +140,6 @@ def _value(design: ComparedDesign, attribute: str, factor: float) -> float:
 
 
 def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
-    """Return a number with its difference from the base in percent of it."""
     value = values[name]
     if value == values[base] or value != value:
         return Cell(text=number_text(value))

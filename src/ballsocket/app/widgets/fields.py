@@ -16,8 +16,7 @@ from .reading import Reading, box_text, unit_suffix
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 
-_MAX_SHOWN = 60
-"""Characters of typed text in a message."""
+_MAX_SHOWN = 60  # characters of typed text in a message
 
 Field = dict[str, Any]
 """One input: its name, kind, label, value, and what its kind needs."""

@@ -23,8 +23,7 @@ from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
 
-_SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}
-"""Units as the head of a column in a file has them."""
+_SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}  # units as the head of a column in a file has them
 
 
 def alert(sentence: str) -> str:
@@ -45,7 +44,6 @@ def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
 
 
 def _unit_html(unit: str) -> str:
-    """Return a unit as it stands behind a number."""
     return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
 
 
@@ -82,7 +80,6 @@ def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
 
 
 def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Reading) -> str:
-    """Return rows of models, and the reasons of the missing ones, as a table."""
     columns = _shown_columns(reading)
     heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{head}</th>" for head, column in columns)
     missing = "".join(

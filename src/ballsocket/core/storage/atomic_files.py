@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
 from io import BytesIO
@@ -155,6 +156,13 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
     """Write a text file, and return its path; errors as of `write_atomically`."""
     with write_atomically(path) as draft:
         draft.write_text(text, encoding=encoding)
+    return path
+
+
+def write_csv(path: Path, rows: Iterable[Iterable[Any]]) -> Path:
+    """Write rows as CSV atomically, and return its path; see `write_text`."""
+    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(rows)
     return path
 
 

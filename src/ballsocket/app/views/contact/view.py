@@ -205,7 +205,6 @@ class Press(LongView):
         )
 
     def _real_document(self, screen: Screen, comparison: Comparison, limit: AxialLimit) -> Document:
-        """Return the content for a load that needs the real cup."""
         if not is_prepared(screen.file):
             raise ValueError("the real cup is still being prepared: wait until its pressure is there")
         contact, units = pressed_in_cup(screen.file), screen.reading.units
@@ -250,7 +249,6 @@ def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
 
 
 def _fields(screen: Screen) -> dict[str, Any]:
-    """Return the inputs of the view."""
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
         "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
@@ -260,7 +258,6 @@ def _fields(screen: Screen) -> dict[str, Any]:
 
 
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
-    """Tabulate the contacts with their notes."""
     heads, *rows = number_rows("model", comparison, screen.reading)
     return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]
 

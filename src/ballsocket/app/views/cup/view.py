@@ -154,7 +154,6 @@ _KEY = (
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
-    """Press the load, and return the HTML of its numbers and pictures by their element."""
     contact, reading = pressed_in_cup(screen.file), screen.reading
     if not float(contact.half_angle) > 0:
         return {"numbers": _verdict(contact, reading), "map": "", "viewer": ""}
@@ -180,7 +179,6 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
 
 
 def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
-    """Yield title and value of each quantity of a contact, for readers."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
@@ -214,7 +212,6 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
-    """State in words if the contact stays on the bore."""
     if contact.status.failed:
         verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
         return _verdict_html(verdict, f"No contact on the bore: {contact.status.sentence}")

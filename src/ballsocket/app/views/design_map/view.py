@@ -41,9 +41,7 @@ from .worker import (
     picked_point,
 )
 
-_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
-"""Quantities that the rows of limits offer."""
-
+_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
 _AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
@@ -74,7 +72,6 @@ def _axis_setting(which: str) -> Setting:
 
 
 def _end_setting(key: str) -> Setting:
-    """Return the box of one end of an axis."""
     which, end = _ENDS[key]
     label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
 
@@ -227,13 +224,11 @@ _ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
-    """Compute the HTML of the map, its summary and the picked design."""
     results = _map_of(screen)
     return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point_html(screen)}
 
 
 def _point_html(screen: Screen) -> str:
-    """Return the design at the picked point beside the present one."""
     picked = picked_point(screen)
     if picked is None:
         return _HINT

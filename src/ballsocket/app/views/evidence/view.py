@@ -118,7 +118,6 @@ _NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest p
 
 
 def _allowable_limit(screen: Screen) -> str:
-    """Return the limit of the largest pressure by the allowable pressure of the liner."""
     pressure = screen.file.joint.liner.allowable_pressure
     if pressure is None:
         raise ValueError("the liner has no allowable pressure: enter it beside the liner")
@@ -178,7 +177,6 @@ def _verdict(limit: Mapping[str, Any]) -> Verdict:
 
 
 def _decision(limit: Mapping[str, Any]) -> str:
-    """Return the decision on one limit with its sign, word and colour."""
     verdict = _verdict(limit)
     words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
     return f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>"

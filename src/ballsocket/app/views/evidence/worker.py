@@ -39,7 +39,8 @@ def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: 
     tables = {_QUESTION: _tables(inputs, file)} | ({_HIP: _hip(file, use)} if inputs.wear == "yes" else {})
     for name, content in tables.items():
         for text in _texts(content):
-            _check_no_path(text)
+            if Path(text).is_absolute() or ".." in Path(text).parts:  # a pack includes every file that is named
+                raise ValueError(f"{shown(text)} is a path, and words are needed")
         (folder / name).write_text(tomli_w.dumps(content), encoding="utf-8")
     return read_question(folder / _QUESTION)
 
@@ -63,7 +64,6 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
 
 
 def _hip(file: JointFile, use: Use) -> Tables:
-    """Return the tables of the hip file for the settings of the wear view."""
     return {
         **_joint(file),
         **({"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}),
@@ -115,12 +115,6 @@ def _texts(part: Any) -> Iterator[str]:
         yield from [entry] if isinstance(entry, str) else _texts(entry)
 
 
-def _check_no_path(text: str) -> None:
-    """Refuse paths: a pack includes every file that its question names."""
-    if Path(text).is_absolute() or ".." in Path(text).parts:
-        raise ValueError(f"{shown(text)} is a path, and words are needed")
-
-
 EVIDENCE_SECONDS = 600.0
 """Seconds that a pack may take."""
 
@@ -161,7 +155,6 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
 
 
 def _zipped(folder: Path, names: Sequence[str]) -> bytes:
-    """Return the files of a pack as a ZIP file."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
         for name in sorted({*names, SUMS}):

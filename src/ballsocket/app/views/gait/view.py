@@ -147,7 +147,6 @@ class Gait(LongView):
 
 
 def _read_upload(value: Any) -> UploadedCycle:
-    """Read an uploaded table."""
     upload = value if isinstance(value, dict) else {}
     name, text, size = str(upload.get("name", "")), upload.get("text"), upload.get("size")
     if not isinstance(text, str):

@@ -176,5 +176,4 @@ def _frames(hip: HipSimulation, fields: numpy.ndarray, highest: float) -> Frames
     return Frames(cells=cells, highest=highest)
 
 
-_INSIDE = 0.5
-"""Share of the neighbouring cells with a value, from which a node has one."""
+_INSIDE = 0.5  # share of the neighbouring cells with a value, from which a node has one
