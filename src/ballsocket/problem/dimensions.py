@@ -43,10 +43,7 @@ _BASES = (
 """Lengths that determine a joint: two radial ones and one of the wall, or both of the wall and the clearance."""
 
 _STAYING_ORDER = ("ball_radius", "clearance", "socket_radius", *_WALLS)
-"""Lengths in the order in which they stay where another one is given."""
-
-STORED_AND_OUTER = ("ball_radius", "socket_radius", "clearance", "liner_thickness", "outer_radius")
-"""Lengths without diameters and interference, in the order of messages."""
+"""Lengths without diameters and interference, in the order in which they stay where another one is given."""
 
 
 def canonical(name: str) -> str:
@@ -183,7 +180,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     old = {canonical(name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:
-        kept = [[old[name] for name in STORED_AND_OUTER if name in basis - new] for basis in choices]
+        kept = [[old[name] for name in _STAYING_ORDER if name in basis - new] for basis in choices]
         shared = set.intersection(*map(set, kept))
         ways = " or ".join(
             " and ".join(f"{name}{_value_text(given[name])}" for name in names if name not in shared) for names in kept
@@ -199,7 +196,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
             "liner_thickness or outer_radius"
         )
     (basis,) = choices
-    return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
+    return {old[name]: given[old[name]] for name in _STAYING_ORDER if name in basis - new and name in old}
 
 
 def check_given(names: Iterable[str]) -> tuple[str, ...]:
