@@ -21,9 +21,6 @@ DIAMETERS = MappingProxyType(
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
 
-_MAX_INTERFERENCE = 0.1
-"""Largest interference over the radius of the ball."""
-
 _ROUNDING = 1e-9
 """Relative difference of two lengths below which they agree."""
 
@@ -157,7 +154,7 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
             allowed = "it must leave a liner between socket and backing"
             require(name, {**held, **numbers}[name], stored["liner_thickness"] > 0, allowed)
     if "interference" in numbers:
-        good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
+        good = numbers["interference"] <= 0.1 * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
     checked = {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}

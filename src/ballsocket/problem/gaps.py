@@ -236,9 +236,6 @@ _NODES, _WEIGHTS = (numpy.array(values) for values in gauss_legendre(24))
 _SINES = numpy.sin(pi / 2 * _NODES)
 """sin θ at the nodes of a quadrature over [0, π/2]."""
 
-_ANGLE_WEIGHTS = pi / 2 * _WEIGHTS
-"""Weights of that quadrature."""
-
 Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""
 
@@ -254,7 +251,7 @@ def _evaluate_at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, t
 
 def _sine_weighted_mean(values: Numbers) -> Numbers:
     """Compute the mean of values over θ in [0, π/2] with the weight sin θ."""
-    return numpy.tensordot(_ANGLE_WEIGHTS * _SINES, values, axes=1)
+    return numpy.tensordot(pi / 2 * _WEIGHTS * _SINES, values, axes=1)
 
 
 def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:
