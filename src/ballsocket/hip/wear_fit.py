@@ -48,6 +48,8 @@ _SIGNIFICANCE = 0.05
 """Probability of the scatter below which Student's quantile applies."""
 
 _MIN_NOTED_WIDENING = 1.05
+_ROUNDING = 1e-9
+"""Width of a band, relative to the coefficient, that is rounding alone."""
 
 _PREDICTED, _LEAST = 10, 1e-6
 """Number of steps of a prediction, and the share of the coefficient that stands for an end of the band at 0."""
@@ -349,6 +351,8 @@ class WearFit:
                 f"the coefficient is the mean of {count} specimens, which scatter by {100 * self.scatter:.2g} % "
                 f"(k = 1); the band is by Student's quantile with {count - 1} degree{'s' * (count > 2)} of freedom"
             )
+            if self.high - self.low <= _ROUNDING * self.coefficient:
+                yield "the specimens agree exactly: their scatter gives no band; state uncertainty, such as '5 %'"
             if unnamed:
                 yield (
                     "no station is stated: each data set is a specimen of its own, and so is each further value at the "
