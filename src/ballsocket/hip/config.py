@@ -192,7 +192,7 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     begin, end = (None if count is None else float(count) for count in (table.begin, table.end))
     return MeasuredWear(
         quantity="volume" if quantity == "mass" else quantity,
-        values=parse_all("values", stated),
+        values=parse_all("values" if table.file is None else f"{table.file}: values", stated),
         cycles=cycles,
         rate=None if table.rate is None else str(table.rate),
         begin=begin,
@@ -256,7 +256,14 @@ def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float
         number, text = split_quantity(total_text if has_period else str(value))
         total = convert(number, parse_units(text or unit), parse_units(unit))
     except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} must be a number with a unit, such as '38 {unit}'") from error
+        raise ValueError(
+            f"{name} = {shown(value)} must be a number with {unit} or a unit that converts to it, such as '38 {unit}'"
+        ) from error
+    if not 0 < total < inf:
+        raise ValueError(
+            f"{name} = {shown(value)} is not allowed: a measured wear and its uncertainty are positive and finite; leave "
+            "out readings without wear"
+        )
     if period.strip() not in _PER_YEAR:
         return total
     if per_year is None:

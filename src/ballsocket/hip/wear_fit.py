@@ -38,6 +38,7 @@ _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
 _MAX_LOG_RANGE = 20.0  # range of ln(coefficient) to both sides in which other readings of a rate are searched
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
 _MIN_NOTED_WIDENING = 1.05
+_ROUNDING = 1e-9  # width of a band, relative to the coefficient, that is rounding alone
 _PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
 
 
@@ -328,6 +329,8 @@ class WearFit:
                 f"the coefficient is the mean of {count} specimens, which scatter by {100 * self.scatter:.2g} % "
                 f"(k = 1); the band is by Student's quantile with {count - 1} degree{'s' * (count > 2)} of freedom"
             )
+            if self.high - self.low <= _ROUNDING * self.coefficient:
+                yield "the specimens agree exactly: their scatter gives no band; state uncertainty, such as '5 %'"
             if unnamed:
                 yield (
                     "no station is stated: each data set is a specimen of its own, and so is each further value at the "
