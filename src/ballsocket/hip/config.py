@@ -264,8 +264,8 @@ def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float
         ) from error
     if not 0 < total < inf:
         raise ValueError(
-            f"{name} = {shown(value)} is not allowed: a measured wear and its uncertainty are positive and finite; leave "
-            "out readings without wear"
+            f"{name} = {shown(value)} is not allowed: a measured wear and its uncertainty are positive and finite; "
+            "leave out readings without wear"
         )
     if period.strip() not in _PER_YEAR:
         return total
