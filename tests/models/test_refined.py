@@ -204,7 +204,9 @@ def test_a_solution_is_a_jax_tree():
 
     with jax.enable_x64(True):
         pressed = jax.jit(lambda joint: MODEL.press(joint, force=3000.0))(HIP)
+        pulled = jax.jit(lambda force: MODEL.press(HIP, force=force).max_pressure)(-1.0)
         assert isinstance(pressed, bs.Contact)
+        assert np.isnan(pulled)  # no contact without a solution, as for the other closed forms
         for name in ("max_pressure", "stiffness", "energy"):
             expected = getattr(MODEL.press(HIP, force=3000.0), name)
             assert float(getattr(pressed, name)) == pytest.approx(expected, rel=1e-9)

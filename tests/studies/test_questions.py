@@ -144,13 +144,17 @@ def test_slopes_by_differences_are_those_of_scaling():
 
 @pytest.mark.parametrize(
     ("model", "name", "end", "inside"),
-    [(bs.HessForsbach(), "clearance", 0.0, 1e-6), (bs.Hertz(), "liner_poisson", 0.5, 0.49999)],
-    ids=["perfect fit", "rubber"],
+    [
+        (bs.HessForsbach(), "clearance", 0.0, 1e-6),
+        (bs.HessForsbach(), "socket_radius", HIP.ball_radius, HIP.ball_radius + 1e-6),
+        (bs.Hertz(), "liner_poisson", 0.5, 0.49999),
+    ],
+    ids=["perfect fit", "perfect fit by radii", "rubber"],
 )
 def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name, end, inside):
-    at = {"clearance": 0.1, "liner_poisson": 0.4, "force": 2000.0}
+    at = {"ball_radius": HIP.ball_radius, "liner_poisson": 0.4, "force": 2000.0}
     slopes = [finite_differences(model, HIP, ("max_pressure",), {**at, name: one})[1] for one in (end, inside)]
-    for each in at:
+    for each in (*at, name):
         assert slopes[0]["max_pressure"][each] == pytest.approx(slopes[1]["max_pressure"][each], rel=1e-3, abs=1e-3)
 
 

@@ -95,14 +95,14 @@ class Refined(Model):
         if kind == "half_angle":
             edge = broadcast(load, *numbers)
             contact = scaled_contact(safe_divisor(edge), liner)
-            edge = where((edge == 0) | ((edge <= LIMIT) & (contact.gap[0] > 0)), edge, nan)
+            edge = where((edge == 0) | ((edge > 0) & (edge <= LIMIT) & (contact.gap[0] > 0)), edge, nan)
             indentation, residual = c * contact.indentation, 0.0 * edge
         else:
             scaled_load = broadcast(safe_divisor(load) / (c * spring if kind == "force" else c), *numbers)
             edge = _solve_half_angle(kind, scaled_load, liner)
             contact = scaled_contact(safe_divisor(edge), liner)
             residual = log_load_ratio(kind, contact, scaled_load)[0]
-            edge = where(load > 0, edge, 0.0 * load)
+            edge = where(load > 0, edge, where(load < 0, nan, 0.0 * load))
             indentation = load / (spring * contact.secant[0]) if kind == "force" else load
         is_loaded = edge > 0  # the half angle is NaN without a solution
         indentation = where(is_loaded, indentation, 0.0 * edge)

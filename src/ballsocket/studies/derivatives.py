@@ -16,7 +16,7 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from .design import check_values, sample
 from .distributions import Distribution, check_nominal
-from .parameters import AIMS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
+from .parameters import AIMS, JOINT, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -70,7 +70,7 @@ def finite_differences(
         An unknown name; no load, or a load of zero, where derivatives are infinite.
     """
     names = _check_arguments(quantities, at)
-    steps = {name: _choose_steps(name, float(value), model.smooth_step) for name, value in at.items()}
+    steps = {name: _choose_steps(joint, at, name, model.smooth_step) for name in at}
     # row 0 is the point; rows 2i + 1 and 2i + 2 have the two steps of parameter i
     rows = {name: numpy.full(2 * len(at) + 1, float(value)) for name, value in at.items()}
     for index, name in enumerate(at):
@@ -86,13 +86,18 @@ def finite_differences(
     }
 
 
-def _choose_steps(name: str, value: float, relative_step: float) -> tuple[float, float]:
-    """Choose the two steps of a parameter: to both sides, or to one side at the end of its range."""
+def _choose_steps(joint: Joint, at: Mapping[str, float], name: str, relative_step: float) -> tuple[float, float]:
+    """Choose the two steps of a parameter: to both sides, or to one side at the end of its range or of the joints."""
+    value = float(at[name])
     size = relative_step * abs(value) or relative_step
-    for steps in ((size, -size), (size, 2 * size), (-size, -2 * size)):
-        if PARAMETERS[name].allows(value + numpy.array(steps)).all():
+    choices = ((size, -size), (size, 2 * size), (-size, -2 * size))
+    allowed = [steps for steps in choices if PARAMETERS[name].allows(value + numpy.array(steps)).all()]
+    if not allowed:
+        raise ValueError(f"{name} = {value:g} is not allowed: {PARAMETERS[name].allowed}")
+    for steps in allowed:
+        if name not in JOINT or numpy.all(press_arguments(joint, {**at, name: value + numpy.array((0.0, *steps))})[2]):
             return steps
-    raise ValueError(f"{name} = {value:g} is not allowed: {PARAMETERS[name].allowed}")
+    return allowed[0]
 
 
 def _parabola_derivative(rises: Numbers, steps: tuple[float, float]) -> float:
