@@ -186,9 +186,11 @@ def solve_with_tables(
     """
     *values, shift = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
-    is_loaded = broadcast(load, values[1]) > 0
+    loads = broadcast(load, values[1])
+    is_loaded = loads > 0
     if arrays.all_true(fits & is_loaded) is not True:
-        values = [where(is_loaded, where(fits, value, math.nan), 0.0) for value in values]
+        rest = where(loads == 0, 0.0, math.nan)  # where values cannot be refused, a load below 0 has no solution
+        values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
     angle, d, F, p0, stiffness = values
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness)), shift
 
