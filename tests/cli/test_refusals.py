@@ -25,6 +25,7 @@ press nothing.toml => 'nothing.toml' is neither a file nor a preset
 press hip-29 --force 1 => did you mean 'hip-
 press hip-28 => a load is needed: --force, --indentation or --half-angle
 press {hip} --force '3 kg' => force = '3 kg' is not a force, such as '3 kN'; a mass of 3 kg weighs 29.42 N
+press {hip} --force '3,000 N' => not a force, such as '3 kN'; write a decimal point, and nothing between thousands
 press {hip} --force '200 %BW' => not a force, such as '3 kN'; 2 times the weight of 75 kg is 1471 N
 press /proc/self/mem => /proc/self/mem
 curve {hip} --points x => --points

@@ -25,13 +25,14 @@ SCANS = [(name, noise, count) for name in SHAPES for noise, count in ((0.0, 1500
 @pytest.mark.parametrize(("name", "noise", "count"), some(SCANS, 6))
 def test_the_errors_contain_the_removed_volume_and_the_penetration(name, noise, count):
     shape = SHAPES[name]
-    wear = measure_wear(PointCloud(scans.worn_bore(count=count, noise=noise, **shape)))
+    head = shape["head"] if name == "unworn" else None  # a bore without wear shows this with its head alone
+    wear = measure_wear(PointCloud(scans.worn_bore(count=count, noise=noise, **shape)), head_radius=head)
     volume, depth = scans.removed_volume(shape["head"], shape["shift"]), shape["shift"] + shape["head"] - 16.0
     # two standard errors: the truth is outside in 5 of 100 scans, outside twice as much in none
     assert abs(wear.volume - volume) < 2.0 * wear.volume_error
     assert abs(wear.depth - depth) < 2.0 * wear.depth_error
     assert abs(wear.radius - 16.0) < 2.0 * wear.radius_error
-    assert name in ("near the noise", "unworn") or noise == 0.02 or wear.volume_error < 0.15 * volume + 5.0
+    assert name == "near the noise" or noise == 0.02 or wear.volume_error < 0.15 * volume + 5.0
 
 
 @pytest.mark.parametrize(("tilt", "cover"), [(0.0, 75.0), (10.0, 90.0), (0.0, 95.0)])
@@ -88,6 +89,7 @@ REFUSED = {
     "a word": (text(POINTS) + "\n1 2 x", "line 1001 has '1 2 x': that is no point"),
     "decimal commas between commas": (PLAIN.replace(".", ",").replace(" ", ","), "may separate numbers or decimals"),
     "two decimal marks": (PLAIN.replace(" ", ";") + "\n1,5;2;3", "it has decimal points and decimal commas"),
+    "other number": ("2000\n" + text(POINTS), "first line states 2000 points, and it has 1000: save it again"),
     "few": (text(POINTS[:50]), "at least 200 points"),
     "plane": (text(POINTS * [1.0, 1.0, 0.0]), "is not a bore"),
     "head": (text(HEAD), "% of its points lie inside the sphere"),
@@ -105,5 +107,7 @@ def test_points_of_no_bore_are_refused(tmp_path, content, message):
 
 def test_the_command_prints_the_wear_with_its_error(tmp_path):
     (tmp_path / "a.xyz").write_text(PLAIN, encoding="utf-8")
-    worn = json.loads(run("planning", "--worn", "a.xyz", "--json", folder=tmp_path).stdout)["worn"]
+    worn = json.loads(run("planning", "--worn", "a.xyz", "--head-diameter", "31.6", "--json", folder=tmp_path).stdout)[
+        "worn"
+    ]
     assert abs(worn["volume"] - scans.removed_volume(15.8, 0.25)) < worn["volume_error"]

@@ -39,18 +39,9 @@ def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Result]
 
 
 def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, Any]], Result]) -> Result:
-    """Convert the content of a file.
+    """Convert the content of a file, TOML in UTF-8 of at most `MAX_FILE_SIZE` bytes, with the function `make`.
 
-    Parameters
-    ----------
-    raw : bytes
-        TOML in UTF-8, at most `MAX_FILE_SIZE` bytes.
-    title : str
-        Name of the file, with which every message begins.
-    kind : str
-        Kind of the expected file in a word: "joint", "study".
-    make : callable
-        Function from the tables of the file to the result.
+    Every message begins with `title`, the name of the file. `kind` is the expected kind in a word: "joint", "study".
 
     Raises
     ------
@@ -65,7 +56,7 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
 
 
 _KINDS = (
-    (("axes", "samples"), "study", "study"),
+    (("axes", "samples", "table"), "study", "study"),
     (("question", "context_of_use"), "question", "evidence"),
     (("free", "machine"), "measurement", "identify"),
     (("cycle", "activity"), "hip", "hip"),
@@ -95,7 +86,7 @@ def _other_kind(content: Mapping[str, Any], kind: str, title: str) -> str:
                 found, command = "wear test", "identify"
             related = {kind, found} == {"hip", "wear test"} and "data" not in content
             return "" if found == kind or related else f"; this is a {found} file: ballsocket {command} {title}"
-    is_joint = kind != "joint" and "joint" in content and "data" not in content
+    is_joint = kind != "joint" and isinstance(content.get("joint"), Mapping) and "data" not in content
     return f"; this is a joint file: ballsocket press {title}" if is_joint else ""
 
 
