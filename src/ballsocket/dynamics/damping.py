@@ -196,12 +196,8 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
         require("uncertainty", uncertainty, valid, "a standard deviation must be above 0 and finite")
     hysteresis = _fit_hysteresis(speeds, restitutions)
     restitution_slopes = _restitution_slopes(hysteresis, speeds)
-    degrees_of_freedom = len(speeds) - 1
-    scatter = (
-        float(numpy.sqrt(numpy.sum((restitutions - _restitutions_at(hysteresis, speeds)) ** 2) / degrees_of_freedom))
-        if degrees_of_freedom
-        else nan
-    )
+    residuals, freedom = restitutions - _restitutions_at(hysteresis, speeds), len(speeds) - 1
+    scatter = float(numpy.sqrt(numpy.sum(residuals**2) / freedom)) if freedom else nan
     noise = scatter if uncertainty is None else float(uncertainty)
     error = noise / float(numpy.sqrt(numpy.sum(restitution_slopes**2)))
     return DampingEstimate(

@@ -112,7 +112,6 @@ class ForceElement(OneLine):
     constants: Constants = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parts of the element, and set its potential and constants."""
         check_joint(self.joint)
         for name, kind in _PARTS.items():
             value = getattr(self, name)

@@ -115,7 +115,6 @@ class Load(NamedTuple):
         return f"<Load {self}>"
 
     def __str__(self) -> str:
-        """Force, moment and energy of one state, or the shape of several."""
         return describe_load(self.force, self.moment, self.energy)
 
     @property

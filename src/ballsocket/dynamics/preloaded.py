@@ -371,7 +371,6 @@ class PreloadedLoad(NamedTuple):
         return f"<PreloadedLoad {self}>"
 
     def __str__(self) -> str:
-        """Force, moment and energy of one state, or the shape of several."""
         return describe_load(self.force, self.moment, self.energy)
 
     @property

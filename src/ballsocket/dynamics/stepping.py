@@ -261,18 +261,13 @@ def step_residual(  # type: ignore[no-untyped-def]
     # mean gradient plus (ΔU/h - mean power) a/a² along the path: its work is the change of the energy exactly. The
     # weight lets the correction vanish for short paths, whose ΔU is rounding.
     path_length, depth = h * sqrt(square), abs(centre.indentation)
-    quotient_weight = (
-        path_length
-        * path_length
-        * path_length
-        / safe_divisor(path_length * path_length * path_length + _MIN_PATH_RATIO * depth * depth * depth)
-    )
+    cubed_path = path_length * path_length * path_length
+    quotient_weight = cubed_path / safe_divisor(cubed_path + _MIN_PATH_RATIO * depth * depth * depth)
     gradient_correction = (
         quotient_weight * ((end_contact.energy - start_energy) / h - mean_power) / safe_divisor(square)
     )
-    force_correction = (
-        normal - contact.normal + gradient_correction * speed
-    )  # in addition to the normal force of the reaction
+    # in addition to the normal force of the reaction
+    force_correction = normal - contact.normal + gradient_correction * speed
     fx, fy, fz = fx - force_correction * nx, fy - force_correction * ny, fz - force_correction * nz
     if constants.rim > 0.0:
         tangential_correction = gradient_correction * tangential_speed

@@ -45,7 +45,6 @@ class Prony:
     terms: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
-        """Check the terms of the series."""
         terms = tuple((float(share), float(time)) for share, time in self.terms)
         require("the number of terms", len(terms), len(terms) > 0, "a relaxation modulus needs at least one term")
         for share, time in terms:
@@ -249,9 +248,8 @@ class Viscoelastic:
         c, deepest = joint.clearance, max(float(depth.max()), 1e-300)
         width = deepest / (c + deepest) / rings
         ring_versines = width * (numpy.arange(rings) + 0.5)
-        spring_displacements = (
-            numpy.maximum(depth, -c)[:, None] * (1.0 - ring_versines) - c * ring_versines
-        )  # d cos φ - c (1 - cos φ)
+        # d cos φ - c (1 - cos φ)
+        spring_displacements = numpy.maximum(depth, -c)[:, None] * (1.0 - ring_versines) - c * ring_versines
         pressure = _maxwell_pressures(self.modulus, time, spring_displacements)
         factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.evaluate(joint)) * width
         return factor * (pressure @ (1.0 - ring_versines))
@@ -267,9 +265,8 @@ def _maxwell_pressures(modulus: Prony, time: Numbers, spring_displacements: Numb
         decay_factor, weight = numpy.exp(-time_step / times), -numpy.expm1(-time_step / times) * times / time_step
         past_pressure = numpy.sum(shares * (decay_factor * stresses - weight * surface), axis=0)
         effective_stiffness = long_term_share + float(numpy.sum(shares * weight))
-        displaced = numpy.maximum(
-            spring_displacements[instant], -past_pressure / effective_stiffness
-        )  # the ball surface, or the recovering liner surface
+        # the ball surface, or the recovering liner surface
+        displaced = numpy.maximum(spring_displacements[instant], -past_pressure / effective_stiffness)
         stresses = decay_factor * stresses + weight * (displaced - surface)
         pressure[instant] = numpy.where(
             displaced == spring_displacements[instant],

@@ -16,7 +16,7 @@ at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, pi
 
@@ -39,6 +39,7 @@ class AbelState(PeakPressure):
     kernel: Kernel
     gap: Gap
     intervals: Intervals | CachedIntervals
+    _cached_modes: list[Numbers] = field(default_factory=list, init=False, repr=False)  # for stresses in the socket
 
     @property
     def half_angle(self) -> Numbers:
@@ -236,11 +237,6 @@ class AbelState(PeakPressure):
         if len(self._cached_modes) == 0 or self._cached_modes[0].shape[1] < count:
             self._cached_modes[:] = [self._compute_modes(count)]
         return self._cached_modes[0][:, :count]
-
-    @cached_property
-    def _cached_modes(self) -> list[Numbers]:
-        """Pressure modes computed so far, because stresses inside the socket need them many times."""
-        return []
 
     def _compute_modes(self, count: int) -> Numbers:
         """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels of at most two wavelengths."""

@@ -73,11 +73,9 @@ class ChebyshevCurve:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         positive_load = load[touching]
-        angle = (
-            positive_load
-            if kind == "half_angle"
-            else _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
-        )
+        angle = positive_load
+        if kind != "half_angle":
+            angle = _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
         reachable = angle <= self.curve.widest_angle
         state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest_angle))
         return JointContacts(
@@ -313,18 +311,14 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
     terms, points = _TERMS, _POINTS
     with numpy.errstate(all="ignore"):
         for _ in range(_ATTEMPTS if curve.widest_angle > 0 else 0):
-            candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knot_angles(curve, terms), points))
+            widest_root = float(angle_root(curve.widest_angle, curve.ratio))
+            angles = half_angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
+            candidate = ChebyshevCurve(curve=curve, knots=curve.state(angles, points))
             if candidate.is_accurate:
                 return candidate
             needs_terms = numpy.max(candidate.truncation_error) > numpy.max(candidate.knots.error)
             terms, points = (terms * 3 // 2, points) if needs_terms else (terms, points * 3 // 2)
     return curve
-
-
-def _knot_angles(curve: LoadCurve, terms: int) -> Numbers:
-    """Compute half angles in rad at Chebyshev points up to the widest contact."""
-    widest_root = float(angle_root(curve.widest_angle, curve.ratio))
-    return half_angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
 
 
 def _evaluate_contacts_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:

@@ -8,7 +8,7 @@ moves its surface by c_n (1 + (-1)^n) p_n P_n in place of c_n p_n P_n.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, cached_property, lru_cache
 from math import nan, pi
 from typing import ClassVar
@@ -45,7 +45,6 @@ class HemisphereGap(LinearGap):
 
     @property
     def _wave_numbers(self) -> Numbers:
-        """Wave numbers n + ½ of the modes."""
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
@@ -223,6 +222,7 @@ class Hemisphere:
     """
 
     kernel: Kernel
+    _cached_windows: dict[int, Bodies | None] = field(default_factory=dict, init=False, repr=False)  # by first index
 
     @cached_property
     def _load_curve(self) -> LoadCurve:
@@ -237,11 +237,6 @@ class Hemisphere:
     @cached_property
     def _knot_bodies(self) -> Bodies | None:
         return self._solve_bodies(self._load_curve.knots)
-
-    @cached_property
-    def _cached_windows(self) -> dict[int, Bodies | None]:
-        """Contacts of both bodies solved so far, by the index of the first of their half angles."""
-        return {}
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
         """Return contacts on the closed sphere and on the hemisphere around half angles, or None.

@@ -60,11 +60,9 @@ class LoadCurve:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         positive_load = load[touching]
-        angle = (
-            positive_load
-            if kind == "half_angle" or self._max_computed_angle == 0
-            else self._estimate_angle(kind, positive_load)
-        )
+        angle = positive_load
+        if kind != "half_angle" and self._max_computed_angle > 0:
+            angle = self._estimate_angle(kind, positive_load)
         for points in _GRIDS:
             state, residual = self._solve(kind, positive_load, self._clip_angles(angle), points)
             reached = (state.half_angle <= LIMIT) & (state.half_angle < self._max_computed_angle) & _is_contact(state)
@@ -109,9 +107,8 @@ class LoadCurve:
         low, high = (_ANGLES[first - 1] if first else 0.0), _ANGLES[first]
         for _ in range(16):
             middle = (low + high) / 2
-            low, high = (
-                (middle, high) if _is_contact(self.state(numpy.array([middle]), _GRIDS[0])).all() else (low, middle)
-            )
+            exists = _is_contact(self.state(numpy.array([middle]), _GRIDS[0])).all()
+            low, high = (middle, high) if exists else (low, middle)
         return float(low)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isqrt, log1p, radians
 
@@ -243,6 +243,7 @@ class StressCurve:
 
     curve: LoadCurve
     points: int
+    _cached_ratios: dict[int, float] = field(default_factory=dict, init=False, repr=False)  # by index of the half angle
 
     @cached_property
     def _widest_coordinate(self) -> float:
@@ -276,7 +277,3 @@ class StressCurve:
             state = self.curve.state(numpy.array([min(angle, self.curve.widest_angle)]), self.points)
             self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
         return self._cached_ratios[number]
-
-    @cached_property
-    def _cached_ratios(self) -> dict[int, float]:
-        return {}

@@ -67,15 +67,9 @@ class MeshedContact(SolvedContact):
     def _joint_von_mises(self, index: Numbers, contacts: JointContacts) -> Numbers:
         from .section import section
 
-        values = [
-            nan
-            if contact is None
-            else section(
-                joint_at(self.joint, self.laws.shape, int(index[0])), self.model.cup, contact
-            ).peak_stress.von_mises
-            for contact in contacts.state.solved
-        ]
-        return numpy.array(values, dtype=float)
+        joint, cup = joint_at(self.joint, self.laws.shape, int(index[0])), self.model.cup
+        sections = (None if contact is None else section(joint, cup, contact) for contact in contacts.state.solved)
+        return numpy.array([nan if part is None else part.peak_stress.von_mises for part in sections], dtype=float)
 
     @property
     def peak_stress(self) -> Peak:

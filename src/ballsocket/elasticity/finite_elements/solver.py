@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from math import inf, pi, radians
 from operator import attrgetter
@@ -57,6 +57,7 @@ class MeshedLoadCurve:
     ends_at_rim: bool
     meshes: int
     order: int
+    _cached_brackets: dict[tuple[int, int], ContactBracket] = field(default_factory=dict, init=False, repr=False)
 
     def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
@@ -98,21 +99,14 @@ class MeshedLoadCurve:
             )
         return self._cached_brackets[number, mesh]
 
-    @cached_property
-    def _cached_brackets(self) -> dict[tuple[int, int], ContactBracket]:
-        """Contacts on the meshes used so far, by class and mesh."""
-        return {}
-
     def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
         """Solve one contact on the mesh of a class; None for a load outside the range of the class."""
         bracket = self._contact_bracket(number, mesh)
         if kind == "half_angle":
-            contact = (
-                partial_contact(bracket.pair, self.gap, load)
-                if self.classes[-1] / _CLASS_MARGIN <= load <= bracket.high
-                else None
-            )
-            return contact if contact is not None and is_pressed(contact) else None
+            if not self.classes[-1] / _CLASS_MARGIN <= load <= bracket.high:
+                return None
+            contact = partial_contact(bracket.pair, self.gap, load)
+            return contact if is_pressed(contact) else None
         if number == 0 and self.ends_at_rim and bracket.lies_below(kind, load):
             return _solve_full_contact(kind, load, bracket.pair, self.gap)
         return bracket.solve(kind, load)

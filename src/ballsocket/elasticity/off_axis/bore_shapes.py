@@ -155,7 +155,6 @@ class DepthTable(InterpolatedDeviation):
     values: Numbers
 
     def __post_init__(self) -> None:
-        """Convert the fields to arrays and validate them."""
         for name in ("polar", "azimuth", "values"):
             object.__setattr__(self, name, numpy.asarray(getattr(self, name), dtype=float))
         for name, limit in (("polar", pi), ("azimuth", 2 * pi)):

@@ -149,7 +149,6 @@ class TiltedDeck:
     scale: float = 1e-3
 
     def __post_init__(self) -> None:
-        """Validate the fields."""
         check_cup(self.cup, self.joint)
         if self.joint.ball is not None:
             raise ValueError("a tilted deck has a rigid ball: leave the ball's material out")

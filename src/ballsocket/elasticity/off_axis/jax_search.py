@@ -1,8 +1,8 @@
 """Search for the equilibrium of many balls in JAX, compiled, with derivatives.
 
 The search is that of `coupled_search`. Lanes that have converged are masked until a quarter is left, which continues
-in arrays of its own. Derivatives follow from one
-Newton step at the solution, in its touching cells. The step is zero there, and its derivative is that of the solution.
+in arrays of its own. Derivatives follow from one Newton step at the solution, in its touching cells. The step is zero
+there, and its derivative is that of the solution.
 """
 
 from __future__ import annotations

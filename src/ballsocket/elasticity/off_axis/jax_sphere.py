@@ -157,7 +157,6 @@ class JaxSphere:
     dtype: str = "float32"
 
     def __post_init__(self) -> None:
-        """Validate model, joint, precision and tolerance."""
         _check_bore(self.model, self.joint)
         if not (isinstance(self.dtype, str) and self.dtype in _DTYPES):
             raise ValueError(f"dtype = {shown(self.dtype)} is not allowed: it is {' or '.join(map(repr, _DTYPES))}")

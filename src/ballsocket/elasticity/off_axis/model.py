@@ -110,7 +110,6 @@ class Sphere(Model):
     reach: ClassVar[str] = "forces along directions in which the bore holds the ball, contacts no wider than the bore"
 
     def __post_init__(self) -> None:
-        """Validate the fields."""
         for name, types in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
             if not isinstance(getattr(self, name), types):
                 allowed = " or ".join(kind.__name__ for kind in types)
@@ -239,35 +238,23 @@ class Sphere(Model):
         from .load_cases import check_contact_memory  # slow to import
 
         reject_unnamed_loads(unnamed)
-        if keep is not None and keep != self.keep:
-            return replace(self, keep=keep).press(
-                joint,
-                force=force,
-                indentation=indentation,
-                half_angle=half_angle,
-                displacement=displacement,
-                direction=direction,
-                tilt=tilt,
-                azimuth=azimuth,
-                inclination=inclination,
-                anteversion=anteversion,
-            )
+        model = self if keep in (None, self.keep) else replace(self, keep=keep)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         numbers, vectors = (*load.values(), tilt, azimuth, inclination, anteversion), (displacement, direction)
         shapes = [numpy.shape(number) for number in numbers if number is not None]
         check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
         if inclination is not None or anteversion is not None:
             return (
-                self.with_direction(direction, tilt, azimuth)
+                model.with_direction(direction, tilt, azimuth)
                 .with_orientation(inclination, anteversion)
                 ._press_along(joint, **load)
             )
         if displacement is None:
-            return self.with_direction(direction, tilt, azimuth)._press_along(joint, **load)
+            return model.with_direction(direction, tilt, azimuth)._press_along(joint, **load)
         select_load(**load, displacement=displacement)
         if direction is not None or tilt is not None or azimuth is not None:
             raise ValueError("a displacement includes its direction: leave direction, tilt and azimuth out")
-        return self._press_displaced(joint, displacement)
+        return model._press_displaced(joint, displacement)
 
     def _press_displaced(self, joint: Joint, displacement: Array) -> Contact:
         """Solve the contact of a ball at a displacement vector in mm; within the clearance there is none."""
