@@ -65,7 +65,7 @@ def test_joints_in_metres_and_pascals_have_a_note(scale, notes):
 
 def test_an_error_that_is_not_known_is_absent():
     """Closed forms have that of their promise where they are valid."""
-    assert bs.Steuermann().press(HIP, force=1000.0).error.keys() == {"von_mises"}
+    assert not bs.Steuermann().press(HIP, force=1000.0).error
     spring = bs.HessForsbach().press(HIP, force=[1000.0, 1e7])
     assert spring.error["max_pressure"][0] == spring.model.promise.within
     assert np.isnan(spring.error["indentation"][1])

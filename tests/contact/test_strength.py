@@ -69,6 +69,7 @@ def test_utilisation_of_a_contact_is_its_stress_over_yield_stress():
     np.testing.assert_allclose(contact.utilisation, contact.von_mises / HIP.liner.yield_stress)
     ratio = von_mises_ratio(contact.half_angle, 0.4, HIP.thickness_ratio)
     np.testing.assert_allclose(contact.von_mises, ratio * contact.max_pressure)
+    np.testing.assert_allclose(contact.error["von_mises"], (1 + contact.error["max_pressure"]) * (1 + TABLE_ERROR) - 1)
     np.testing.assert_allclose(contact.utilisation_at(np.array([True, False])), contact.utilisation)
 
 

@@ -192,3 +192,6 @@ def test_all_files_that_name_a_table_have_the_keys_columns_and_skip(tmp_path):
     study = 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "rows.csv"\n' + keys % "clearance"
     first = run("study", str(write(tmp_path, study, name="study.toml"))).stdout.splitlines()[0]
     assert first == "hertz, 2 row; rows.csv: 2 rows read, left out 1 line above the heads"
+    refused = run("study", str(write(tmp_path, study.replace('skip = "T"', ""), name="bad.toml"))).stderr
+    assert "column 'T" in refused
+    assert "joint file" not in refused  # it is the right command

@@ -125,7 +125,6 @@ class LongWork:
             self.show(self.page.screen)
 
     def leave(self) -> None:
-        """Stop the work."""
         self._job.stop()
 
 

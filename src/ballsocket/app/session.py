@@ -235,7 +235,6 @@ class Page:
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
 
     def _fields(self) -> dict[str, Field]:
-        """Return every input beside the views by name."""
         angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
         sizes = segments("size", "Ball size as", SIZES, self.screen.size)
         units = segments("units", "Units", _UNITS, self.screen.units)
@@ -258,7 +257,6 @@ class Page:
         self._slow_presses.ask(*self.view.asks(self.screen))
 
     def _put(self) -> None:
-        """Set every input to the state of the screen."""
         self._joint_inputs = joint_inputs(self.screen)
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
@@ -286,7 +284,6 @@ class Page:
         )
 
     def leave(self) -> None:
-        """Stop all work of a closed page."""
         self._slow_presses.leave()
         self._printing.stop()
         for timer in self._timers:

@@ -102,13 +102,7 @@ def to_summary(contact: Any) -> dict[str, Any]:
 
 
 def to_frame(contact: Any) -> pandas.DataFrame:
-    """Return a pandas data frame of a contact with one row per point.
-
-    Raises
-    ------
-    ImportError
-        pandas is not installed.
-    """
+    """Return a pandas data frame of a contact with one row per point; see `Contact.to_frame`."""
     needs("study", "pandas")
     import pandas
 

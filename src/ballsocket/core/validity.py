@@ -189,7 +189,6 @@ class NeverValid(Range):
     """Empty validity range, of a model whose results are only for comparison."""
 
     quantity: str | Callable[[Any], Array] = "indentation"
-    symbol: str = ""
 
     def holds(self, contact: Any) -> Array:
         """Return a mask that is false for all contacts."""

@@ -121,7 +121,6 @@ def _joint_and_load(question: Question, case: Case) -> tuple[Joint, dict[str, An
 
 
 def _solve(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
-    """Solve a case with one model; return its numbers, known errors and notes."""
     contact = model.press(joint, **load)
     return CalculationMethod(
         name=name,

@@ -56,7 +56,7 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
 
 
 _KINDS = (
-    (("axes", "samples"), "study", "study"),
+    (("axes", "samples", "table"), "study", "study"),
     (("question", "context_of_use"), "question", "evidence"),
     (("free", "machine"), "measurement", "identify"),
     (("cycle", "activity"), "hip", "hip"),
@@ -86,7 +86,7 @@ def _other_kind(content: Mapping[str, Any], kind: str, title: str) -> str:
                 found, command = "wear test", "identify"
             related = {kind, found} == {"hip", "wear test"} and "data" not in content
             return "" if found == kind or related else f"; this is a {found} file: ballsocket {command} {title}"
-    is_joint = kind != "joint" and "joint" in content and "data" not in content
+    is_joint = kind != "joint" and isinstance(content.get("joint"), Mapping) and "data" not in content
     return f"; this is a joint file: ballsocket press {title}" if is_joint else ""
 
 

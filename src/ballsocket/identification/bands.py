@@ -89,15 +89,8 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
     def excess_of_squares(factor: float) -> float:
         """Compute the sum of squared residuals minus the degrees of freedom, for a factor on uncertainties."""
-        scaled_residuals = residuals / factor
-        return (
-            float(
-                numpy.sum(
-                    scaled_residuals * misfit.scatter.misfit(scaled_residuals) * misfit.scatter.slope(scaled_residuals)
-                )
-            )
-            - misfit.freedom
-        )
+        z = residuals / factor
+        return float(numpy.sum(z * misfit.scatter.misfit(z) * misfit.scatter.slope(z))) - misfit.freedom
 
     if misfit.freedom <= 0 or excess_of_squares(1.0) <= 0:
         return 1.0
@@ -108,10 +101,7 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
 
 def _band_half_width(factor: float, freedom: int, noise_freedom: float) -> float:
-    """Compute the half width of a 95 % band in standard deviations, by Student's or the normal distribution.
-
-    It is Student's quantile for estimated uncertainties and for an improbably large scatter, else the normal quantile.
-    """
+    """Compute the half width of a 95 % band; by Student for estimated uncertainties and improbably large scatter."""
     from scipy.stats import chi2, t
 
     if isfinite(noise_freedom):
@@ -271,10 +261,7 @@ def _advance_end_search(
 
 
 def _newton_step(path: _EndSearch, point: _QuadraticModel, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
-    """Compute the Newton step towards an interval end: change of theta, rise of χ² and possible decrease.
-
-    The other unknowns minimise χ² within their ranges.
-    """
+    """Compute the Newton step towards an interval end: change of theta, rise of χ² and decrease by the others."""
     index, theta = path.index, path.theta
     fixed_mask = _mask_limited_by_range(theta, point.gradient, low, high)
     fixed_mask[index] = True

@@ -97,6 +97,9 @@ def read_measured(
         needed = (kind, name, name + UNCERTAINTY, kind + UNCERTAINTY, "angle")
         rows, order = _complete_rows(table, {head: columns[head] for head in needed if head in columns}, gaps)
         column = rows.get(name + UNCERTAINTY)
+        load_arguments: dict[str, Any] = {}
+        if kind:
+            load_arguments = {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}
         noise = parse_uncertainty(_QUANTITIES[name], uncertainty) if column is None else {"uncertainty": column}
         sets.append(
             Measured(
@@ -108,7 +111,7 @@ def read_measured(
                 order=order,
                 name=path.name,
                 remark=table.remark({"with a gap": len(table) - len(order)}),
-                **_load_arguments(kind, rows, load_uncertainty),
+                **load_arguments,
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
@@ -153,9 +156,3 @@ def parse_uncertainty(quantity: Quantity, stated: float | str | None) -> dict[st
     if not 0 < share < inf:
         raise ValueError(f"{name} = {shown(stated)} is not allowed: a share of each value is above 0 and finite")
     return {"relative_uncertainty": share}
-
-
-def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
-    if not kind:
-        return {}
-    return {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}

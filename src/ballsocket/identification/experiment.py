@@ -206,10 +206,7 @@ def _choose_indentation_machine(fitted: FittedModel, quantity: str) -> tuple[Mac
 
 
 def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
-    """Estimate the uncertainty of a new measurement from the uncertainties of the data.
-
-    It is absolute or relative, whichever varies less; 2 % for a new quantity.
-    """
+    """Estimate the uncertainty of a new measurement: absolute or relative, whichever varies less in the data."""
     uncertainties_and_values = [
         (uncertainty if measured.has_unknown_noise else measured.uncertainty, abs(measured.values))
         for measured, uncertainty in zip(fitted.data, fitted.uncertainties, strict=True)
@@ -228,7 +225,6 @@ def _candidate_model(fitted: FittedModel, candidates: Sequence[Candidate]) -> Fo
 
 
 def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
-    """Compute the information gain of a candidate from the covariance before and after it."""
     old_covariance = fitted.information.covariance
     weighted_slopes = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
     cross_covariance = old_covariance @ weighted_slopes

@@ -51,8 +51,7 @@ _QUANTITIES = {
     **{name: observable.described for name, observable in FILE_OBSERVABLES.items()},
 }
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
-_FILE_KEYS = ("quantities", "load", "gaps", "columns", "skip")
-"""Keys of data in a file only; other data list their values."""
+_FILE_KEYS = ("quantities", "load", "gaps", "columns", "skip")  # keys of data in a file only
 
 
 class Numbers(Parsed):

@@ -89,10 +89,7 @@ class ForwardModel:
         return arrays.where(valid_geometry, xp.concat(result_rows, axis=1), float("nan"))
 
     def _compute_results(self, joints_at_points: _JointsAtPoints, load_factor: float) -> list[Array]:
-        """Compute the model results of each data set: one array (points, values) for each.
-
-        Data sets with the same kind of load share one press.
-        """
+        """Compute the results (points, values) of each data set; those with the same kind of load share one press."""
         results_by_index: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
             indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
@@ -168,7 +165,6 @@ class _JointsAtPoints:
     def _measured_quantity_values(
         self, contact: Contact, contact_count: int, measured: Measured, value_range: slice
     ) -> Array:
-        """Return the values of the measured quantity of a data set from the computed contacts."""
         if measured.observable is not None:
             numbers = {name: self.numbers[name] for name in measured.observable.numbers}
             return _add_point_axis(measured.observable.read(contact, **numbers))[:, value_range]

@@ -258,7 +258,6 @@ class Information:
 
     @cached_property
     def _identifiable_information(self) -> Numbers:
-        """Fisher information matrix without the unidentifiable directions."""
         values, vectors = self._eigenvalues_and_vectors
         return (vectors[:, : self.rank] * values[: self.rank]) @ vectors[:, : self.rank].T
 
@@ -284,10 +283,7 @@ class Information:
         return tuple(filter(None, map(self._product_from_eigenvector, vectors.T)))
 
     def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
-        """Convert an eigenvector to a product of powers of unknowns; None if it is not identifiable.
-
-        Its largest power is 1.
-        """
+        """Convert an eigenvector to a product of powers, of which the largest is 1; None if it is not identifiable."""
         unknowns = self.transform.unknowns
         prior_deviations = [unknown.prior_deviation for unknown in unknowns]
         powers = vector / prior_deviations
@@ -310,10 +306,7 @@ class Information:
         return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(band_widths) else None
 
     def _product_band(self, exponents: dict[str, float]) -> Product:
-        """Compute the value and the 95 % band of a product of powers of unknowns.
-
-        The band includes those of the unidentifiable unknowns.
-        """
+        """Compute a product of powers and its 95 % band, which includes those of the unidentifiable unknowns."""
         exponent_vector = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
         direction = exponent_vector * [unknown.prior_deviation for unknown in self.transform.unknowns]
         prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])

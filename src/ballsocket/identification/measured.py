@@ -116,7 +116,6 @@ class Measured:
     """True if no uncertainty was stated: `uncertainty` is then a start of its estimate."""
 
     def __post_init__(self) -> None:
-        """Check all fields of the data set, and convert them to arrays."""
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:

@@ -215,12 +215,9 @@ class Misfit:
             numpy.eye(theta.shape[-1])[has_distribution],
             (*theta.shape[:-1], has_distribution.sum(), len(has_distribution)),
         )
-        return (
-            numpy.concatenate(
-                [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]], axis=-1
-            ),
-            numpy.concatenate([residual_slopes[..., None] * slopes, prior_slopes], axis=-2),
-        )
+        residuals = [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]]
+        all_slopes = [residual_slopes[..., None] * slopes, prior_slopes]
+        return numpy.concatenate(residuals, axis=-1), numpy.concatenate(all_slopes, axis=-2)
 
     def costs(self, theta: Numbers) -> Numbers:
         """Compute half of the sum of squared residuals at each point theta (points, unknowns): (points,).

@@ -119,13 +119,6 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _select_posterior_samples(fitted, ensembles, chains, times, samples)
-
-
-def _select_posterior_samples(
-    fitted: FittedModel, ensembles: list[Any], chains: Numbers, autocorrelation_times: Numbers, samples: int
-) -> Posterior:
-    """Select equally spaced samples from all chains, and compute the convergence measures."""
     names = fitted.transform.names
     all_samples = chains.reshape(-1, chains.shape[-1])
     selected = all_samples[numpy.linspace(0, len(all_samples) - 1, samples).round().astype(int)]
@@ -133,8 +126,8 @@ def _select_posterior_samples(
         names=names,
         samples=fitted.transform.to_values(selected),
         acceptance=float(numpy.mean([sampler.acceptance_fraction.mean() for sampler in ensembles])),
-        autocorrelation=dict(zip(names, autocorrelation_times.tolist(), strict=True)),
-        effective=dict(zip(names, (len(all_samples) / autocorrelation_times).tolist(), strict=True)),
+        autocorrelation=dict(zip(names, times.tolist(), strict=True)),
+        effective=dict(zip(names, (len(all_samples) / times).tolist(), strict=True)),
         r_hat={name: _r_hat(chains[..., index]) for index, name in enumerate(names)},
     )
 

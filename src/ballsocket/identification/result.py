@@ -281,7 +281,6 @@ def _machine_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _validity_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield the contact model's notes on the contacts at the loads of the data."""
     notes: dict[str, None] = {}
     for measured in result.data:
         if measured.load:

@@ -84,10 +84,7 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
 
 
 def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield machine name and error for each machine error that the fit neglects.
-
-    The errors are in descending order of their effect.
-    """
+    """Yield machine name and error for each error that the fit neglects, in descending order of its effect."""
     machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
     errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
     for name, machine in machines.items():

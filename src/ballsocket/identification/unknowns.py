@@ -168,10 +168,7 @@ def _make_prior(name: str, stated_prior: Prior) -> Distribution:
 
 
 def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
-    """Compute the lower and the upper end of the search range of an unknown from its prior.
-
-    They are those of a range, or eight standard deviations about a mean, if allowed.
-    """
+    """Return the ends of the search range: those of a range, or eight deviations about a mean, if allowed."""
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
     if isinstance(prior, LogNormal):

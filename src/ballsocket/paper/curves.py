@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -79,19 +79,13 @@ class Figure:
     def joined(cls, parts: Iterable[Figure]) -> Figure:
         """Join several figures into one: panels with the same title get the lines of all, in the order of the parts."""
         figures = list(parts)
+        panels: dict[str, Panel] = {}
+        for panel in (panel for figure in figures for panel in figure.panels):
+            known = panels.get(panel.title)
+            panels[panel.title] = replace(known, lines=[*known.lines, *panel.lines]) if known else panel
         return replace(
-            figures[0],
-            panels=list(_merged(panel for figure in figures for panel in figure.panels)),
-            maps=[entry for figure in figures for entry in figure.maps],
+            figures[0], panels=list(panels.values()), maps=[entry for figure in figures for entry in figure.maps]
         )
-
-
-def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
-    groups: dict[str, list[Panel]] = {}
-    for panel in panels:
-        groups.setdefault(panel.title, []).append(panel)
-    for group in groups.values():
-        yield replace(group[0], lines=[line for panel in group for line in panel.lines])
 
 
 Models = Mapping[str, Model]

@@ -28,12 +28,9 @@ REPORTED_QUANTITIES = ("max_pressure", "half_angle", "indentation", "area", "sti
 
 _VARIED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")  # dimensions of the joint with an elasticity
 _ORIENTATION = ("inclination", "anteversion")  # angles of the cup that set the direction of a load in the body
-
 _SAMPLE_COUNT = 512
 _QUADRATIC_SAMPLE_COUNT = 8192
-_NODE = 3**0.5
-"""Distance of the nodes of a quadratic from the mean, in standard deviations, as of Gauss-Hermite quadrature."""
-
+_NODE = 3**0.5  # nodes of a quadratic in standard deviations from the mean, as of Gauss-Hermite quadrature
 _BAND_PROBABILITIES = (0.025, 0.5, 0.975)
 _NO_RESULT = "some joints within the tolerances have no result; narrow the tolerances"
 

@@ -294,7 +294,6 @@ def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
-    """Create the design of a study: the product of samples, rows of a table and a grid."""
     axes = content.get("axes", {})
     design = grid(**parsed_values(tables.axes, axes))
     with as_given(_texts_of_values(axes), "axes."):

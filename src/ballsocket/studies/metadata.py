@@ -36,9 +36,7 @@ _PARAMETERS = "parameters"  # attribute with the names of varied and fixed param
 HELD = "held"
 """Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
 
-_DERIVED = "derived_lengths"
-"""Attribute with the names of the lengths that follow from varied ones, and the shell's thickness in mm, as JSON."""
-
+_DERIVED = "derived_lengths"  # attribute with the lengths that follow from varied ones and the shell in mm, as JSON
 _LIMITS = "limits"  # attribute with the sentences of the limits of the model's validity, as JSON
 _MISSING = "missing"  # attribute with the reason why a quantity is missing at every point, by its name, as JSON
 _LABELS = "labels"  # attribute with the names of materials by axis, as JSON

@@ -29,7 +29,6 @@ _STARTS = 3  # number of starts of the local optimisation
 _MARGIN_TOLERANCE = 1e-6  # largest violation of a limit by an optimum, in the unit of the limit
 _ACTIVE_MARGIN = 1e-5  # margin, relative to the size of a limit, below which the limit is active
 _ACTIVE_FRACTION = 1e-6  # distance from the end of a range, as a fraction of the range, below which the end is active
-
 _NO_CHOICES: Mapping[str, Any] = MappingProxyType({})
 
 

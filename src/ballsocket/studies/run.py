@@ -47,11 +47,8 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Listener", "Progress", "read", "study"]
-
 _SERIAL = Serial()
-
 _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
-
 _MANY_HOURS = 100.0  # number of hours that is written without digits after the point
 
 
@@ -197,15 +194,7 @@ def _create_task(
 
 
 def _check_space(task: Task, folder: ResultFolder | None, n_points: int | None = None) -> None:
-    """Check that the results of a study fit into the memory, or on the disk of its store.
-
-    `n_points` is the number of points to compute, all points by default.
-
-    Raises
-    ------
-    ValueError
-        The space is too small; the message has the size and the computing time.
-    """
+    """Check that the results of some points, all by default, fit into the memory, or on the disk of the store."""
     count = task.design.size if n_points is None else n_points
     results = count * _result_size(task)
     duration = _duration_text(count * task.model.seconds_a_press / 3600)
@@ -250,7 +239,6 @@ def _axis_size(axis: Axis) -> int:
 
 
 def _duration_text(hours: float) -> str:
-    """Format a duration in hours, with seconds or minutes if it is short."""
     if hours < 1 / 60:
         return f"{3600 * hours:.2g} s"
     if hours < 1:
@@ -268,7 +256,6 @@ def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str
 
 
 def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
-    """Compute and store the missing blocks of a study; raise OSError if a block cannot be written."""
     n_stored = len(run.stored)
     try:
         for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):

@@ -23,9 +23,7 @@ MAX_SOBOL_COUNT = 1 << 30
 
 _MAX_SCIPY_COUNT = 1 << 20  # number of points up to which SciPy draws a Latin hypercube, all points at once
 _N_ROUNDS = 8  # rounds of the Feistel network
-
-_MULTIPLIERS = (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)
-"""Multipliers of the 64-bit finaliser of MurmurHash3 (Appleby 2011)."""
+_MULTIPLIERS = (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)  # of MurmurHash3's 64-bit finaliser (Appleby 2011)
 
 
 class Method(Choice):
@@ -62,7 +60,6 @@ def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: in
 
 
 def _draw_sobol(dimension: int, seed: int, start: int, stop: int) -> Numbers:
-    """Draw the points of a section of the scrambled Sobol sequence of a seed."""
     engine = _sobol_engine(dimension, seed, get_ident())
     if engine.num_generated > start:
         engine.reset()

@@ -41,7 +41,6 @@ _IDENTITY = "study"  # attribute with the identity of the study
 _LABEL_FILE = "zarr.json"  # file with the attributes of the group
 _MAX_LABEL_BYTES = 10_000_000  # largest size in bytes of the file with the attributes
 _MAX_DIFFERENCES = 8  # number of differences in a message
-
 _MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
 
 

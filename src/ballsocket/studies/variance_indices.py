@@ -174,11 +174,9 @@ def shapley_effects(
     arrays: dict[str, Numbers] = {}
     for name, results in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
         blocks = numpy.split(results, 3, axis=-1)
-        arrays |= {f"{order}{name}": block for order, block in zip(_CORRELATED_ORDERS, blocks, strict=True)}
+        orders = ("first_order", "total_order", "shapley")
+        arrays |= {f"{order}{name}": block for order, block in zip(orders, blocks, strict=True)}
     return arrays
-
-
-_CORRELATED_ORDERS = ("first_order", "total_order", "shapley")
 
 
 def _without(indices: Sequence[int], removed: int) -> tuple[int, ...]:
@@ -208,10 +206,7 @@ def _two_sets(dimension: int, count: int, seed: int) -> Numbers:
 
 
 def _evaluate_mixed(evaluate: SampledFunction, base: Numbers, other: Numbers) -> Numbers:
-    """Evaluate, for each parameter, the base samples with this parameter of the other set.
-
-    The shape of the result is (n_parameters, n_quantities, n_points).
-    """
+    """Evaluate the base samples with each parameter of the other set: (n_parameters, n_quantities, n_points)."""
     dimension, count = base.shape
     mixed = numpy.tile(base, (dimension, 1, 1))
     index = numpy.arange(dimension)

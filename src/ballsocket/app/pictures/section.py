@@ -24,6 +24,11 @@ Numbers = numpy.ndarray
 Cells = tuple[Numbers, Numbers, Numbers]
 """Radii (mm) and angles (rad) of the corners of quadrilaterals, (cells, 4), and their pressures or stresses in MPa."""
 
+_QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
+_STRESS_COLUMNS, _STRESS_ROWS = 40, 10
+_MASSIVE_DEPTH = 1.5  # contact radii that are drawn of what has no end
+_STRESS_WIDTH = 1.25  # half angles to each side
+
 
 @dataclass(frozen=True, kw_only=True)
 class DrawingFrame:
@@ -49,9 +54,6 @@ class DrawingFrame:
         rows = numpy.stack(corners, axis=-1).reshape(-1, 8).tolist()
         shares = (values / top).tolist()
         return [f'<path fill="{svg.heat(share)}" d="{_QUAD(*row)}"/>' for share, row in zip(shares, rows, strict=True)]
-
-
-_QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
 
 
 def section(file: JointFile, contact: Contact | None, extent: float, highest: float) -> str:
@@ -129,11 +131,6 @@ def _pressure_in_plane(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
     in_contact = numpy.flatnonzero(pressure > 0)
     shown = slice(max(in_contact[0] - 1, 0), in_contact[-1] + 2) if in_contact.size else slice(0, 0)
     return angle[shown], pressure[shown]
-
-
-_STRESS_COLUMNS, _STRESS_ROWS = 40, 10
-_MASSIVE_DEPTH = 1.5  # contact radii that are drawn of what has no end
-_STRESS_WIDTH = 1.25  # half angles to each side
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,11 +47,8 @@ def _creep_choices() -> tuple[str, ...]:
 WEAR_INPUTS = {key: part for key, part in _inputs(WEAR_LAWS).items() if key != COEFFICIENT}
 """Numbers of wear laws beside the coefficient, by input."""
 
-CREEP_INPUTS = _inputs(CREEP_LAWS, _CREEP_PREFIX)
-"""Numbers of creep laws, by input."""
-
-LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS
-"""Numbers of all laws beside the wear coefficient, by input."""
+CREEP_INPUTS = _inputs(CREEP_LAWS, _CREEP_PREFIX)  # numbers of creep laws, by input
+LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS  # numbers of all laws beside the wear coefficient, by input
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,8 +139,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
 }
 """Names of each choice."""
 
-DEFAULT_USE = Use()
-"""Settings of a page without a link."""
+DEFAULT_USE = Use()  # settings of a page without a link
 
 _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
@@ -190,7 +186,6 @@ class UploadedCycle:
             raise ValueError(f"{shown(self.name)} is not a table of a cycle, which ends in {', '.join(_TABLES)}")
 
     def cycle(self, body_weight: float) -> Cycle:
-        """Read the table as a cycle."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"cycle{Path(self.name).suffix.lower()}"
             path.write_text(self.text, encoding="utf-8")

@@ -28,6 +28,8 @@ _MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
 _CHANGED = " (changed)"
 _LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")  # lengths of the joint with an input
 _MAX_NAME = 80  # characters of a design's name
+_NO_CHOICE, _REMOVE = "", "away"
+_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
 
 @dataclass(frozen=True)
@@ -242,10 +244,6 @@ def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
     if material is not None:
         numbers = {"young": float(material.young), "poisson": float(material.poisson)}
     return _changed(file, lambda tables: tables.update({part: numbers}))
-
-
-_NO_CHOICE, _REMOVE = "", "away"
-_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
 
 def layer_fields(joint: Joint) -> dict[str, Field]:

@@ -24,8 +24,7 @@ _ROUNDINGS = {"<=": ROUND_CEILING, ">=": ROUND_FLOOR}
 
 _DIGITS = 3  # digits of a limit that starts at the present design
 
-Row = tuple[str, str, str]
-"""Name of a quantity, sign, and the text of the value in the unit of the page."""
+Row = tuple[str, str, str]  # name of a quantity, sign, and the text of the value in the unit of the page
 
 
 class LimitRows:

@@ -24,6 +24,7 @@ from ..pictures.chart import swatch
 from .reading import Reading, number_text
 
 _SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}  # units as the head of a column in a file has them
+_MAIN_QUANTITY = "max_pressure"
 
 
 def alert(sentence: str) -> str:
@@ -75,7 +76,6 @@ def axial_models_table(comparison: Comparison, reading: Reading, real: Contact |
 
 @lru_cache(maxsize=8)
 def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
-    """Return the columns of a table of models, each behind its heading in HTML."""
     return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
 
 
@@ -156,7 +156,6 @@ def column_of(quantity: Quantity, unit: Unit) -> str:
 VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
 """Style of each verdict on the page."""
 
-_MAIN_QUANTITY = "max_pressure"
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 

@@ -37,9 +37,6 @@ _QUEUED_PER_WORKER = 2
 _PARENT_CHECK_INTERVAL = 0.5
 """Seconds between two checks that the parent process still runs."""
 
-_STDIN = 0
-"""File descriptor of the standard input."""
-
 _PARENT_ENDED = 1
 """Exit status of a process whose parent process has ended."""
 
@@ -210,7 +207,7 @@ def exit_with_parent() -> None:
     Thread(target=_watch_parent, args=(os.getppid(),), daemon=True).start()
     if fcntl is not None and hasattr(os, "O_ASYNC"):
         parent = parent_process()
-        pipe = _STDIN if parent is None else parent.sentinel
+        pipe = 0 if parent is None else parent.sentinel  # 0 is the standard input
         signal.signal(signal.SIGIO, signal.SIG_DFL)
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
@@ -262,13 +259,9 @@ def available_disk_space(path: Path) -> int:
     return shutil.disk_usage(folder).free
 
 
-_GROUPED_COUNT = 10_000
-"""Count from which digits are grouped."""
-
-
 def count_text(count: int) -> str:
     """Format a count with spaces between groups of three digits, such as "14 800"; plain below 10000."""
-    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", " ")
+    return str(count) if abs(count) < 10_000 else f"{count:,}".replace(",", " ")
 
 
 def size_text(size: float) -> str:

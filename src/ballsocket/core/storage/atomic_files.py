@@ -167,13 +167,7 @@ def _is_abandoned_draft(folder: Path) -> bool:
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
-    """Write a text file atomically, and return its path.
-
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full.
-    """
+    """Write a text file, and return its path; errors as of `write_atomically`."""
     with write_atomically(path) as draft:
         draft.write_text(text, encoding=encoding)
     return path
@@ -197,13 +191,7 @@ _MAX_CACHE_SIZE = 2 * 2**30
 
 
 def write_arrays(path: Path, **arrays: Any) -> None:
-    """Write named arrays, numbers and texts to an npz file, with checksums.
-
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full.
-    """
+    """Write named arrays, numbers and texts to an npz file, with checksums; errors as of `write_atomically`."""
     with write_atomically(path) as draft:
         draft.write_bytes(pack_arrays(**arrays))
 
@@ -216,15 +204,7 @@ def pack_arrays(**arrays: Any) -> bytes:
 
 
 def read_arrays(path: Path) -> dict[str, Numbers]:
-    """Read the arrays of an npz file by name, and verify their checksums.
-
-    Raises
-    ------
-    ValueError
-        The file is damaged or is not an npz file.
-    OSError
-        The file does not exist or is not readable.
-    """
+    """Read the arrays of an npz file by name; errors as of `open_input` and `unpack_arrays`."""
     with open_input(path) as stream:
         return unpack_arrays(stream, path.name)
 

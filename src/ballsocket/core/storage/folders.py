@@ -68,15 +68,7 @@ class ResultFolder(ABC):
         self.write(name, pack_arrays(**arrays))
 
     def read_arrays(self, name: str) -> dict[str, Numbers]:
-        """Read the arrays of an npz file by name, and verify their checksums.
-
-        Raises
-        ------
-        ValueError
-            The file is damaged or is not an npz file.
-        OSError
-            The file does not exist or is not readable.
-        """
+        """Read the arrays of an npz file by name; errors as of `read` and `unpack_arrays`."""
         return unpack_arrays(BytesIO(self.read(name)), name)
 
     @abstractmethod

@@ -116,7 +116,9 @@ def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
 def compared_files(screen: Screen) -> dict[str, JointFile]:
     """Name the designs uniquely, all under the load on the screen; a preset is the example of an empty comparison."""
     files = {_PRESENT: screen.file}
-    for file in screen.beside or _example(screen):
+    preset = next(joints[name] for name in _EXAMPLES if joints[name] != screen.file.joint)
+    example = JointFile(preset, screen.file.load, screen.file.cup)
+    for file in screen.beside or (example,):
         base = name = file.joint.name or "added design"
         number = 2
         while name in files:
@@ -128,11 +130,6 @@ def compared_files(screen: Screen) -> dict[str, JointFile]:
 def base_of(files: Mapping[str, JointFile], screen: Screen) -> str:
     """Return the name of the base, from which differences are taken."""
     return list(files)[min(int(screen.base), len(files) - 1)]
-
-
-def _example(screen: Screen) -> tuple[JointFile, ...]:
-    preset = next(joints[name] for name in _EXAMPLES if joints[name] != screen.file.joint)
-    return (JointFile(preset, screen.file.load, screen.file.cup),)
 
 
 def _table(designs: Designs, base: str, screen: Screen) -> str:

@@ -124,7 +124,6 @@ def _leader(x1: float, y1: float, x2: float, y2: float) -> str:
 
 
 def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
-    """Draw the outer diameter below the cup."""
     x_left, x_right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
     for x in (x_left, x_right):
         yield svg.line(x, frame.y + 4, x, low + 5, "thin")
@@ -133,7 +132,6 @@ def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
 
 
 def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
-    """Label ball and layers with their materials."""
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]

@@ -38,6 +38,8 @@ _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
+_NO_STRESSES = "this model has no stresses inside the liner"
+_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
 class Press(LongView):
@@ -222,10 +224,6 @@ class Press(LongView):
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
         first = (screen.answered_by, *screen.shown)
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
-
-
-_NO_STRESSES = "this model has no stresses inside the liner"
-_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
 def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:

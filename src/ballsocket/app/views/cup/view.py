@@ -32,14 +32,14 @@ from ...widgets.words import VERDICT_KINDS, checked, column_of, number_cell, tru
 from .charts import angle_map
 from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
 
-_FIELDS = (
-    *("inclination", "anteversion", "tilt", "inwards", "forwards"),
-    *("arc_of_cover", "chamfer", "aim", "side"),
-)
+_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
 <figure><figcaption>In three dimensions</figcaption><div id="cup-viewer"></div></figure></div>"""
+
+_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
+_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 
 
 class CupView(LongView):
@@ -89,7 +89,6 @@ class CupView(LongView):
             self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
 
     def _ask_map(self, screen: Screen) -> None:
-        """Show the map of orientations, or the reason why there is none."""
         if "tilt" not in screen.file.aim:
             self.orientations.show(screen)
             return
@@ -164,9 +163,6 @@ def _drawn(screen: Screen) -> dict[str, str]:
     }
 
 
-_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
-
-
 def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
     """Yield the numbers of a file by their names in JSON, each with its unit."""
     for name, value in contact.summary().items():
@@ -185,9 +181,6 @@ def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str
             internal = value / quantity.written.factor
             yield [_TITLES.get(name, quantity.title), reading.with_unit(quantity, internal)]
     yield ["contact at the rim", value_text(bool(contact.edge_loaded))]
-
-
-_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:

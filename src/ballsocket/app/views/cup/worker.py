@@ -25,8 +25,7 @@ from ...results import RESULTS, without_name
 from ...running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
-ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
-"""Orientations of the map."""
+ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))  # orientations of the map
 
 LEWINNEK = (30.0, 50.0, 5.0, 25.0)
 """Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""

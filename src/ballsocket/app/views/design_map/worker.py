@@ -78,10 +78,10 @@ def _in_domain(name: str, joint: Joint) -> bool:
         return False
 
 
-def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
+def mapped(screen: Screen) -> Any:
     """Compute the study behind a map."""
-    joint = _joint_on(file.joint, (across.name, up.name))
-    return _mapped(joint, joint.given, tuple(file.load.items()), across, up, model)
+    joint = _joint_on(screen.file.joint, (screen.across.name, screen.up.name))
+    return _mapped(joint, joint.given, tuple(screen.file.load.items()), screen.across, screen.up, screen.map_model)
 
 
 def _joint_on(joint: Joint, names: Iterable[str]) -> Joint:

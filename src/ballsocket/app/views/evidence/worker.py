@@ -29,6 +29,8 @@ from ...state.evidence_question import EvidenceQuestion
 from ...state.use import Use
 
 _HIP, _QUESTION = "hip.toml", "question.toml"
+EVIDENCE_SECONDS = 600.0  # seconds that a pack may take
+_WORST_CASE_STEPS = 6  # approximate steps of the worst cases
 
 
 def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: Path) -> Question:
@@ -113,12 +115,6 @@ def _bare(name: str, value: float) -> Any:
 def _texts(part: Any) -> Iterator[str]:
     for entry in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
         yield from [entry] if isinstance(entry, str) else _texts(entry)
-
-
-EVIDENCE_SECONDS = 600.0
-"""Seconds that a pack may take."""
-
-_WORST_CASE_STEPS = 6  # approximate steps of the worst cases
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

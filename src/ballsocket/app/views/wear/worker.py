@@ -23,9 +23,7 @@ from ...running import Reached, Report
 from ...state.use import Use, hip_of
 from ..gait.worker import checks_in_use
 
-WEAR_SECONDS = 300.0
-"""Seconds that a run of wear may take."""
-
+WEAR_SECONDS = 300.0  # seconds that a run of wear may take
 _REPORTS = 10
 _PATIENTS = 64
 
