@@ -126,10 +126,9 @@ def test_every_field_has_derivatives_in_jax():
 def test_a_traced_load_without_a_contact_has_no_solution():
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
-        pressed = [
-            float(jax.jit(lambda load: bs.Tabulated().press(HIP, force=load).force)(f)) for f in (-1.0, 0.0, 1e3)
-        ]
-    assert pressed == pytest.approx([np.nan, 0.0, 1e3], rel=1e-12, nan_ok=True)
+        press = jax.jit(lambda force: bs.Tabulated().press(HIP, force=force).max_pressure)
+        pressures = [float(press(force)) for force in (-1.0, 0.0, 1e3)]
+    assert pressures == pytest.approx([np.nan, 0.0, bs.Tabulated().press(HIP, force=1e3).max_pressure], nan_ok=True)
 
 
 def test_the_report_has_the_largest_error_of_each_quantity_and_its_joint():
