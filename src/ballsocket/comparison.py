@@ -163,7 +163,6 @@ def relative_deviation(value: Array, truth: Array) -> Array:
 
 
 def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
-    """Convert deviations to lists for JSON."""
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
@@ -307,7 +306,6 @@ def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -
     max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 
     def curve(contact: Contact, model: Model) -> Contact:
-        """Compute the force curve of one model with a number of points that suits its speed."""
         if model.seconds_a_press > _MESH_SECONDS:
             return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
         if is_curve_slow(model, contact.joint):

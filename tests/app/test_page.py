@@ -70,7 +70,7 @@ def test_the_smallest_loads_that_a_link_can_state_are_shown(link, caplog):
 @pytest.mark.parametrize(("angle", "unit", "factor"), [("degrees", "°", 57.29577951308232), ("radians", "rad", 1.0)])
 def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
     page = Page(f"view=map&quantity=half_angle&angle={angle}&preset=hip-28")
-    found = mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
+    found = mapped(page.screen)
     least = float(found.half_angle.min()) * factor
     gap = "" if unit == "°" else " "
     assert f"Minimum of the half angle: <b>{least:.4g}{gap}{unit}</b>" in page.channel.shown_value("#map-note")
@@ -249,7 +249,7 @@ def part(page, name):
 
 
 def found(page):
-    return mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
+    return mapped(page.screen)
 
 
 def on_axes(x, y):

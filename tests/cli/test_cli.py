@@ -384,7 +384,8 @@ def test_imperial_units_show_inches_and_pounds():
 @pytest.mark.parametrize(("distance", "clearance", "text"), [(0.2, 0.0, ".* undecided"), (-9.4, -0.1, "up to the rim")])
 def test_a_contact_at_the_rim_has_no_negative_distance_and_a_preloaded_one_has_none(distance, clearance, text):
     joint, error = SimpleNamespace(clearance=clearance, socket_radius=14.0), {"edge_margin": 0.02}
-    contact = SimpleNamespace(edge_distance=distance, edge_loaded=True, half_angle=0.7, joint=joint, error=error)
+    state = {"edge_distance": distance, "edge_loaded": True, "half_angle": 0.7, "stated_error": error}
+    contact = SimpleNamespace(joint=joint, error=error, **state)
     assert re.fullmatch(f"contact {text}", elasticity_options._rim_text(contact))
 
 

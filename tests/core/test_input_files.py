@@ -2,7 +2,7 @@
 
 import pytest
 
-from ballsocket.core.input_files import AllowedFolders, open_input, record_inputs, resolve_input, restriction_variables
+from ballsocket.core.input_files import open_input, record_inputs, resolve_input, resolve_inside, restriction_variables
 
 from ..places import symlink_or_skip
 
@@ -25,7 +25,7 @@ def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):
         open_input(folder)
     with pytest.raises(FileNotFoundError):
         open_input(folder / "missing.toml")
-    assert AllowedFolders((tmp_path.resolve(),)).resolve(folder, "folder") == folder.resolve()
+    assert resolve_inside((tmp_path.resolve(),), folder, "folder") == folder.resolve()
 
 
 def test_opened_inputs_are_recorded_once(tmp_path):

@@ -44,6 +44,13 @@ def test_an_aligned_case_is_solved_by_three_methods(pack):
     assert (summary["valid"], summary["aligned"]) == (True, True)
 
 
+@pytest.mark.parametrize(("joint", "clearance"), [('gap = "circular"\njoint', 0.15), ("joint", 0.3)])
+def test_the_tables_of_the_linear_gap_are_not_compared_with_the_circular_gap(joint, clearance, tmp_path):
+    """The circular gap is that of the question, or by default that of clearances above 0.01 R2."""
+    methods = compare_methods(question_of(tmp_path, ("joint", joint)), {**CASE, "clearance": clearance})
+    assert [m.name for m in methods] == ["exact", "sphere (along the axis)"]
+
+
 def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path, monkeypatch):
     wide = property(lambda question: bs.Sphere(cup=question.file.cup, ring_width=np.radians(4.0)))
     monkeypatch.setattr(Question, "model", wide)  # for speed

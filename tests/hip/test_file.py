@@ -131,7 +131,7 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
     def fail(path, *rest):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("ballsocket.reports.hip_report.write_hip_report", fail)
+    monkeypatch.setattr("ballsocket.reports.hip_report.hip_report", fail)
     words = ["hip", str(write_edited_file(tmp_path, *SHORT)), "--json", "--report", str(tmp_path / "hip.html")]
     result = CliRunner().invoke(app, words)
     assert isinstance(result.exception, OSError)

@@ -283,13 +283,15 @@ VALUES = 'values = "38 mm^3/Mc"\n'
 STATION_TABLES = {
     "cycles,A\n1,2\n": r"the column 'A' has no unit: write 'A \[mg\]'",
     "cycles,A [mm^3/Mc]\n1,2\n2,x\n": "line 3 has 'x' under 'A ",
+    "cycles,A [mm/Mc]\n1,2\n": r"values = .2.0 mm/Mc. must be a number with mm\^3 or a unit that converts to it",
+    "cycles,A [mm^3/Mc]\n1,-2\n": r"values = '-2.0 mm\^3/Mc' is not allowed: a measured wear and",
     "station,mass [mg]\nA,2\n": "the column volume is missing; the columns are station, mass",
 }
 MEASURED = [
     ('rate = "mean"\nto = 2e5\n', "", r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'"),
     ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
     ("/Mc", "/year", "is per year: state cycles_per_year at the top of the file"),
-    ("38 mm^3/Mc", "38 mm/Mc", "must be a number with a unit"),
+    ("38 mm^3/Mc", "38 mm/Mc", r"must be a number with mm\^3 or a unit"),
     ('values = "38 mm^3/Mc"\n', "", "needs its values"),
     ('quantity = "volume"\n', "", "needs its quantity"),
     (WEAR_DATA, "", "no measured wear: add "),

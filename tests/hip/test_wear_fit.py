@@ -189,6 +189,8 @@ def test_a_relative_uncertainty_is_a_share_of_the_fitted_value():
     fit = fit_wear_coefficient(use, one)
     assert fit.coefficient == pytest.approx(1e-6, rel=1e-6)
     assert fit.high / fit.coefficient - 1 == pytest.approx(1.96 * 0.3 / 2**0.5, rel=1e-3)
+    equal = fit_wear_coefficient(use, volume(readings[[0, 0]], rate="initial", station=["A", "B"]))
+    assert any("their scatter gives no band; state uncertainty" in note for note in equal.notes)
 
 
 @pytest.mark.long

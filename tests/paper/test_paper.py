@@ -108,7 +108,7 @@ def test_figures_are_equal_after_a_round_trip_through_json():
         curves.figure_3_or_4(3, FEW),
         curves.figure_5("head radius", "R1 11 mm", FEW),
         curves.figure_6("hess-forsbach", bs.HessForsbach(), points=7),
-        curves.figure_6_areas("bartel", bs.Bartel(), bs.HessForsbach(), points=7),
+        curves.figure_6_deviations("area", "bartel", bs.Bartel(), bs.HessForsbach(), points=7),
     ):
         assert Figure.of(json.loads(json.dumps(figure.summary()))) == figure
 
@@ -131,7 +131,7 @@ def test_figure_5_shows_the_pressure_over_the_arc_where_the_radius_varies():
 
 
 def test_deviations_in_a_map_equal_those_of_single_contacts():
-    deviation = curves.figure_6_pressures("bartel", bs.Bartel(), bs.HessForsbach(), points=7).maps[0]
+    deviation = curves.figure_6_deviations("max_pressure", "bartel", bs.Bartel(), bs.HessForsbach(), points=7).maps[0]
     joint = cases.joint(head_radius=15.0, liner_thickness=7.0)
     one, other = (model.press(joint, force=3000.0).max_pressure for model in (bs.Bartel(), bs.HessForsbach()))
     assert deviation.z[deviation.y.index(7.0)][deviation.x.index(15.0)] == pytest.approx(100 * (one / other - 1))

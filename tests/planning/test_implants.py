@@ -148,8 +148,15 @@ def test_obj_and_ply_files_hold_the_same_triangles(tmp_path):
         *((tmp_path / "a.ply", {"binary": flag}) for flag in (False, True)),
     ):
         meshio.write(path, mesh, **options)
-        path.write_bytes(path.read_bytes().replace(b"vertex_indices", b"vertex_index"))  # both names are usual
+        content = path.read_bytes().replace(b"vertex_indices", b"vertex_index")  # both names are usual
+        path.write_bytes(b"vn 0 0 1\nvt 0 0\n" * (path.suffix == ".obj") + content)  # fewer than the points
         np.testing.assert_allclose(read_mesh(path).triangles, SMALL, atol=1e-8)
+
+
+PLY = (
+    b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -159,6 +166,12 @@ def test_obj_and_ply_files_hold_the_same_triangles(tmp_path):
         ("a.stl", b"ply\nformat ascii 1.0\n", "a.stl is a PLY file: name it with the suffix .ply"),
         ("a.obj", b"v 1 2 3\nv 4 5 6\nv 7 8 0\nf -3 -2 -1\n", "a face names point -3, and the file has 3 points"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "the file is incomplete"),
+        (
+            "a.ply",
+            PLY.replace(b"face 1", b"face 0") + b"1 2 3\n",
+            "a.ply is incomplete: its header states 3 points, and it has 1",
+        ),
+        ("a.ply", PLY + b"1 2 3\n4 5 6\n7 8 0\n3 0 1 3\n", "a face names point 3, .*: count them from 0"),
     ],
 )
 def test_other_files_are_refused_by_their_name(tmp_path, name, content, message):

@@ -89,6 +89,7 @@ REFUSED = {
     "a word": (text(POINTS) + "\n1 2 x", "line 1001 has '1 2 x': that is no point"),
     "decimal commas between commas": (PLAIN.replace(".", ",").replace(" ", ","), "may separate numbers or decimals"),
     "two decimal marks": (PLAIN.replace(" ", ";") + "\n1,5;2;3", "it has decimal points and decimal commas"),
+    "other number": ("2000\n" + text(POINTS), "first line states 2000 points, and it has 1000: save it again"),
     "few": (text(POINTS[:50]), "at least 200 points"),
     "plane": (text(POINTS * [1.0, 1.0, 0.0]), "is not a bore"),
     "head": (text(HEAD), "% of its points lie inside the sphere"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.problem.dimensions import derive_lengths
+from ballsocket.problem.dimensions import LENGTHS, check_given, derive_lengths, give
 
 from ..joints import HIP
 
@@ -214,6 +214,13 @@ def test_a_changed_joint_keeps_the_lengths_that_it_was_made_from(lengths, change
     assert joint.replace(liner=bs.POM).given_lengths == joint.given_lengths
     several = bs.Joint(head_diameter=np.array([28.0, 32.0]), clearance=0.1, liner_thickness=5.0, liner=bs.POM)
     assert not several.given_lengths["head_diameter"].flags.writeable
+
+
+@pytest.mark.parametrize("wall", [("ball_radius", "outer_radius"), ("liner_thickness", "outer_radius")])
+def test_a_length_that_is_set_takes_the_place_of_one_that_follows(wall):
+    for name in LENGTHS:
+        lengths = give(name, ("clearance", *wall))
+        assert (len(lengths), lengths[-1], check_given(lengths)) == (3, name, lengths)
 
 
 @pytest.mark.parametrize(

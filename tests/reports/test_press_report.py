@@ -18,7 +18,7 @@ from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.check_table import checks_at, checks_html, checks_of, verdict_of, wear_check
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_report
+from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
@@ -36,7 +36,8 @@ TWO = {"exact": bs.Exact(), "hess-forsbach": bs.HessForsbach()}
 def pages():
     comparison = bs.compare(HIP, models=TWO, cup=FILE.cup, force=3000.0)
     near = local_uncertainty(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.1, 0.03)})
-    return {units: press_report(comparison, FILE, "exact", units, near, date(2026, 1, 2)) for units in Units}, near
+    design = PressedDesign(comparison=comparison, file=FILE, leading="exact", uncertainty=near)
+    return {units: designs_report([design], units, date(2026, 1, 2)) for units in Units}, near
 
 
 def test_the_page_has_the_verdict_the_drawing_and_every_input_in_the_units_that_are_chosen(pages):

@@ -8,8 +8,7 @@ from typing import Any
 
 from .widgets.fields import Field
 
-MAX_REQUEST_LENGTH = 300_000
-"""Characters of one request: an uploaded joint file is shorter."""
+MAX_REQUEST_LENGTH = 300_000  # characters of one request: an uploaded joint file is shorter
 
 
 def read_request(text: str | bytes) -> dict[str, Any] | None:
@@ -55,7 +54,6 @@ class Channel:
             self._current[name] = self._pending[name] = value
 
     def put_fields(self, fields: Mapping[str, Field]) -> None:
-        """Set the inputs of the page."""
         for name, field in fields.items():
             value, refusal = self._refused.get(name, (None, {}))
             if refusal and value != field["value"]:

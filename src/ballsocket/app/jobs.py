@@ -12,6 +12,8 @@ from typing import Any
 from .running import MAX_SECONDS, Run, RunFinished, RunRefused, Work
 
 _POLL_INTERVAL = 0.15  # s between two questions for news
+_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}  # runs by their work, with the jobs that wait for them
+_MAX_WAITING = 8
 
 
 def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHandle | None:
@@ -20,10 +22,6 @@ def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHan
         return asyncio.get_running_loop().call_later(seconds, function)
     except RuntimeError:
         return None
-
-
-_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}
-"""Runs by their work, with the jobs that wait for them."""
 
 
 def _work_key(work: Work) -> Hashable:
@@ -89,7 +87,6 @@ class Job:
         self._heard(key, news)
 
     def stop(self) -> None:
-        """End the process."""
         if self._timer is not None:
             self._timer.cancel()
         if self._run is not None:
@@ -103,8 +100,6 @@ class Job:
 
 _DRAWING_THREAD = ThreadPoolExecutor(max_workers=1, thread_name_prefix="drawing")
 """One at a time: they share what a figure is drawn with, and leave the other core to the pages."""
-
-_MAX_WAITING = 8
 
 
 class PageThread:

@@ -113,7 +113,6 @@ class LongWork:
         self.page.channel.put_fields({name: {"name": name, "kind": "run", "label": self.label, **state}})
 
     def _hear(self, question: Hashable, news: Any) -> None:
-        """Show news of the work on the page."""
         if isinstance(news, Reached):
             self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
         elif isinstance(news, RunRefused):
@@ -126,12 +125,10 @@ class LongWork:
             self.show(self.page.screen)
 
     def leave(self) -> None:
-        """Stop the work."""
         self._job.stop()
 
 
 def _with_time_left(news: Reached, elapsed: float) -> str:
-    """Append the estimated time left to the words of the progress."""
     if elapsed < 1.0 or not 0.05 < news.share < 1.0:
         return news.words
     left = elapsed * (1.0 - news.share) / news.share

@@ -26,6 +26,11 @@ from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
+_WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
+AXIAL_TILT = 1e-9  # tilt in rad up to which a load counts as axial
+_ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
+_SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
+Profile = tuple[numpy.ndarray, numpy.ndarray, bool]  # angles (rad), pressures (MPa), and True where they can be trusted
 
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
@@ -44,9 +49,6 @@ def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
             contacts |= comparison.contacts
             missing |= comparison.missing
     return Comparison(file.joint, contacts, missing)
-
-
-_WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 
 
 def is_waiting(file: JointFile, name: str) -> bool:
@@ -86,10 +88,6 @@ def axial_limit(file: JointFile, contact: Contact | None) -> AxialLimit | None:
     return None
 
 
-AXIAL_TILT = 1e-9
-"""Tilt in rad up to which a load counts as axial."""
-
-
 def tilt_of(file: JointFile) -> float:
     """Return the angle in rad between the load and the axis of the cup."""
     return float(file.aim["tilt"]) if "tilt" in file.aim else _tilt_to(file.cup, tuple(file.aim.get("direction", UP)))
@@ -125,10 +123,6 @@ def curve(contact: Contact, largest: float) -> Contact | None:
     return _cached_curve(contact.joint, contact.model.name, min(ceil(end / _ANGLE_STEP) * _ANGLE_STEP, MAX_HALF_ANGLE))
 
 
-_ANGLE_STEP = 0.02
-"""Step in rad of the largest half angle of a curve, which stays while a slider moves a little."""
-
-
 @lru_cache(maxsize=256)
 def _cached_curve(joint: Joint, name: str, half_angle: float) -> Contact | None:
     try:
@@ -152,10 +146,6 @@ def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
     return angle, numpy.asarray(contact.pressure(angle))
 
 
-_SMALLEST_AXIS = 1e-300
-"""Number below which powers of ten lose digits."""
-
-
 def rounded_up(value: float) -> float:
     """Round up to 1, 1.5, 2, 3, 5 or 7 times a power of ten, for axes that stay while a slider moves.
 
@@ -175,10 +165,6 @@ def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
     charts = pressure_chart(profiles, lines, reading), _force_chart(contacts, lines, reading)
     figures = "".join(f"<figure>{picture}</figure>" for picture in charts)
     return f"<div class='pair'>{figures}</div><p class='legend'>{legend({name: lines[name] for name in contacts})}</p>"
-
-
-Profile = tuple[numpy.ndarray, numpy.ndarray, bool]
-"""Angles (rad), pressures (MPa), and True where they can be trusted."""
 
 
 def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyle], reading: Reading) -> str:

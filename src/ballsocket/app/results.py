@@ -11,8 +11,7 @@ from typing import Any
 
 from ..problem import Joint
 
-SECONDS = 86_400.0
-"""Seconds that a result is stored."""
+SECONDS = 86_400.0  # seconds that a result is stored
 
 
 def without_name(joint: Joint) -> Joint:
@@ -53,5 +52,4 @@ class ResultStore:
         self._bytes -= self._results.pop(question, (None, 0, 0.0))[1]
 
 
-RESULTS = ResultStore()
-"""Results of the long views of all pages."""
+RESULTS = ResultStore()  # results of the long views of all pages

@@ -12,17 +12,10 @@ from typing import Any
 from ..core.executors.processes import available_cores, exit_with_parent, limit_threads
 from ..core.validity import OutsideDomainError
 
-MAX_SECONDS = 60.0
-"""Seconds that a run may take."""
-
-MAX_MEMORY = 4_000_000_000
-"""Bytes that its process may ask for."""
-
-Report = Callable[[Any], None]
-"""Callback for intermediate results, as plain values."""
-
-Work = Callable[[Report], Any]
-"""Function that a process runs; it, its result and its reports must be picklable."""
+MAX_SECONDS = 60.0  # seconds that a run may take
+MAX_MEMORY = 4_000_000_000  # bytes that its process may ask for
+Report = Callable[[Any], None]  # callback for intermediate results, as plain values
+Work = Callable[[Report], Any]  # function that a process runs; it, its result and its reports must be picklable
 
 
 class RunQueue:
@@ -47,8 +40,7 @@ class RunQueue:
             self._runs.remove(run)
 
 
-QUEUE = RunQueue(max(1, available_cores()))
-"""Queue of all pages: as many runs at once as there are cores."""
+QUEUE = RunQueue(max(1, available_cores()))  # queue of all pages: as many runs at once as there are cores
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +119,6 @@ class Run:
 
 
 def _run(pipe: Connection, work: Work) -> None:
-    """Run the work inside the process."""
     exit_with_parent()
     limit_memory()
     try:

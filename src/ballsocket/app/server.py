@@ -47,6 +47,14 @@ _SENTENCES = {
     405: "this server does not know this method\n",
 }
 
+MAX_SESSIONS = 400  # largest number of open pages. The same number of sockets may be connected without a page.
+_MAX_MESSAGE = 400_000  # bytes; an upload is smaller
+_RATE, _BURST = 60.0, 120.0  # requests a second, and at once, that are read from one browser
+_SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
+_PING_INTERVAL = 20  # s; a browser that does not answer for as long has gone
+_PONG = '{"pong": true}'
+LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
+
 
 class HostNames:
     """Host names under which browsers may reach a server, such as "hips.example.org:8443"; "*" is any part of one."""
@@ -110,16 +118,6 @@ class _File(_Guarded):
         kind, content = files[name]
         self.set_header("Content-Type", kind)
         self.write(content)
-
-
-MAX_SESSIONS = 400
-"""Largest number of open pages. The same number of sockets may be connected without a page."""
-
-_MAX_MESSAGE = 400_000  # bytes; an upload is smaller
-_RATE, _BURST = 60.0, 120.0  # requests a second, and at once, that are read from one browser
-_SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
-_PING_INTERVAL = 20  # s; a browser that does not answer for as long has gone
-_PONG = '{"pong": true}'
 
 
 class PageSockets:
@@ -187,7 +185,6 @@ class PageSocket(_Guarded, WebSocketHandler):
             self._open_page(request)
 
     def _open_page(self, request: dict[str, Any]) -> None:
-        """Make the page, unless too many are open."""
         if not self.settings["sockets"].admit(self):
             words = f"{MAX_SESSIONS} pages are open here already: try again later"
             self._write(json.dumps({"n": request["n"], "question": 0, "#trouble": alert(words)}))
@@ -247,7 +244,6 @@ class ExplorerServer:
 
     @property
     def pages(self) -> list[Page]:
-        """Pages that are open."""
         return [connection.page for connection in self.application.settings["sockets"].pages if connection.page]
 
     def start(self) -> None:
@@ -261,9 +257,6 @@ class ExplorerServer:
         self._server.stop()
         for connection in list(self.application.settings["sockets"].pages):
             connection.on_close()
-
-
-LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
 
 
 def server(

@@ -30,9 +30,7 @@ _LOG = logging.getLogger(__name__)
 _CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size", "units")
 """Fields of the screen that the page's own inputs change."""
 
-_UNIT_CHOICES = ("units", "size", "angle")
-"""Fields of the screen on which the meaning of a number depends."""
-
+_UNIT_CHOICES = ("units", "size", "angle")  # fields of the screen on which the meaning of a number depends
 _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi"))
 
 
@@ -79,7 +77,6 @@ class Page:
         self.channel.put("#trouble", alert(sentence) if sentence else "")
 
     def ask(self, **changes: Any) -> None:
-        """Change the screen and show it."""
         screen = replace(self.screen, **changes)
         if screen == self.screen:
             return
@@ -99,8 +96,6 @@ class Page:
         self._change(self._read(str(words.get("query"))))
 
     def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
-        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
-
         def due() -> None:
             cancel()
             self.attempt(function)
@@ -144,7 +139,6 @@ class Page:
             self.channel.once("reset", True)
 
     def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
-        """Register the handler of a view's inputs, whose names start with the view and a dot."""
         self._handlers[view] = handler
 
     def _edit(self, words: Mapping[str, Any]) -> None:
@@ -190,7 +184,6 @@ class Page:
         self.ask(**{name: wanted})
 
     def _save(self, words: Mapping[str, Any]) -> None:
-        """Make a file in a thread, or show why it cannot be made."""
         kind, seen = str(words.get("kind")), self.seen()
         run_in_thread(partial(make_file, seen, kind), self._saved)
 
@@ -211,7 +204,6 @@ class Page:
         self.channel.send()
 
     def _printed(self, key: Any, news: Any) -> None:
-        """Send a printed report, or show why it cannot be printed."""
         if isinstance(news, RunRefused):
             self.refuse(news.why)
         elif isinstance(news, RunFinished):
@@ -243,7 +235,6 @@ class Page:
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
 
     def _fields(self) -> dict[str, Field]:
-        """Return every input beside the views by name."""
         angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
         sizes = segments("size", "Ball size as", SIZES, self.screen.size)
         units = segments("units", "Units", _UNITS, self.screen.units)
@@ -252,7 +243,6 @@ class Page:
         return {**joint, **layers, "units": units, "size": sizes, "angle": angles}
 
     def attempt(self, action: Callable[[], None]) -> None:
-        """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
         try:
             action()
         except Exception as error:  # the page must report every failure
@@ -267,7 +257,6 @@ class Page:
         self._slow_presses.ask(*self.view.asks(self.screen))
 
     def _put(self) -> None:
-        """Set every input to the state of the screen."""
         self._joint_inputs = joint_inputs(self.screen)
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
@@ -295,7 +284,6 @@ class Page:
         )
 
     def leave(self) -> None:
-        """Stop all work of a closed page."""
         self._slow_presses.leave()
         self._printing.stop()
         for timer in self._timers:
@@ -305,7 +293,6 @@ class Page:
 
 
 def _check_link(screen: Screen) -> None:
-    """Raise ValueError for a screen whose link would be too long."""
     if len(screen.link) > MAX_LINK_LENGTH:
         raise ValueError(
             f"a link to this would be longer than {MAX_LINK_LENGTH} characters: shorten the names in the file"

@@ -18,12 +18,11 @@ from ..problem.cup import Cup
 from .jobs import Job
 from .running import Report, RunRefused
 
-PRESS_SECONDS = 20.0
-"""Seconds that the presses of one joint may take."""
-
+PRESS_SECONDS = 20.0  # seconds that the presses of one joint may take
 _MAX_SOLVED = 256
 
 Key = tuple[Joint, Cup, tuple[tuple[str, float], ...], str]
+_solved: OrderedDict[Key, SolvedPress] = OrderedDict()  # results of slow presses: a contact precedes its curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +40,6 @@ class SolvedPress:
 def heavy(joint: Joint, name: str) -> bool:
     """Return True if a press of a model is slow."""
     return is_curve_slow(catalogue[name], joint)
-
-
-_solved: OrderedDict[Key, SolvedPress] = OrderedDict()
-"""Results of slow presses: a contact precedes its curve."""
 
 
 def solved(file: JointFile, name: str) -> Contact | str | None:
@@ -127,5 +122,4 @@ class SlowPresses:
         self._changed()
 
     def leave(self) -> None:
-        """End the process."""
         self.job.stop()

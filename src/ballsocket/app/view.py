@@ -28,9 +28,7 @@ from .widgets.fields import Field
 from .widgets.settings import Setting
 from .widgets.words import alert
 
-STRESS_PAUSE = 0.4
-"""Seconds without a change until the stress of the model itself is computed for the checks."""
-
+STRESS_PAUSE = 0.4  # seconds without a change until the stress of the model itself is computed for the checks
 T = TypeVar("T")
 
 
@@ -63,19 +61,15 @@ class Host(Protocol):
 
     def ask(self, **changes: Any) -> None:
         """Change fields of the screen by name."""
-        ...
 
     def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
         """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
-        ...
 
     def attempt(self, action: Callable[[], None]) -> None:
         """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
-        ...
 
     def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
         """Register the handler of a view's inputs, whose names start with the view and a dot."""
-        ...
 
 
 class View:
@@ -110,7 +104,6 @@ class View:
         self.change(**known[key].read(self.page.screen, value))
 
     def change(self, **changes: Any) -> None:
-        """Change fields of the screen by name."""
         self.page.ask(**changes)
 
     def put(self, **parts: str) -> None:
@@ -217,5 +210,4 @@ _FILE_WRITERS: dict[str, Callable[[ScreenContent], bytes]] = {
     "PDF": _report,  # printed by `print_page`
     "TOML": lambda content: toml_of(content.file).encode("utf-8"),
 }
-FILE_KINDS = tuple(_FILE_WRITERS)
-"""Pictures, numbers, a report, a joint file."""
+FILE_KINDS = tuple(_FILE_WRITERS)  # pictures, numbers, a report, a joint file

@@ -1,8 +1,8 @@
 """Command line of ballsocket: the table of its commands, each of which is imported when it is called."""
 
-from .root import CommandEntry, add_commands, main
+from .root import ENTRIES, CommandEntry, main
 
-add_commands(  # in the order in which `ballsocket --help` lists them
+ENTRIES.update(  # in the order in which `ballsocket --help` lists them
     {
         "press": CommandEntry("ballsocket.cli.press", "Press a ball into its socket under one load."),
         "curve": CommandEntry("ballsocket.cli.press", "Press a joint in equal steps from zero to a load."),

@@ -12,6 +12,7 @@ import typer
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
+from ..core.storage.atomic_files import check_ending
 from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
@@ -30,7 +31,9 @@ from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
 from .options import (
+    Force,
     GapName,
+    Indentation,
     JointName,
     JointOptions,
     ModelName,
@@ -56,15 +59,8 @@ class PressOptions:
 
     model: ModelName = None
     gap: GapName = None
-    force: Annotated[
-        str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
-    ] = None
-    indentation: Annotated[
-        str | None,
-        typer.Option(
-            help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."
-        ),
-    ] = None
+    force: Force = None
+    indentation: Indentation = None
 
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
@@ -169,14 +165,16 @@ def optimise(
     model = press_options.choose_model(file, {**ranges, **choices})
 
     def study_ranges(joint: Joint, fixed: Mapping[str, Any]) -> Any:
-        """Press a joint on a grid of all ranges."""
         count = points or _default_points(model)
         axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
         design = grid(**axes, **fixed, **load)
         return study(model, joint, design, quantities=_quantities(goals, limits))
 
     if len(goals) == 2:
-        _show_front(study_ranges(file.joint, choices), (goals[0], goals[1]), limits, output)
+        result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
+        front = pareto(result, both, limits)
+        output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
+        output.draw(lambda: study_plots.front_figure(result, front, both, limits))
         return
     if len(goals) != 1:
         raise ValueError(f"one result or two are minimised, got {len(goals)}")
@@ -188,13 +186,6 @@ def optimise(
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
     output.draw(lambda: study_plots.design_map(study_ranges(best.joint, sizes), limits, names, best=best.point))
-
-
-def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output: OutputOptions) -> None:
-    """Print and draw the Pareto front of two goals."""
-    front = pareto(result, goals, limits)
-    output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
-    output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
 class IntervalMethod(Choice):
@@ -259,7 +250,7 @@ def sensitivity(
     """
     output.check()
     if csv is not None:
-        study_tables.check_csv(csv)
+        check_ending("", csv, ".csv")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     file = joint_options.read(joint)
     distributions = _unique(map(parse_distribution, spread))
@@ -280,11 +271,7 @@ def sensitivity(
         correlation=parse_correlations(correlation or ()),
     )
     output.print(
-        lambda: {
-            "version": __version__,
-            "model": result.attrs["model"],
-            **study_tables.sensitivity_summary(result),
-        },
+        lambda: {"version": __version__, "model": result.attrs["model"], **study_tables.sensitivity_summary(result)},
         lambda: study_tables.print_sensitivity(result),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import degrees, isfinite, pi
 from time import perf_counter
 from typing import Annotated, Any
@@ -30,17 +30,14 @@ from ..model_catalogue import judge, off_axis
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units
-from .options import drop_missing
+from .options import ArcOfCover, drop_missing
 
 
 @dataclass(frozen=True, kw_only=True)
 class CupOptions:
     """Options of a cup; they replace single values of the cup in the joint file."""
 
-    arc_of_cover: Annotated[
-        str | None,
-        typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
-    ] = None
+    arc_of_cover: ArcOfCover = None
     chamfer: Annotated[
         str | None,
         typer.Option(help="Width of the chamfer on the rim's inner edge in mm. Default: as in the file, or 0."),
@@ -68,7 +65,10 @@ class MeshOptions:
 
     def model(self, cup: Cup, meshes: int) -> FiniteElement:
         """Return the finite-element model of a cup, on one mesh or on two for error estimates."""
-        return FiniteElement(cup=cup, spacing=self._spacing(), element=self._element(), meshes=meshes)
+        known = {element.name.lower(): element for element in Element}
+        element = Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
+        spacing: Spacing = Adapted() if self.size is None else Uniform(size=self.size)
+        return FiniteElement(cup=cup, spacing=spacing, element=element, meshes=meshes)
 
     @property
     def size(self) -> float | None:
@@ -78,13 +78,6 @@ class MeshOptions:
         length = parse("element_size", self.element_size, Kind.LENGTH)
         require("element_size", length, length > 0, "an element's size (mm) is above 0")
         return length
-
-    def _spacing(self) -> Spacing:
-        return Adapted() if self.size is None else Uniform(size=self.size)
-
-    def _element(self) -> Element:
-        known = {element.name.lower(): element for element in Element}
-        return Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
 
 
 def refuse_mesh_options(options: Mapping[str, Any]) -> None:
@@ -204,24 +197,19 @@ class TimedModel:
         return contact
 
 
-def sphere_in_cup(sphere: Sphere, cup: Cup, direction: Mapping[str, Any]) -> Sphere:
-    """Return the model `sphere` with a cup and the direction of the load."""
-    return replace(sphere, cup=cup).with_direction(**direction)
-
-
 def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
     """Return one line with the place of the contact in its cup, the rings, the time and the estimated errors."""
     cost = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
     if contact.status.failed or contact.indentation == 0:
         return f"{off_axis.name}: {cost}"
-    position = (
-        f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {_peak_text(contact)}"
-    )
+    peak = "pressure unbounded there"
+    if isfinite(contact.max_pressure):
+        peak = f"largest pressure {degrees(polar_angle(contact.max_pressure_at)):.3g}° from the axis"
+    position = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {peak}"
     return f"{off_axis.name}: {position}; {cost}; error of the rings: {_error_text(contact)}"
 
 
 def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
-    """Return the distance of the contact from the rim as text."""
     distance = contact.edge_distance
     if contact.edge_loaded and contact.joint.clearance < 0:
         return "contact up to the rim"
@@ -230,10 +218,3 @@ def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
         return f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
     near = ", less than its error bar: edge loading is undecided" if verdict is Verdict.UNDECIDED else ""
     return f"contact {units.short_length(abs(distance))} from the rim{near}"
-
-
-def _peak_text(contact: OffAxisContact) -> str:
-    """Return the angle of the largest pressure from the cup's axis as text."""
-    if not isfinite(contact.max_pressure):
-        return "pressure unbounded there"
-    return f"largest pressure {degrees(polar_angle(contact.max_pressure_at)):.3g}° from the axis"

@@ -14,7 +14,7 @@ import typer
 
 from ..core.checks import known_name, shown
 from ..core.kinds import Kind
-from ..core.storage.atomic_files import check_parent_folder
+from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
@@ -28,7 +28,7 @@ from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .model_file import requested_model
-from .options import GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
+from .options import ArcOfCover, GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)
@@ -68,10 +68,7 @@ class ForceElementOptions:
         str | None,
         typer.Option(help="Combined roughness, the least film of --viscosity. Default: 0.001 mm."),
     ] = None
-    arc_of_cover: Annotated[
-        str | None,
-        typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
-    ] = None
+    arc_of_cover: ArcOfCover = None
 
     def element(self, file: JointFile) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
@@ -119,7 +116,6 @@ class ForceElementOptions:
         return element
 
     def _lubricant(self) -> Lubricant | None:
-        """Return the lubricant of the options; None for a dry socket."""
         if self.viscosity is None:
             if self.roughness is not None:
                 raise ValueError("--roughness is that of a film: add --viscosity")
@@ -131,7 +127,6 @@ class ForceElementOptions:
         return Lubricant(viscosity=viscosity, ball_roughness=0.0, cup_roughness=roughness)
 
     def _damping(self) -> Damping | None:
-        """Return the damping of the options; None without damping."""
         if self.restitution is None and self.impact_speed is None:
             return None if self.hysteresis is None else Damping(hysteresis=self.hysteresis)
         if self.hysteresis is not None:
@@ -143,7 +138,6 @@ class ForceElementOptions:
 
 
 def _number_in(target: str, name: str, text: str, example: str) -> float:
-    """Convert the text of a number, with or without a unit, to a target unit."""
     try:
         number, unit = split_quantity(text)
         return convert(number, parse_units(unit or target), parse_units(target))
@@ -206,36 +200,18 @@ def fmu(
     """
     from ..export.fmu import Fmu, write_cross_check
 
-    path = checked_path(out, ".fmu")
-    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(path), version=fmi)
-    written = unit.write(path)
-    echo_path(written.path, _rest_text(unit.element))
-    for extra_path in write_cross_check(unit.element, path):
+    check_ending("out", out, ".fmu")
+    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(out), version=fmi)
+    written = unit.write(out)
+    start = ""
+    if isinstance(unit.element, PreloadedElement):
+        position = ", ".join(f"{1e-3 * component:.4g}" for component in unit.element.rest_position)
+        start = f": starts at rest, with force 0 at position ({position}) m"
+    echo_path(written.path, start)
+    for extra_path in write_cross_check(unit.element, out):
         echo_path(extra_path)
     if written.missing:
         print_message(written.missing)
-
-
-def _rest_text(element: ForceElement | PreloadedElement) -> str:
-    """Return the start position of a preloaded ball as text; empty for other joints."""
-    if not isinstance(element, PreloadedElement):
-        return ""
-    position = ", ".join(f"{1e-3 * component:.4g}" for component in element.rest_position)
-    return f": starts at rest, with force 0 at position ({position}) m"
-
-
-def checked_path(out: Path, ending: str) -> Path:
-    """Return a path that can be written and has the required ending.
-
-    Raises
-    ------
-    ValueError
-        Another ending, or a missing folder.
-    """
-    if out.suffix.lower() != ending:
-        raise ValueError(f"out {str(out)!r} must end in {ending}")
-    check_parent_folder(out)
-    return out
 
 
 def identifier(path: Path) -> str:
@@ -244,13 +220,11 @@ def identifier(path: Path) -> str:
     return name if name[:1].isalpha() and name not in _RESERVED else f"joint_{name}"[:40]
 
 
-_MODELICA = "algorithm block connect constant discrete each encapsulated end equation external function initial inner"
-_MORE_MODELICA = (
-    "input loop model Modelica outer output package parameter partial record redeclare then type when within"
-)
-_PROGRAMS = "exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"
-_RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *f"{_MODELICA} {_MORE_MODELICA} {_PROGRAMS}".split()}
-
+_OTHER_KEYWORDS = """
+algorithm block connect constant discrete each encapsulated end equation external function initial inner input loop
+model Modelica outer output package parameter partial record redeclare then type when within
+exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"""
+_RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *_OTHER_KEYWORDS.split()}
 
 _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 
@@ -288,7 +262,7 @@ def deck(
     The folder also gets the results to expect.
     """
     if out.suffix.lower() in _FILE_ENDINGS:
-        checked_path(out, ".inp")
+        check_ending("out", out, ".inp")
     file = joint_options.read(joint)
     if file.joint.clearance < 0:
         raise ValueError(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy
 import typer
@@ -16,7 +16,7 @@ from ..core.kinds import Kind
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..files.units import parse
-from ..lubrication.film import METHODS, FilmResult
+from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import off_axis, with_gap
@@ -24,7 +24,7 @@ from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import CupOptions, DirectionOptions, sphere_in_cup, tilted_cup
+from .elasticity_options import CupOptions, DirectionOptions, tilted_cup
 from .model_file import requested_model
 from .options import (
     GapName,
@@ -37,7 +37,7 @@ from .options import (
     expand_groups,
 )
 from .press import DEFAULT_MODEL
-from .root import FAILURE, app, print_message
+from .root import app, fail
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,12 +150,14 @@ def film(
         )
         for contact in _contacts(film_options, file, load.read(file), direction_options, cup_options)
     ]
-    output.print(lambda: _summary(file, films), lambda: print_films(films, units))
+    output.print(
+        lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
+        lambda: print_films(films, units),
+    )
     output.draw(lambda: film_figure(films[0]))
     failed = [film for film in films if film.status.failed]
     if failed:
-        print_message(f"the film of {failed[0].contact.model.name} did not converge")
-        raise typer.Exit(FAILURE)
+        fail(f"the film of {failed[0].contact.model.name} did not converge")
 
 
 def _contacts(
@@ -179,20 +181,10 @@ def _contacts(
     for name in options.model or [default]:
         model = requested_model(name)
         if model.name == off_axis.name:
-            model = sphere_in_cup(direction_options.model(), cup, direction)
+            model = replace(direction_options.model(), cup=cup).with_direction(**direction)
         model = with_gap(model, options.gap)
         contact = model.press(file.joint, **load)
         if contact.status.failed:
-            print_message(f"no answer from {model.name}: {contact.status.sentence}")
-            raise typer.Exit(FAILURE)
+            fail(f"no answer from {model.name}: {contact.status.sentence}")
         contacts.append(contact)
     return contacts
-
-
-def _summary(file: JointFile, films: list[FilmResult]) -> dict[str, Any]:
-    """Return the films as plain data for JSON."""
-    return {
-        "version": __version__,
-        "joint": file.joint.summary(),
-        "results": [film.summary() for film in films],
-    }

@@ -12,11 +12,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from ..core.executors.processes import Engine, Serial
+from ..core.storage.atomic_files import check_ending
 from ..reports.unit_systems import Units
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
-from .root import FAILURE, app, echo_path
+from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
     from ..hip.bands import Bands
@@ -67,14 +68,16 @@ def hip(
     """
     from ..hip.config import read_hip
     from ..reports.figure_files import check_format, save
-    from ..reports.hip_comparison import HipRun, check_table, comparison_figure, print_comparison, write_table
-    from ..reports.hip_report import write_hip_report
+    from ..reports.hip_comparison import HipRun, comparison_figure, print_comparison, write_table
+    from ..reports.hip_report import hip_report
     from ..reports.hip_tables import print_bands, print_hip
-    from ..reports.pages import check_page_path, letterhead
+    from ..reports.pages import check_page_path, letterhead, write_page
 
-    for path, check in ((report, check_page_path), (figure, check_format), (csv, check_table)):
+    for path, check in ((report, check_page_path), (figure, check_format)):
         if path is not None:
             check(path)
+    if csv is not None:
+        check_ending("table", csv, ".csv")
     if method is not None and patients is None:
         raise ValueError("--method is the method of a cohort: add --patients, or leave out --method")
     hip_files, engine = [read_hip(path) for path in files], choose_executor(workers, scheduler, Serial())
@@ -96,7 +99,11 @@ def hip(
     runs = []
     stems = _short_names(files)
     for stem, name, hip_file in zip(stems, _titles(hip_files, stems), hip_files, strict=True):
-        history = _simulate(hip_file, store / stem if store is not None and several else store, name if several else "")
+        folder, shown_name = (store and store / stem, f" {name}") if several else (store, "")
+        with _progress_bar(f"wearing{shown_name}", hip_file.cycles, "cycles") as progress:
+            history = hip_file.use.after(
+                hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=folder
+            )
         runs.append(HipRun(name=name, history=history, bands=_uncertainty_bands(hip_file, history, engine)))
     if as_json:
         _echo_runs(runs, files)
@@ -107,14 +114,13 @@ def hip(
         if runs[0].bands is not None:
             print_bands(runs[0].bands, units)
     if report is not None:  # last: if a file cannot be written, the result is already printed
-        write_hip_report(runs[0].history, report, runs[0].bands, runs[0].name, hip_files[0].report)
+        write_page(hip_report(runs[0].history, runs[0].bands, runs[0].name, hip_files[0].report), report)
     if figure is not None:
         save(comparison_figure(runs, units), figure)
     if csv is not None:
         write_table(csv, runs)
     if not all(run.history.converged for run in runs):
-        typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
-        raise typer.Exit(FAILURE)
+        fail("a contact did not balance its load (see the notes)")
 
 
 def _short_names(files: Sequence[Path]) -> list[str]:
@@ -133,16 +139,7 @@ def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
     return [f"{name} ({stem})" if names.count(name) > 1 else name for name, stem in zip(names, stems, strict=True)]
 
 
-def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
-    """Simulate the hip of a file with a progress bar."""
-    with _progress_bar(f"wearing {name}".strip(), hip_file.cycles, "cycles") as progress:
-        return hip_file.use.after(
-            hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=store
-        )
-
-
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
-    """Compute uncertainty bands of a simulation; None if the file has no uncertainty."""
     from ..hip.wear_uncertainty import uncertainty
 
     scatter = hip_file.uncertain
@@ -168,7 +165,6 @@ def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
 
 
 def _summarize_run(run: HipRun) -> dict[str, Any]:
-    """Return a simulation and its bands as a dictionary for JSON."""
     history, bands = run.history, run.bands
     answer = {"valid": history.valid and (bands is None or bands.valid), **history.summary()}
     if bands is not None:

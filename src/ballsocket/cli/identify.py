@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy
 import typer
@@ -16,8 +16,6 @@ from ..files.units import parse
 from ..identification import as_constant, as_corrected_vessel, as_polynomial
 from ..identification import calibrate as fit_modulus
 from ..identification.file import read_identify
-from ..identification.posterior import Posterior
-from ..identification.result import IdentificationResult
 from ..paper.cases import refit_table_3
 from ..reports import identify_results
 from ..reports.accuracy_results import print_calibration, print_table_3
@@ -27,7 +25,7 @@ from ..studies.calibration import FORCES, Form
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, named_joint
-from .root import FAILURE, app, echo_path
+from .root import app, echo_path, fail
 
 _FORMATS = "(.png, .svg, .pdf)"
 _FORMS: dict[str, Form] = {
@@ -73,7 +71,15 @@ def identify(
     result = read_identify(file).identify_unknowns()
     posterior = None if samples is None else result.posterior(samples)
     if as_json:
-        echo_json(_summary(result, posterior))
+        echo_json(
+            {
+                "version": __version__,
+                "joint": result.joint.summary(),
+                **result.summary(),
+                "posterior": None if posterior is None else posterior.summary(),
+                "experiment": result.next.summary(),
+            }
+        )
     else:
         print_identified(result, posterior)
     if figure is not None:
@@ -83,8 +89,7 @@ def identify(
     if experiment is not None:
         save(identify_results.experiment_figure(result.next), experiment)
     if not result.best.converged:
-        typer.echo("ballsocket: the search did not converge (see the notes)", err=True)
-        raise typer.Exit(FAILURE)
+        fail("the search did not converge (see the notes)")
 
 
 def _has_measured_wear(file: Path) -> bool:
@@ -99,7 +104,6 @@ def _has_measured_wear(file: Path) -> bool:
 
 
 def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
-    """Fit the wear coefficient of a hip file to its measured wear, and print it."""
     from ..hip.config import read_wear_test
     from ..hip.wear_fit import fit_wear_coefficient
     from ..reports.hip_comparison import print_wear_fit, wear_fit_figure
@@ -113,17 +117,6 @@ def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
         print_wear_fit(fit)
     if figure is not None:
         save(wear_fit_figure(fit, hip_file.cycles), figure)
-
-
-def _summary(result: IdentificationResult, posterior: Posterior | None) -> dict[str, Any]:
-    """Return an identification as a dictionary for JSON."""
-    return {
-        "version": __version__,
-        "joint": result.joint.summary(),
-        **result.summary(),
-        "posterior": None if posterior is None else posterior.summary(),
-        "experiment": result.next.summary(),
-    }
 
 
 @app.command()

@@ -24,7 +24,10 @@ from ..problem.presets import joints, materials
 from ..reports.catalogue_lists import source_summary
 
 Answer = Mapping[str, Any]
+"""JSON answer of a command."""
+
 Arguments = Sequence[str]
+"""Name of a command, and its arguments."""
 
 
 def echo_json(answer: Answer) -> None:
@@ -44,13 +47,6 @@ def echo_json(answer: Answer) -> None:
 
 def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
     """Add `valid`, `error`, `notes`, `sources` and `next` to an answer that lacks them.
-
-    Parameters
-    ----------
-    answer : mapping
-        JSON answer of a command.
-    arguments : sequence of str
-        Name of the command and its arguments.
 
     Returns
     -------
@@ -75,17 +71,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
 
 
 def several_joints(answers: Sequence[Answer], names: Sequence[str], arguments: Arguments) -> dict[str, Any]:
-    """Return the answer of `press` for several joints: each with its provenance, and all their notes and next steps.
-
-    Parameters
-    ----------
-    answers : sequence of mapping
-        JSON answer of each joint.
-    names : sequence of str
-        Files or presets of the joints, as in the arguments.
-    arguments : sequence of str
-        Name of the command and its arguments.
-    """
+    """Return the answer of `press` for several joints: each with its provenance, and all their notes and next steps."""
     joints: list[dict[str, Any]] = []
     for answer, name in zip(answers, names, strict=True):
         single = [part for part in arguments if part == name or part not in names]
@@ -119,22 +105,17 @@ def _sources(part: Any) -> Iterator[Source]:
 
 
 def _entry_sources(key: str, value: Any) -> Iterator[Source]:
-    """Yield the publications of one entry of an answer."""
     if key == "model" and isinstance(value, str) and value in listed_models:
         yield from listed_models[value].sources
     elif key == "name" and isinstance(value, str):
-        yield from (Source(cited) for preset in _presets(value) for cited in find_cited_keys(preset.source))
+        presets: Iterable[Joint | Material] = (*joints.values(), *materials.values())
+        named = (preset for preset in presets if preset.name == value)
+        yield from (Source(cited) for preset in named for cited in find_cited_keys(preset.source))
     elif key == "source" and isinstance(value, str):
         yield from map(Source, find_cited_keys(value))
     elif key == "sources" and isinstance(value, list):
         cited_keys = (source["key"] if isinstance(source, dict) else source for source in value)
         yield from (Source(cited) for cited in cited_keys if cited in bibliography())
-
-
-def _presets(name: str) -> Iterator[Joint | Material]:
-    """Yield the joints and materials with this full name."""
-    yield from (joint for joint in joints.values() if joint.name == name)
-    yield from (material for material in materials.values() if material.name == name)
 
 
 @dataclass(frozen=True)
@@ -150,17 +131,10 @@ class NextStep:
 
 
 def next_steps(answer: Answer, arguments: Arguments) -> list[NextStep]:
-    """Return the commands that are useful after a JSON answer.
-
-    Parameters
-    ----------
-    answer : mapping
-        JSON answer with `valid` and `notes`.
-    arguments : sequence of str
-        Name of the command and its arguments.
-    """
-    steps = _NEXT_STEPS.get(arguments[0], _no_steps) if arguments else _no_steps
-    return list(steps(answer, [argument for argument in arguments if argument != "--json"]))
+    """Return the commands that are useful after a JSON answer with `valid` and `notes`."""
+    if not arguments or arguments[0] not in _NEXT_STEPS:
+        return []
+    return list(_NEXT_STEPS[arguments[0]](answer, [argument for argument in arguments if argument != "--json"]))
 
 
 def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[Answer]:
@@ -170,12 +144,7 @@ def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[A
     return [result for result in results if result["model"] in arguments] or list(results[:1])
 
 
-def _no_steps(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    return iter(())
-
-
 def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a valid model if the requested one is invalid, then a check, then the references."""
     results = {result["model"]: result["valid"] for result in answer["results"]}
     requested = [result["model"] for result in requested_results(answer["results"], arguments)]
     valid_models = [name for name, valid in results.items() if valid is True]
@@ -189,7 +158,8 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         why = "no model of this answer is valid here"
         yield from (NextStep((*bare, "--model", name), why) for name in alternatives)
     elif not {judge.name, off_axis.name} & set(results):
-        if any(map(_differs_on_hemisphere, answer["results"])):
+        changes = chain(*(result.get("hemisphere", {}).values() for result in answer["results"]))
+        if (abs(numpy.hstack([0.0, *changes]).astype(float)) > NOTED_CHANGE).any():
             why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
             yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
         else:
@@ -198,18 +168,11 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     yield from (NextStep(("cite", name), "references of the model") for name in cited)
 
 
-def _differs_on_hemisphere(result: Answer) -> bool:
-    """Check if a result, or one of its points, differs by more than 1 % from that of a hemisphere."""
-    changes = numpy.array(list(result.get("hemisphere", {}).values()), dtype=float)
-    return bool((abs(changes) > NOTED_CHANGE).any())
-
-
 _OUTPUT_OPTIONS = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--tolerance")
 """Options of the output, which the next step does not need."""
 
 
 def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest the exact model if a point is invalid, then the references."""
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is outside its valid range at some points"
         yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
@@ -218,13 +181,20 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press of the best joint by every model."""
-    point = answer["point"] if "point" in answer else _point_of_least(answer)
+    if "point" in answer:
+        point = answer["point"]
+    else:  # of a map, with the smallest peak pressure or the smallest value of the first quantity
+        quantities = answer["quantities"]
+        point = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
     chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
     has_load = any(name in point for name in ("force", "indentation"))
     load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
-    replaced = (option for option in _JOINT_OPTIONS if _dimensions_of_option(option) & set(map(_dimension_of, point)))
+    varied, replaced = set(map(_dimension_of, point)), []
+    for option in _JOINT_OPTIONS:
+        name = option.removeprefix("--").replace("-", "_")
+        if {_dimension_of(name), _dimension_of(f"liner_{name}")} & varied:
+            replaced.append(option)
     step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
     yield NextStep(step, "the best joint by every model")
 
@@ -233,19 +203,6 @@ def _dimension_of(name: str) -> str:
     """Return the dimension that a parameter determines: of a diameter, the radius."""
     dimension = DIAMETERS.get(name, name)
     return "liner_thickness" if dimension == "outer_radius" else dimension
-
-
-def _dimensions_of_option(option: str) -> set[str]:
-    """Return the dimensions that an option of the joint may determine."""
-    name = option.removeprefix("--").replace("-", "_")
-    return {_dimension_of(name), _dimension_of(f"liner_{name}")}
-
-
-def _point_of_least(answer: Answer) -> Answer:
-    """Return the point with the smallest peak pressure of a map, or of its first quantity."""
-    quantities = answer["quantities"]
-    point: Answer = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
-    return point
 
 
 def _as_option(name: str, value: float) -> Iterator[str]:
@@ -260,19 +217,16 @@ _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 
 def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press of the mean joint by every model."""
     load = _selected_options(arguments, "--force", "--indentation")
     yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
 
 
 def _after_study(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest the study with all values in a file."""
     if not _selected_options(arguments, "--out"):
         yield NextStep((*arguments, "--out", "study.csv"), "all values, one row per point")
 
 
 def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press in the orientation with the largest edge distance."""
     pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
     if known:
@@ -282,7 +236,6 @@ def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest the next experiment if parameters are not identifiable, else the samples of the posterior."""
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
         yield NextStep((*arguments, "--experiment", "next.png"), why)
@@ -291,19 +244,16 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest the simulation with a report."""
     if not _selected_options(arguments, "--report", "--patients") and "results" not in answer:
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 
 def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press of the written joint file."""
     if answer["file"] is not None:
         yield NextStep(("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint")
 
 
 def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest the check of a new pack."""
     if _selected_options(arguments, "--check"):
         return
     folder = (_selected_options(arguments, "--out") or ["--out", "evidence"])[1]
@@ -311,13 +261,11 @@ def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press of the calibrated joint by every model."""
     for name in _joint_name(arguments):
         yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
 
 
 def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    """Suggest a press of the first listed joint, or the references of the first listed model."""
     for name in list(answer.get("joints", {}))[:1]:
         yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
     for model in answer.get("models", [])[:1]:
@@ -361,7 +309,6 @@ def _without_options(arguments: Arguments, *options: str) -> list[str]:
 
 
 def _selected_options(arguments: Arguments, *options: str) -> list[str]:
-    """Return some options with their values."""
     selected = []
     for index, argument in enumerate(arguments):
         name, _, value = argument.partition("=")
@@ -376,9 +323,7 @@ _NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[NextStep]]] = M
         "curve": _after_curve,
         "map": _after_optimum,
         "study": _after_study,
-        "optimise": lambda answer, arguments: (
-            _after_optimum(answer, arguments) if "value" in answer else _no_steps(answer, arguments)
-        ),
+        "optimise": lambda answer, arguments: _after_optimum(answer, arguments) if "value" in answer else iter(()),
         "sensitivity": _after_sensitivity,
         "orient": _after_orient,
         "identify": _after_identify,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import Annotated
 
 import typer
@@ -13,7 +12,6 @@ from ..core.sources import cite as bibtex_of
 from ..files.schema_keys import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..model_catalogue import listed_models
-from ..problem import Joint, Material
 from ..problem.presets import find_material, joints, materials
 from ..reports.catalogue_lists import (
     model_summary,
@@ -57,12 +55,9 @@ def presets(
     known = [*materials, *joints]
     names = known if name is None else [find_material(name) or known_name("preset", name, known)]
     if as_json:
-        kinds: dict[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
-        listed = {
-            kind: {key: preset_summary(preset) for key, preset in presets_of_kind.items() if key in names}
-            for kind, presets_of_kind in kinds.items()
-        }
-        echo_json({"version": __version__, **listed})
+        chosen_materials = {key: preset_summary(preset) for key, preset in materials.items() if key in names}
+        chosen_joints = {key: preset_summary(preset) for key, preset in joints.items() if key in names}
+        echo_json({"version": __version__, "materials": chosen_materials, "joints": chosen_joints})
     elif name is None:
         print_presets()
     else:

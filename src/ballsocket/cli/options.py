@@ -83,6 +83,19 @@ GapName = Annotated[
 ]
 
 
+Force = Annotated[
+    str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
+]
+Indentation = Annotated[
+    str | None,
+    typer.Option(help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."),
+]
+ArcOfCover = Annotated[
+    str | None,
+    typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
+]
+
+
 @dataclass(frozen=True, kw_only=True)
 class JointPartOptions:
     """Options of a joint without its orientation; they replace single values of a joint file or preset."""
@@ -216,7 +229,6 @@ class JointOptions(JointPartOptions):
         return bool(self._angles())
 
     def _angles(self) -> dict[str, str]:
-        """Return the options of the orientation as keys of the table [cup]."""
         return drop_missing({key: getattr(self, key) for key in CUP_ANGLES})
 
     def read(self, name: str | None) -> JointFile:
@@ -233,15 +245,8 @@ CUP_ANGLES = ("inclination", "anteversion", "side", "orientation", "pelvic_tilt"
 class LoadOptions:
     """Options of a load; one of them replaces the load of the joint file."""
 
-    force: Annotated[
-        str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
-    ] = None
-    indentation: Annotated[
-        str | None,
-        typer.Option(
-            help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."
-        ),
-    ] = None
+    force: Force = None
+    indentation: Indentation = None
     half_angle: Annotated[
         str | None, typer.Option(help="Half angle of the contact in degrees: '40 deg'. Not with --force.")
     ] = None
@@ -337,10 +342,8 @@ def choose_executor(workers: int | None, scheduler: str | None, default: Engine)
 
 # --- groups of options in the signature of a command ---
 
-Command = Callable[..., None]
 
-
-def expand_groups(command: Command) -> Command:
+def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command whose groups of options are expanded to single parameters, for typer.
 
     typer makes an option of each parameter in the signature of a function. A group is a dataclass whose fields are
@@ -350,12 +353,10 @@ def expand_groups(command: Command) -> Command:
     A text in the annotation of a group, `mesh: Annotated[MeshOptions, "fem"]`, is put before the help of its options.
     """
     parameters = signature(command, eval_str=True).parameters.values()
-    groups = {
-        parameter.name: _group_type(parameter)[0] for parameter in parameters if is_dataclass(_group_type(parameter)[0])
-    }
+    types = {parameter.name: _group_type(parameter)[0] for parameter in parameters}
+    groups: dict[str, Any] = {name: kind for name, kind in types.items() if is_dataclass(kind)}
 
     def expanded_command(**options: Any) -> None:
-        """Build the groups from single options, and call the command."""
         built = {
             name: group(**{field.name: options.pop(field.name) for field in fields(group)})
             for name, group in groups.items()

@@ -36,7 +36,7 @@ from .options import (
     drop_missing,
     expand_groups,
 )
-from .root import FAILURE, app, print_message
+from .root import app, fail
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +85,6 @@ class OrientationOptions:
         return {name: self._angle(name) for name in ("inclination", "anteversion")}
 
     def _angle(self, name: str) -> Numbers:
-        """Return the values of one angle in rad."""
         text = getattr(self, name)
         ends = parse_ends(name, text, Kind.ANGLE) if ".." in text else (parse(name, text, Kind.ANGLE),) * 2
         with as_given({name: text}):
@@ -97,7 +96,6 @@ class OrientationOptions:
         return numpy.radians(_even_degrees(round(degrees(low), 9), round(degrees(high), 9), step))
 
     def _step_degrees(self) -> float | None:
-        """Return the requested step in degrees; None without one."""
         if self.step is None:
             return None
         if self.points is not None:
@@ -194,5 +192,4 @@ def orient(
     )
     output.draw(lambda: orientation_figure(orientations, units, limits))
     if not orientations.held.any():
-        print_message("no orientation has an answer (see the statuses)")
-        raise typer.Exit(FAILURE)
+        fail("no orientation has an answer (see the statuses)")

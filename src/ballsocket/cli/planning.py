@@ -15,7 +15,7 @@ from ..files.units import parse
 from ..planning.clouds import read_points
 from ..planning.implants import ImplantFit, fit_head, fit_liner
 from ..planning.landmarks import Landmarks, read_landmarks
-from ..planning.meshes import Mesh, read_mesh
+from ..planning.meshes import read_mesh
 from ..planning.pelvis import PelvicFrame, pelvic_frame
 from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
 from ..planning.worn_bores import WornBore, measure_wear
@@ -96,8 +96,8 @@ class ImplantOptions:
         """Fit liner and head, and return them with the coordinates of the liner's file."""
         if self.placed is not None and self.placed.lower() not in _SPACES:
             raise ValueError(f"placed = {self.placed!r:.40} is not allowed: RAS or LPS")
-        liner = None if self.liner is None else self._mesh(self.liner)
-        head = None if self.head is None else fit_head(self._mesh(self.head))
+        liner = None if self.liner is None else read_mesh(self.liner, units=self.stl_units)
+        head = None if self.head is None else fit_head(read_mesh(self.head, units=self.stl_units))
         fit = None if liner is None else fit_liner(liner)
         return fit, head, self.placed or (None if liner is None else liner.space)
 
@@ -110,10 +110,6 @@ class ImplantOptions:
         diameter = None if self.head_diameter is None else parse("head_diameter", self.head_diameter, Kind.LENGTH)
         head_radius = None if diameter is None else diameter / 2.0
         return measure_wear(read_points(self.worn, units=self.stl_units), head_radius=head_radius)
-
-    def _mesh(self, path: Path) -> Mesh:
-        """Read a mesh."""
-        return read_mesh(path, units=self.stl_units)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,11 +196,11 @@ def planning(
         file = None if joint_options.out is None else str(joint_options.out)
         echo_json({**plan.summary(), "orientation": orientation or None, "file": file})
         return
-    materials = f"materials: liner {joint_options.liner_material}, head {joint_options.head_material or 'rigid'}"
-    remarks = () if plan.orientation is None else (orientation_remark(plan.cup),)
-    if joint_options.clearance is None:
-        print_plan(plan, (*remarks, *plan.notes))
-    else:
-        print_plan(plan, (*remarks, *(note for note in plan.notes if note != CLEARANCE_REFUSAL), materials))
+    remarks = [] if plan.orientation is None else [orientation_remark(plan.cup)]
+    remarks += [note for note in plan.notes if joint_options.clearance is None or note != CLEARANCE_REFUSAL]
+    if joint_options.clearance is not None:
+        ball = joint_options.head_material or "rigid"
+        remarks.append(f"materials: liner {joint_options.liner_material}, head {ball}")
+    print_plan(plan, remarks)
     if joint_options.out is not None:
         echo_path(joint_options.out)

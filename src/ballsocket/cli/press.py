@@ -38,7 +38,6 @@ from .elasticity_options import (
     orientation_summary,
     refuse_mesh_options,
     solve_mesh,
-    sphere_in_cup,
     sphere_remark,
     tilted_cup,
 )
@@ -56,7 +55,7 @@ from .options import (
     expand_groups,
 )
 from .press_files import FigureOptions, ReportOptions
-from .root import FAILURE, app, print_message
+from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
@@ -136,7 +135,6 @@ class FrictionOptions:
             raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
 
     def _law(self, coefficient: float) -> Friction:
-        """Return the law of friction with a coefficient of sliding."""
         from ..dynamics import Friction
 
         return Friction(coefficient=coefficient, static_coefficient=self.static_friction)
@@ -186,16 +184,8 @@ class FrictionOptions:
 class PressedJoint:
     """Results of one joint of the command, with remarks on their computation.
 
-    Attributes
-    ----------
-    assumptions : list of str
-        Sentences on what was assumed for a preloaded joint.
-    wear_depth_to_loosen : float or None
-        Uniform wear of the bore in mm at which a preloaded joint loses its preload; None without a preload.
-    orientation : dict
-        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
-    pulled : PullOut or None
-        Pull-out force, if requested.
+    For a preloaded joint, `assumptions` are sentences, and `wear_depth_to_loosen` is the uniform wear of the bore in mm
+    that ends the preload. `orientation` has the angles of the cup in degrees by each definition, if it has any.
     """
 
     file: JointFile
@@ -217,13 +207,8 @@ class PressedJoint:
             result["friction"] = None if contact is None else friction.torques(contact)
         pull_out = None if self.pulled is None else self.pulled.summary()
         preload = {} if self.wear_depth_to_loosen is None else {"wear_depth_to_loosen": self.wear_depth_to_loosen}
-        further = {
-            "assumptions": self.assumptions,
-            "preload": preload,
-            "orientation": self.orientation,
-            "pull_out": pull_out,
-        }
-        return {**summary, **{key: part for key, part in further.items() if part}}
+        further = {"assumptions": self.assumptions, "preload": preload, "orientation": self.orientation}
+        return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:
@@ -294,9 +279,9 @@ def press(
         friction_options.check_pull_out(models, assumed_arc)
         if off_axis.name not in models:
             direction_options.refuse()
-        if off_axis.name in models:
-            timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
-            timed.model = with_gap(timed.model, model_options.gap)
+        else:
+            sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
+            timed: Any = TimedModel(with_gap(sphere, model_options.gap))
             models[off_axis.name] = timed
         if model_options.has_finite_elements:
             fem: Any = with_gap(mesh.model(cup, meshes or 2), model_options.gap)
@@ -381,22 +366,11 @@ def _compare(
 
 def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
     """Exit with a message and a status if there is no result or no convergence."""
-    failure = _failure(comparison, models)
-    if failure:
-        print_message(failure)
-        raise typer.Exit(FAILURE)
-
-
-def _failure(comparison: Comparison, models: Iterable[str]) -> str:
-    """Return the message of a failed comparison; empty if one of the models has a result and all converged."""
     unconverged = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
     if unconverged:
-        return f"no convergence of {', '.join(unconverged)} (see the notes)"
-    return (
-        ""
-        if set(successful_contacts(comparison)) & set(models)
-        else f"no answer from {', '.join(models)} (see the notes)"
-    )
+        fail(f"no convergence of {', '.join(unconverged)} (see the notes)")
+    if not set(successful_contacts(comparison)) & set(models):
+        fail(f"no answer from {', '.join(models)} (see the notes)")
 
 
 @app.command()
@@ -425,15 +399,10 @@ def curve(
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
     if as_json:
-        echo_json({"version": __version__, "joint": file.joint.summary(), **_curve_summary(contact)})
+        summary: Any = contact.summary()
+        valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
+        echo_json({"version": __version__, "joint": file.joint.summary(), **summary, **valid})
     else:
         print_curve(contact)
     if not numpy.isfinite(contact.indentation[1:]).any():
-        print_message(f"no answer from {named.name} at any load (see the notes)")
-        raise typer.Exit(FAILURE)
-
-
-def _curve_summary(contact: Any) -> dict[str, Any]:
-    """Return the values of a curve as lists; `valid` is true if every point is valid."""
-    summary = contact.summary()
-    return {**summary, "valid": all(summary["valid"]), "valid_at": summary["valid"]}
+        fail(f"no answer from {named.name} at any load (see the notes)")

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeGuard
 
 import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
-from ..elasticity.finite_elements.model import MeshedContact
-from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..model_catalogue import judge, off_axis, reference
 from ..reports.figure_files import check_format, save
@@ -78,61 +76,36 @@ class FigureOptions:
         """Write the files for the results; `first_model` is the name of the first requested model."""
         contacts = successful_contacts(comparison)
         if self.figure is not None and contacts:
-            _write_figure(contacts, first_model, self.figure, units)
+            from ..reports import press_plots
+
+            alone = first_model == off_axis.name and first_model in contacts
+            save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts, units), self.figure)
         loaded = {name: contact for name, contact in contacts.items() if contact.max_pressure > 0}
-        meshed, tilted = loaded.get(judge.name), loaded.get(off_axis.name)
-        _write(self.section, meshed, lambda contact, path: _write_section(contact, contacts.get(reference.name), path))
-        _write(self.view, tilted, _write_view)
-        if judge.name in comparison:
-            _write(self.vtk, meshed, _write_meshes)
-        else:
-            _write(self.vtk, tilted, _write_surfaces)
+        meshed: Any = loaded.get(judge.name)
+        tilted: Any = loaded.get(off_axis.name)
+        if _can_write(self.section, meshed):
+            from ..reports.section_plots import section_figure
+
+            save(section_figure(meshed, contacts.get(reference.name)), self.section)
+        if _can_write(self.view, tilted):
+            from ..reports.cup_plots import save_view
+
+            save_view(tilted, self.view)
+        if judge.name in comparison and _can_write(self.vtk, meshed):
+            from ..elasticity.finite_elements.section import write_vtk as write_meshes
+
+            write_meshes(meshed.section, self.vtk)
+        elif judge.name not in comparison and _can_write(self.vtk, tilted):
+            from ..elasticity.off_axis.vtk import write_vtk as write_surfaces
+
+            write_surfaces(tilted, self.vtk)
 
 
-def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) -> None:
-    """Write a file if it has a path; without a contact, print a message."""
-    if path is None:
-        return
-    if contact is None:
+def _can_write(path: Path | None, contact: Any) -> TypeGuard[Path]:
+    """Return True for a path and a contact; with a path alone, print a message."""
+    if path is not None and contact is None:
         print_message("without a contact there is nothing to draw or write")
-        return
-    write(contact, path)
-
-
-def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path, units: Units) -> None:
-    """Write a figure of all contacts, or of the cup alone if `sphere` is the first model."""
-    from ..reports import press_plots
-
-    alone = first_model == off_axis.name and first_model in contacts
-    save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts, units), path)
-
-
-def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
-    """Write a figure of the meshed section with the exact pressure."""
-    from ..reports.section_plots import section_figure
-
-    save(section_figure(contact, exact), path)
-
-
-def _write_meshes(contact: MeshedContact, path: Path) -> None:
-    """Write the meshes and fields of the finite elements for VTK."""
-    from ..elasticity.finite_elements.section import write_vtk
-
-    write_vtk(contact.section, path)
-
-
-def _write_surfaces(contact: OffAxisContact, path: Path) -> None:
-    """Write the surfaces of bore and ball for VTK."""
-    from ..elasticity.off_axis.vtk import write_vtk
-
-    write_vtk(contact, path)
-
-
-def _write_view(contact: OffAxisContact, path: Path) -> None:
-    """Write a three-dimensional picture of the cup."""
-    from ..reports.cup_plots import save_view
-
-    save_view(contact, path)
+    return path is not None and contact is not None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,10 +152,11 @@ class ReportOptions:
             return None
         from ..reports.press_report import PressedDesign
 
+        best = [name for name in (off_axis.name, reference.name) if name in comparison and comparison[name].valid]
         return PressedDesign(
             comparison=comparison,
             file=file,
-            leading=_verdict_model(comparison),
+            leading=[*best, *comparison][0],
             uncertainty=self._tolerance_study(comparison, file),
             command=self._command(comparison, models, units),
             remarks=remarks,
@@ -220,9 +194,3 @@ class ReportOptions:
             return None
         model = comparison[off_axis.name].model
         return off_axis_uncertainty(file.joint, model, load, self.tolerances, file.aim.get("tilt"))
-
-
-def _verdict_model(comparison: Comparison) -> str:
-    """Return the model of the verdict: `sphere` or the exact one where they are valid, else the first."""
-    valid_models = [name for name in (off_axis.name, reference.name) if name in comparison and comparison[name].valid]
-    return valid_models[0] if valid_models else next(iter(comparison))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, TextIO
+from typing import Annotated, Any, ClassVar, NoReturn, TextIO
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -52,13 +52,8 @@ class CommandEntry:
     hidden: bool = False
 
 
-_ENTRIES: dict[str, CommandEntry] = {}
-"""Entries of the commands by name, in the order of the help."""
-
-
-def add_commands(entries: Mapping[str, CommandEntry]) -> None:
-    """Add commands to the program without importing them."""
-    _ENTRIES.update(entries)
+ENTRIES: dict[str, CommandEntry] = {}
+"""Commands of the program by name, in the order of the help; they are imported when they are called."""
 
 
 class PlainCommand(TyperCommand):
@@ -81,7 +76,6 @@ def _with_plain_values(parameter: Any, annotation: Any, process_value: Callable[
     """Return a function that passes values of the annotated type, and processes other values as typer does."""
 
     def process(ctx: Any, value: Any) -> Any:
-        """Return a value as the command takes it."""
         if annotation == list[str] and all(isinstance(text, str) for text in value or ()):
             value = list(value or ())
         elif not isinstance(annotation, type) or not (value is None or isinstance(value, annotation)):
@@ -113,7 +107,7 @@ class CommandGroup(TyperGroup):
         imported = dict(self.commands)
         self.commands = {
             name: imported.get(name) or Placeholder(name=name, help=entry.summary, hidden=entry.hidden)
-            for name, entry in _ENTRIES.items()
+            for name, entry in ENTRIES.items()
         }
 
     def get_params(self, ctx: Any) -> list[Any]:
@@ -129,7 +123,7 @@ class CommandGroup(TyperGroup):
         """Return a command by its name, imported if necessary, with the arguments that follow it."""
         name = args[0]
         if isinstance(self.commands.get(name), Placeholder):
-            import_module(_ENTRIES[name].module)
+            import_module(ENTRIES[name].module)
             imported: Any = typer.main.get_command(self.program)
             self.commands[name] = imported.commands[name]
         return super().resolve_command(ctx, args)
@@ -150,21 +144,16 @@ CommandGroup.program = app
 
 def load_commands() -> dict[str, Callable[..., None]]:
     """Import all commands, and return their functions by name in the order of the help."""
-    for entry in _ENTRIES.values():
+    for entry in ENTRIES.values():
         import_module(entry.module)
-    functions: dict[str, Any] = {
-        _command_name(info): info.callback for info in CommandGroup.program.registered_commands
-    }
-    return {name: functions[name] for name in _ENTRIES}
-
-
-def _command_name(info: Any) -> str:
-    """Return the name of a registered command: a stated one, or that of its function."""
-    return info.name or info.callback.__name__.replace("_", "-")
+    functions: dict[str, Any] = {}
+    for command in CommandGroup.program.registered_commands:
+        assert command.callback is not None
+        functions[command.name or command.callback.__name__.replace("_", "-")] = command.callback
+    return {name: functions[name] for name in ENTRIES}
 
 
 def _print_version(requested: bool) -> None:
-    """Print the version and exit if the option is used."""
     if requested:
         typer.echo(f"ballsocket {__version__}")
         raise typer.Exit()
@@ -189,17 +178,12 @@ def _replace_by_ascii(error: UnicodeError) -> tuple[str, int]:
     return "".join(_ASCII_REPLACEMENTS.get(char, "?") for char in error.object[error.start : error.end]), error.end
 
 
-def _allow_any_encoding() -> None:
-    """Write ASCII text for characters that the encoding of an output stream lacks."""
+def main() -> None:
+    """Run the program; print errors that the user can correct as one line on stderr."""
     codecs.register_error("degrade", _replace_by_ascii)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="degrade")
-
-
-def main() -> None:
-    """Run the program; print errors that the user can correct as one line on stderr."""
-    _allow_any_encoding()
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
     with _exit_on_sigterm():
@@ -221,7 +205,8 @@ def _run() -> int:
     status = MISUSE
     try:
         result = app(prog_name=PROGRAM, standalone_mode=False) or SUCCESS
-        _flush()
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            stream.flush()  # now, so that an error in writing is still reported
         return int(result)
     except SystemExit as stop:
         if isinstance(stop.__context__, BrokenPipeError):  # rich exits with an error status
@@ -289,6 +274,12 @@ def print_message(message: str) -> None:
         _discard_output(sys.stderr)
 
 
+def fail(message: str) -> NoReturn:
+    """Print one line on stderr, and exit with the status of a failed computation."""
+    print_message(message)
+    raise typer.Exit(FAILURE)
+
+
 def _one_line(message: str) -> str:
     """Return a text as one printable line of limited length."""
     text = " ".join(message.split())
@@ -309,13 +300,6 @@ def echo_path(path: str | Path, more: str = "") -> None:
     typer.echo(_escape(f"{address_of(path) or path}{more}"))
 
 
-def _flush() -> None:
-    """Write buffered output now, so that an error in writing is still reported."""
-    for stream in (sys.stdout, sys.stderr):
-        if stream is not None:
-            stream.flush()
-
-
 def _discard_output(stream: TextIO | None = None) -> None:
     """Redirect a stream to the null device, so that buffered output causes no error when Python exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), (stream or sys.stdout).fileno())
@@ -326,7 +310,6 @@ def _exit_on_sigterm() -> Iterator[None]:
     """Exit through Python on SIGTERM, so that temporary folders are removed."""
 
     def exit_with_status(number: int, frame: Any) -> None:
-        """Exit with the status that a shell gives to a signal."""
         sys.exit(128 + number)
 
     if threading.current_thread() is not threading.main_thread():

@@ -150,6 +150,5 @@ def _stop(progress: Progress) -> None:
 
 
 def _progress_text(state: StudyProgress) -> str:
-    """Return finished points, rate in points per second and remaining time as text."""
     remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
     return f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"

@@ -50,7 +50,6 @@ def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
 
 @cache
 def _fitted_polynomials() -> dict[str, list[float]]:
-    """Read the coefficients of the fitted polynomials by their names."""
     return tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
 
 

@@ -109,7 +109,6 @@ class Contact(Outcome):
 
     @property
     def _load(self) -> Array:
-        """Load of the contact, here its indentation in mm."""
         return self.indentation
 
     @cached_property
@@ -368,7 +367,6 @@ class Contact(Outcome):
         """
 
         def evaluate_quantity() -> Array:
-            """Evaluate the quantity; use NumPy numbers if Python floats raise ArithmeticError."""
             try:
                 return read_quantity(self.laws)
             except ArithmeticError:

@@ -102,13 +102,7 @@ def to_summary(contact: Any) -> dict[str, Any]:
 
 
 def to_frame(contact: Any) -> pandas.DataFrame:
-    """Return a pandas data frame of a contact with one row per point.
-
-    Raises
-    ------
-    ImportError
-        pandas is not installed.
-    """
+    """Return a pandas data frame of a contact with one row per point; see `Contact.to_frame`."""
     needs("study", "pandas")
     import pandas
 
@@ -155,7 +149,6 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 
 
 def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
-    """Format the printed quantities of a contact as rows of name, number and unit."""
     is_single = arrays.to_numpy(contact.indentation).size == 1
     rows = [
         (column.attribute, number_text(column.values_of(contact), 6 if is_single else 5, "no answer"), column.unit)

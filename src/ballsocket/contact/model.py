@@ -37,12 +37,8 @@ class Model(ModelInfo):
 
     Attributes
     ----------
-    domain : tuple of Range
-        Open ranges outside of which the model has no formula.
     fits : tuple of Range
         Part of the domain that limits the fit of ball and socket: by default a clearance of 0 or more.
-    parameters : tuple of array
-        Numbers of the model that may be arrays and broadcast against joint and load.
     off_axis : bool
         True if a press takes the direction of the load and of the cup: `tilt`, `inclination`, `anteversion`.
     differentiable : bool
@@ -67,7 +63,7 @@ class Model(ModelInfo):
 
     @property
     def domain(self) -> tuple[Range, ...]:
-        """Open ranges outside of which the model is not defined."""
+        """Open ranges outside of which the model has no formula."""
         return ()
 
     @property
@@ -259,11 +255,9 @@ class ModelWrapper(_Delegation, Model):
     model: Model
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contact with the wrapped model."""
         return self.model._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the force law (force and stiffness over indentation) of the wrapped model."""
         return self.model._law(joint)
 
 

@@ -19,28 +19,13 @@ from ..problem import Joint
 
 
 class ModelInfo(ABC):
-    """Base class for the description of a model: name, sources and validity.
-
-    Attributes
-    ----------
-    name, title : str
-        Key in the catalogue; description in one line.
-    sources : tuple of Source
-        Publications of the formulas.
-    validity : tuple of Range
-        Closed ranges in which a result is valid.
-    promise : Promise or None
-        Measured largest difference from the elastic solution inside the validity; None if it was not measured.
-    remarks : tuple of Range
-        Ranges outside of which a valid result gets a note.
-    reach : str
-        Description of the loads that have a result, printed with results that have none; may be empty.
-    planar : bool
-        True if the contact is a flat circle whose pressure has one direction, False if pressure acts along the radius.
-    """
+    """Base class for the description of a model: name, sources and validity."""
 
     reach: ClassVar[str] = ""
+    """Description of the loads that have a result, printed with results that have none; may be empty."""
+
     planar: ClassVar[bool] = False
+    """True if the contact is a flat circle whose pressure has one direction, False if it acts along the radius."""
 
     @property
     @abstractmethod
@@ -60,11 +45,11 @@ class ModelInfo(ABC):
     @property
     @abstractmethod
     def validity(self) -> tuple[Range, ...]:
-        """Ranges of contact quantities in which a result is valid."""
+        """Closed ranges of contact quantities in which a result is valid."""
 
     @property
     def promise(self) -> Promise | None:
-        """Largest measured relative difference from the elastic solution; None if it was not measured."""
+        """Largest measured difference from the elastic solution inside the validity; None if it was not measured."""
         return None
 
     @property
@@ -180,11 +165,6 @@ class Outcome(ABC):
     def _has_failed_points(self) -> bool:
         """True if at least one point failed, or if JAX traces the status."""
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
-
-    @cached_property
-    def _numpy_joint(self) -> Joint:
-        """Joint whose numbers are NumPy arrays, so that a division by zero gives infinity instead of an error."""
-        return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _match_load(self, value: Array) -> Array:
         """Convert values to the type and the shape of the load; a load of one number gives a float.

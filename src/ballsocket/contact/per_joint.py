@@ -258,7 +258,6 @@ class SolvedContact(Contact):
         flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()
 
         def masked_von_mises(indices: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
-            """Compute the largest von Mises stress in MPa of one joint; NaN outside the mask."""
             masked_contacts = replace(contacts, reached=contacts.reached & flat_mask[indices][contacts.touching])
             return self._joint_von_mises(indices, masked_contacts)
 

@@ -68,15 +68,12 @@ def increasing_root(
         return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
     def newton_step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        """Advance all elements by one bracketed Newton step."""
         return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
     def solve(first: Array) -> Array:
-        """Iterate from a first x until the elements have converged."""
         return _iterate_until_converged(newton_step, (first, low, high, first < high, first == first), steps)
 
     def residual(x: Array) -> tuple[Array, Array]:
-        """Compute the difference between law and target, and its slope."""
         value, slope = law(x, *arguments)
         return value - target, slope
 
@@ -213,12 +210,10 @@ def _jax_while_loop(
     import jax
 
     def is_unconverged(count_and_state: tuple[Any, tuple[Array, ...]]) -> Array:
-        """Check if an element still moves and steps are left."""
         count, current = count_and_state
         return (count < max_steps) & jax.numpy.any(current[-1])
 
     def advance(count_and_state: tuple[Any, tuple[Array, ...]]) -> tuple[Any, tuple[Array, ...]]:
-        """Take one more step."""
         count, current = count_and_state
         return count + 1, iteration_step(current)
 

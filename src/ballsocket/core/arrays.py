@@ -301,7 +301,6 @@ def to_common_arrays(*values: Array) -> tuple[Array, ...]:
     device = array_api_compat.device(arrays[0]) if arrays else None
 
     def convert_value(value: Array) -> Array:
-        """Convert one value to the common library, dtype and device."""
         if is_plain_number(value):
             return xp.asarray(float(value), dtype=dtype, device=device)
         return value if value.dtype == dtype else xp.astype(value, dtype)

@@ -88,7 +88,6 @@ def _jax_clenshaw_sum() -> Callable[[Array, Array], Pair]:
 
     @series.defjvp
     def _series_tangent(values: tuple[Array, Array], tangents: tuple[Array, Array]) -> tuple[Pair, Pair]:
-        """Compute the series and its directional derivative."""
         return series(*values), jax.jvp(stored_series, values, tangents)[1]
 
     return series

@@ -12,7 +12,7 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, all_true, is_plain_number, namespace, owned, to_common_arrays
+from .arrays import Array, all_true, is_plain_number, namespace, owned, to_common_arrays, to_numpy
 from .display import html_list
 
 Value = TypeVar("Value")
@@ -54,9 +54,7 @@ def require(name: str, value: Array, valid: Array, allowed: str) -> None:
 
 def first_invalid(value: Array, valid: Array) -> float:
     """Return the first element of `value` where `valid` is false."""
-    if not _array_shape(value):
-        return value
-    return float(namespace(value).reshape(value, (-1,))[_find_first_false(valid)[0]])
+    return float(to_numpy(value).ravel()[to_numpy(valid).argmin()]) if _array_shape(value) else value
 
 
 def _format_invalid_element(value: Array, valid: Array) -> str:
@@ -64,25 +62,14 @@ def _format_invalid_element(value: Array, valid: Array) -> str:
     shape = _array_shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    first, count = _find_first_false(valid)
-    index, remainder = [], first
-    for size in reversed(shape):
-        index.append(remainder % size)
-        remainder //= size
+    mask = to_numpy(valid)
+    index, count = numpy.unravel_index(mask.argmin(), shape), mask.size - numpy.count_nonzero(mask)
     further = f" (and {count - 1} more)" if count > 1 else ""
-    return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, valid):g}{further}"
+    return f"[{', '.join(map(str, index))}] = {first_invalid(value, valid):g}{further}"
 
 
 def _array_shape(value: Array) -> tuple[int, ...]:
-    """Return the shape of an array; () for a number."""
     return tuple(getattr(value, "shape", ()))
-
-
-def _find_first_false(valid: Array) -> tuple[int, int]:
-    """Find the flat index of the first false element, and count the false elements."""
-    xp = namespace(valid)
-    bad = ~xp.reshape(valid, (-1,))
-    return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 
 def check_numeric(name: str, value: Any) -> Array:
@@ -134,10 +121,10 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
         A last axis that is not of length 3.
     """
     value = check_numeric(name, value)
-    shape = tuple(getattr(value, "shape", ()))
+    shape = _array_shape(value)
     if shape[-1:] != (3,):
         raise ValueError(f"{name} of shape {shape} is not allowed: its last axis holds {axes}")
-    return to_common_arrays(value)[0]
+    return value
 
 
 def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> Array:

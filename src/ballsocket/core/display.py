@@ -6,6 +6,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
+from math import isfinite
 from typing import Any
 
 
@@ -54,6 +55,11 @@ def ascii_text(text: str) -> str:
 
 _LARGEST_PLAIN = 1e9
 """Value from which numbers have an exponent."""
+
+
+def finite_or_none(value: float) -> float | None:
+    """Return a finite number for JSON, and None for NaN and infinity."""
+    return float(value) if isfinite(value) else None
 
 
 def plain_number(value: float, digits: int = 4) -> str:

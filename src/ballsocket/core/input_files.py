@@ -11,7 +11,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from io import BufferedReader, FileIO
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -23,32 +22,20 @@ _VARIABLE = "BALLSOCKET_INPUT_FOLDERS"
 _opened: ContextVar[list[Path] | None] = ContextVar("opened_inputs", default=None)
 
 
-@dataclass(frozen=True)
-class AllowedFolders:
-    """Folders whose contents may be read.
+def resolve_inside(folders: Iterable[Path], path: Path, name: str) -> Path:
+    """Resolve symbolic links and ".." in a path, and check that it lies in folders without symbolic links.
 
-    Parameters
-    ----------
-    folders : tuple of Path
-        Paths without symbolic links.
+    `name` replaces the path in the message.
+
+    Raises
+    ------
+    ValueError
+        A path outside the folders.
     """
-
-    folders: tuple[Path, ...]
-
-    def resolve(self, path: Path, name: str) -> Path:
-        """Resolve symbolic links and ".." in a path, and check that it lies in the allowed folders.
-
-        `name` replaces the path in the message.
-
-        Raises
-        ------
-        ValueError
-            A path outside the folders.
-        """
-        resolved = resolve_path(path)
-        if not any(resolved.is_relative_to(folder) for folder in self.folders):
-            raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
-        return resolved
+    resolved = resolve_path(path)
+    if not any(resolved.is_relative_to(folder) for folder in folders):
+        raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
+    return resolved
 
 
 def restriction_variables(folders: Iterable[Path]) -> Mapping[str, str]:
@@ -74,7 +61,7 @@ def resolve_input(path: Path) -> Path:
     allowed = os.environ.get(_VARIABLE)
     if allowed is None:
         return path
-    return AllowedFolders(tuple(map(Path, json.loads(allowed)))).resolve(path, str(path))
+    return resolve_inside(map(Path, json.loads(allowed)), path, str(path))
 
 
 def open_input(path: Path) -> BinaryIO:
@@ -101,18 +88,15 @@ class _NamedFile(FileIO):
     """Raw input file whose errors name it: those of a read have no path."""
 
     def readinto(self, buffer: Any) -> int | None:
-        """Read bytes into a buffer."""
         with self._named_errors():
             return super().readinto(buffer)
 
     def readall(self) -> bytes:
-        """Read the rest of the file."""
         with self._named_errors():
             return super().readall()
 
     @contextmanager
     def _named_errors(self) -> Iterator[None]:
-        """Add the path to an OSError in the block."""
         try:
             yield
         except OSError as error:

@@ -69,7 +69,7 @@ class Kind(StrEnum):
     @property
     def column_suffix(self) -> str:
         """Unit at the end of a CSV column name, such as "N_per_mm"; empty for a plain number."""
-        return _SUFFIXES.get(self, self.unit)
+        return self.assumed_unit.replace("mm**0.5", "sqrt_mm").replace("/", "_per_").replace(" ", "_")
 
     @property
     def assumed_unit(self) -> str:
@@ -96,16 +96,4 @@ _KINDS = {
     Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
-_SUFFIXES = {
-    Kind.ANGLE: "deg",
-    Kind.NUMBER: "",
-    Kind.STIFFNESS: "N_per_mm",
-    Kind.ENERGY: "N_mm",
-    Kind.FOUNDATION: "MPa_per_mm",
-    Kind.COMPLIANCE: "mm_per_N",
-    Kind.SURFACE_ENERGY: "N_per_mm",
-    Kind.EDGE_COEFFICIENT: "MPa_per_sqrt_mm",
-    Kind.VISCOSITY: "Pa_s",
-    Kind.ROTATION_RATE: "rad_per_s",
-}
 _TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}

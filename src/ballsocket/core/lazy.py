@@ -17,7 +17,6 @@ else:
         """Property that is computed once per instance and then stored in its `__dict__`."""
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:
-            """Return the stored value; compute and store it if there is none."""
             if instance is None:
                 return self
             values = instance.__dict__

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import redirect_stderr, redirect_stdout
 from io import BytesIO, StringIO
 from pathlib import Path
@@ -43,27 +44,37 @@ def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:
     if len(raw) > _MAX_BYTES:
         raise ValueError(f"{path.name} has more than {_MAX_BYTES // 1_000_000} MB, the most that is read")
     source: Any = resolve_input(path)
-    if path.suffix.lower() == ".ply":
+    suffix, first_index, n_stated = path.suffix.lower(), 1, None
+    if suffix == ".obj":  # meshio takes only as many normals and textures as points: points and faces are enough
+        lines = [line for line in raw.splitlines() if line.split(maxsplit=1)[:1] in ([b"v"], [b"f"])]
+        source = StringIO(b"\n".join(lines).decode("latin-1"))
+    elif suffix == ".ply":
         head, end, body = raw[:_HEADER_BYTES].partition(b"end_header")
         if not end:
             raise ValueError(message)  # meshio would read for ever
         head = head.replace(b" vertex_index\n", b" vertex_indices\n").replace(b" vertex_index\r", b" vertex_indices\r")
         source = BytesIO(head + end + body + raw[_HEADER_BYTES:])
+        first_index, n_stated = 0, re.search(rb"element vertex +(\d+)", head)
     try:
         with numpy.errstate(all="ignore"), redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # meshio prints
-            mesh = meshio.read(source, file_format="ply" if isinstance(source, BytesIO) else None)
+            mesh = meshio.read(source, file_format=suffix[1:])
             points = numpy.asarray(mesh.points, dtype=float)
             blocks = [_fans(numpy.asarray(cells.data, dtype=int)) for cells in mesh.cells]
     except (meshio.ReadError, ValueError, TypeError, LookupError, AttributeError, AssertionError, SystemExit) as error:
         raise ValueError(message) from error
     if points.ndim != 2 or points.shape[1] < 3:
         raise ValueError(message)
+    if n_stated and int(n_stated[1]) != len(points):
+        raise ValueError(
+            f"{path.name} is incomplete: its header states {int(n_stated[1])} points, and it has {len(points)}: save "
+            "it again"
+        )
     triangles = numpy.concatenate([numpy.zeros((0, 3), dtype=int), *blocks])
     if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
-        first = triangles.min() + 1 if triangles.min() < 0 else triangles.max() + 1
+        wrong = first_index + (triangles.min() if triangles.min() < 0 else triangles.max())
         raise ValueError(
-            f"{path.name}: a face names point {first}, and the file has {len(points)} points: count them from 1, not "
-            "back from the last one"
+            f"{path.name}: a face names point {wrong}, and the file has {len(points)} points: count them from "
+            f"{first_index}, not back from the last one"
         )
     return points[:, :3], triangles
 

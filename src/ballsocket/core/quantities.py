@@ -163,7 +163,6 @@ class Quantity:
 
 
 def _make_quantity_table(*quantities: Quantity) -> Mapping[str, Quantity]:
-    """Make a read-only table of quantities by name."""
     return MappingProxyType({quantity.name: quantity for quantity in quantities})
 
 

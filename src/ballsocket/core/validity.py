@@ -85,7 +85,6 @@ class _AttributePath:
         self._names = path.split(".")
 
     def __call__(self, owner: Any) -> Any:
-        """Read the attribute of an owner."""
         for name in self._names:
             owner = getattr(owner, name)
         return owner
@@ -190,7 +189,6 @@ class NeverValid(Range):
     """Empty validity range, of a model whose results are only for comparison."""
 
     quantity: str | Callable[[Any], Array] = "indentation"
-    symbol: str = ""
 
     def holds(self, contact: Any) -> Array:
         """Return a mask that is false for all contacts."""

@@ -79,11 +79,9 @@ def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, 
     The last three results are sin γ times the direction of increasing γ.
     """
     dome_cosine = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
-    ax, ay, az = (
-        dome_cosine * centre.x - constants.dome_x,
-        dome_cosine * centre.y - constants.dome_y,
-        dome_cosine * centre.z - constants.dome_z,
-    )
+    ax = dome_cosine * centre.x - constants.dome_x
+    ay = dome_cosine * centre.y - constants.dome_y
+    az = dome_cosine * centre.z - constants.dome_z
     return dome_cosine, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
@@ -105,7 +103,6 @@ def smooth_ramp_value(y: Array, width: Array) -> Array:
 
 
 def _corner_polynomial(t: Array) -> Array:
-    # ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt
     """Compute the polynomial ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt of the smooth corner."""
     return t * t * t * t * (2.5 - 3.0 * t + t * t)
 

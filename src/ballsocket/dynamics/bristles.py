@@ -128,8 +128,7 @@ def bristle_forces(
     return force, released_rate, dissipated
 
 
-_TRANSITION_SPEED_SQUARED = 1e-30
-"""Square of the transition speed in (mm/s)²; too small to change the slip."""
+_TRANSITION_SPEED_SQUARED = 1e-30  # square of the transition speed in (mm/s)²; too small to change the slip
 
 
 def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
@@ -159,7 +158,6 @@ def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array,
 
 
 def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
-    """Compute the dot product of two deflections."""
     return sum(
         (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
         first_deflection[0] * second_deflection[0],

@@ -15,17 +15,15 @@ from numba import njit
 from ..compiled import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
 from ..compiled.law import CompiledLaw
 from ..compiled.overloads import inline_formula, jit_formula
-from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
 from ..core.checks import check_shape, check_vectors, shown
 from ..models import kinematics
 from ..models.kinematics import Kinematics
-from ..problem import Joint
 from . import ball_centre, film, friction, potential, reaction, stepping
 from .ball_centre import Constants
 from .element import ForceElement
 from .load import Load
-from .potential import CurvePotential, SpringPotential, energy_curve
+from .potential import CurvePotential, SpringPotential, curve_range, energy_curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,15 +116,9 @@ class CompiledElement:
             check_shape(name, values, (position.shape,)) for name, values in [("velocity", velocity), ("spin", spin)]
         ]
         state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, *motion)]
-        state_count = len(position)
-        outputs = (
-            numpy.empty((state_count, 3)),
-            numpy.empty((state_count, 3)),
-            numpy.empty(state_count),
-            numpy.empty((state_count, 6)),
-        )
-        _compiled_batch_loop()(self.potential, self.constants, *state, *outputs)
-        return outputs
+        force, moment, energy, tangent = (numpy.empty((len(position), *row)) for row in ((3,), (3,), (), (6,)))
+        _compiled_batch_loop()(self.potential, self.constants, *state, force, moment, energy, tangent)
+        return force, moment, energy, tangent
 
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
@@ -136,18 +128,12 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
         springs = energy_law.springs
         spring_constants: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
         return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=spring_constants)
-    curve = (
-        energy_law.curve
-        if isinstance(energy_law, CurvePotential)
-        else _fit_energy_curve(element.joint, element.model.law(element.joint))
-    )
+    if isinstance(energy_law, CurvePotential):
+        curve = energy_law.curve
+    else:
+        curve = energy_curve(element.model.law(element.joint), *curve_range(element.joint))
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
     return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
-
-
-def _fit_energy_curve(joint: Joint, law: ForceLaw) -> Any:
-    """Fit the elastic energy of a joint with a force law by a curve over the indentation."""
-    return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 
 
 @cache
@@ -183,14 +169,11 @@ def load_from_contact(centre, contact, velocity, spin, constants):  # type: igno
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
-_BLOCK_SIZE = 256
-"""Number of states whose energies are computed before their loads; the separate loops are faster."""
+_BLOCK_SIZE = 256  # number of states whose energies are computed before their loads; the separate loops are faster
 
 
 @cache
 def _compiled_batch_loop() -> Any:
-    """Compile the loop over an array of states."""
-
     @njit(error_model="numpy", fastmath={"contract"})
     def compute_batch(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
         """Compute force, moment, energy and tangent stiffness of each state, in blocks."""
@@ -218,7 +201,6 @@ def _compiled_batch_loop() -> Any:
 
 @cache
 def _compiled_march() -> Any:
-    """Compile the loop over the time steps."""
     return njit(error_model="numpy")(stepping.march)
 
 

@@ -255,7 +255,6 @@ def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
 
 
 def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
-    """Fit the hysteresis χ in s/mm to coefficients of restitution by Gauss-Newton iterations."""
     chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
     for _ in range(50):
         slope = _restitution_slopes(chi, speeds)

@@ -34,8 +34,7 @@ from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tens
 
 _log = logging.getLogger("ballsocket.dynamics")
 
-_DEPTHS = 129
-"""Number of indentations at which validity is evaluated."""
+_DEPTHS = 129  # number of indentations at which validity is evaluated
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
@@ -48,6 +47,7 @@ _PARTS: dict[str, Any] = {
 }
 """Types of the parts of a force element by their names."""
 
+_CURVE_QUANTITIES = ("half_angle", "max_pressure")
 _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
@@ -135,19 +135,11 @@ class ForceElement(OneLine):
         return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named, *smoothing])
 
     def _elastic_energy(self) -> Potential:
-        """Return the elastic energy of model and joint over the indentation."""
         if not isinstance(self.model, AdhesiveSocket):
             return potential_of(self.model, self.joint)
         if self.friction or self.cup or self.smoothing or self.lubricant:
             raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
         return adhesion_potential(self.model, self.joint)
-
-    @property
-    def _checked_tension(self) -> float:
-        """Largest tension of the lubricant in MPa; ValueError if it is not above 0."""
-        tension = check_number("film_tension", self.film_tension)
-        require("film_tension", tension, tension > 0.0, "a tension (MPa) must be above 0")
-        return tension
 
     @cached_property
     def stretch(self) -> float:
@@ -162,9 +154,10 @@ class ForceElement(OneLine):
         return "an adhesive ball has a state" if self.stretch > 0.0 else ""
 
     def _collect_constants(self, smoothing: float) -> Constants:
-        """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
         friction = self.friction if isinstance(self.friction, Friction) else None
+        tension = check_number("film_tension", self.film_tension)
+        require("film_tension", tension, tension > 0.0, "a tension (MPa) must be above 0")
         return Constants(
             ball_radius=joint.ball_radius,
             socket_radius=joint.socket_radius,
@@ -174,7 +167,7 @@ class ForceElement(OneLine):
             **loss_constants(self.damping, friction),
             rim=0.0 if cup is None else cup.rim,
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
-            **film_constants(self.lubricant, self._checked_tension, joint),
+            **film_constants(self.lubricant, tension, joint),
         )
 
     def __call__(
@@ -216,7 +209,6 @@ class ForceElement(OneLine):
             return add_bristle_loads(load, self.friction, deflection)
 
     def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
-        """Compute the load at one state, given as tuples of plain numbers."""
         constants = self.constants
         centre = ball_centre_at(*position, constants.clearance)
         is_adhesive = self.stretch > 0.0
@@ -233,7 +225,6 @@ class ForceElement(OneLine):
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
     def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
-        """Compute the loads at many states, given as arrays (..., 3)."""
         r, v, w = split_states(position, velocity, spin)
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
@@ -277,9 +268,8 @@ class ForceElement(OneLine):
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
         """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
-        return fit_quantity_curve(self.model, self.joint, "half_angle"), fit_quantity_curve(
-            self.model, self.joint, "max_pressure"
-        )
+        half_angle, pressure = (fit_quantity_curve(self.model, self.joint, name) for name in _CURVE_QUANTITIES)
+        return half_angle, pressure
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""
@@ -383,7 +373,7 @@ class ValidityMonitor:
         """
         if not self.limit < indentation <= self.wall:
             return
-        contact = self._contact_at(indentation)
+        contact = self.model.press(self.joint, indentation=indentation)
         if not self._exceeds_validity_range(contact):
             self.limit = self._find_valid_indentation(indentation)
             return
@@ -394,14 +384,10 @@ class ValidityMonitor:
         """Find an indentation in mm, `depth` or larger, at which the model is valid."""
         deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
         for _ in range(6):
-            if not self._exceeds_validity_range(self._contact_at(deeper)):
+            if not self._exceeds_validity_range(self.model.press(self.joint, indentation=deeper)):
                 return deeper
             deeper = (depth + deeper) / 2
         return depth
-
-    def _contact_at(self, indentation: float) -> Contact:
-        """Compute the contact at an indentation in mm."""
-        return self.model.press(self.joint, indentation=indentation)
 
     def _exceeds_validity_range(self, contact: Contact) -> bool:
         """Check if a contact is invalid for a reason other than its small size."""

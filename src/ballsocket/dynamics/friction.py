@@ -196,11 +196,9 @@ def effective_slip_bends(
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
     G = x + theta * y + scale * transition_squared
-    inverse_denominator, inverse_roll_denominator, zero = (
-        1.0 / (G * (G + eta * z) + lam * z * z),
-        1.0 / (1.0 + (zeta - 1.0) * z),
-        0.0 * x,
-    )
+    inverse_denominator = 1.0 / (G * (G + eta * z) + lam * z * z)
+    inverse_roll_denominator = 1.0 / (1.0 + (zeta - 1.0) * z)
+    zero = 0.0 * x
     # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
     ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * inverse_denominator
     top = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import IntEnum
-from functools import partial, wraps
+from functools import wraps
 from math import degrees
 from typing import Any, NamedTuple, Protocol
 
@@ -121,15 +121,16 @@ class Load(NamedTuple):
     @property
     def socket_force(self) -> Any:
         """Force on the socket in N."""
-        return self._join_components(*(-part for part in self._split_vector(self.force)))
+        return join_vector(type(self.force), *(-part for part in _vector_components(self.force)))
 
     @property
     @_without_warnings
     def socket_moment(self) -> Any:
         """Moment on the socket about its centre in N mm: -M - r x F."""
-        (fx, fy, fz), (mx, my, mz) = self._split_vector(self.force), self._split_vector(self.moment)
+        (fx, fy, fz), (mx, my, mz) = _vector_components(self.force), _vector_components(self.moment)
         x, y, z = self.position
-        return self._join_components(-mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx)
+        moment = -mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx
+        return join_vector(type(self.force), *moment)
 
     @property
     def indentation(self) -> Array:
@@ -229,17 +230,6 @@ class Load(NamedTuple):
         state = *self.position, *self.velocity, *self.spin, *rate_components
         return arrays.isfinite(OVERFLOW_GUARD * sum((part * part for part in state), 0.0))
 
-    @property
-    def _join_components(self) -> Any:
-        """Function that joins three components to a vector of the same type as the force."""
-        return partial(join_vector, type(self.force))
-
-    @staticmethod
-    def _split_vector(packed: Any) -> Vector:
-        """Split a vector into its three components."""
-        x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
-        return x, y, z
-
 
 def describe_load(force: Any, moment: Any, energy: Any) -> str:
     """Describe force (N), moment (N mm) and energy (N mm) of one state, or the shape of several."""
@@ -252,7 +242,6 @@ def describe_load(force: Any, moment: Any, energy: Any) -> str:
 
 
 def _to_json_value(value: Any) -> Any:
-    """Convert an array, or a vector of three arrays, to numbers or lists for JSON."""
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 
@@ -288,17 +277,14 @@ def describe_contact_states(load: Load) -> tuple[str, ...]:
 
 
 def _describe_state(load: Load, codes: Numbers, state: ContactState) -> str:
-    """Describe the contacts in one reported state, with the position of the first of them."""
     indices = numpy.flatnonzero(codes == state)
-    x, y, z, d = (_value_at_index(part, codes, indices[0]) for part in (*load.position, load.indentation))
+    x, y, z, d = (
+        float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[indices[0]])
+        for values in (*load.position, load.indentation)
+    )
     count_text = "" if codes.size == 1 else f"{len(indices)} of {codes.size}: "
     values = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
     return f"{count_text}{state.sentence}; {values}, the limit is {load.element.wall:.6g} mm"
-
-
-def _value_at_index(values: Array, codes: Numbers, index: int) -> float:
-    """Return one number of a broadcast array by its flat index."""
-    return float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[index])
 
 
 def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
@@ -339,10 +325,8 @@ def _split_deflections(load: Load, deflection: Any) -> Deflections:
 
 
 def _vector_components(packed: Any) -> Any:
-    """Return the three components of a vector."""
     return packed if type(packed) is tuple else [packed[..., axis] for axis in range(3)]
 
 
 def _cross_product(a: Any, b: Any) -> Any:
-    """Compute the cross product of two vectors of three components."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

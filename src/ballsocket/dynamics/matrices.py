@@ -28,7 +28,8 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     """
     centre, contact = BallCentre(*_floats_to_arrays(centre)), Elastic(*_floats_to_arrays(contact))
     velocity, spin = _floats_to_arrays(velocity), _floats_to_arrays(spin)
-    direction, ones, zeros = _stack_components(centre.x, centre.y, centre.z), *_ones_and_zeros(centre.distance)
+    direction, zeros = join_vector(object, centre.x, centre.y, centre.z), 0.0 * centre.distance
+    ones = zeros + 1.0
     normal = direction[..., :, None] * direction[..., None, :]
     tangential = join_matrix(((ones, zeros, zeros), (zeros, ones, zeros), (zeros, zeros, ones))) - normal
     normal_damping, tangential_damping = _damping_coefficients(centre, contact, velocity, constants)
@@ -43,12 +44,10 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     xp = arrays.namespace(direction)
     # rows: v across the load, R1 ω x n, and the speed at the lever; columns: v and ω
     zero_block = 0.0 * tangential
-    translation_rows, rotation_rows = (
-        xp.concat([tangential, zero_block], axis=-1),
-        xp.concat([zero_block, rotation], axis=-1),
-    )
+    translation_rows = xp.concat([tangential, zero_block], axis=-1)
+    rotation_rows = xp.concat([zero_block, rotation], axis=-1)
     drilling_row = xp.concat([0.0 * direction, lever[..., None] * direction], axis=-1)[..., None, :]
-    v, b = _stack_components(slip.x, slip.y, slip.z), _stack_components(slip.bx, slip.by, slip.bz)
+    v, b = join_vector(object, slip.x, slip.y, slip.z), join_vector(object, slip.bx, slip.by, slip.bz)
     curvature = _potential_curvature(centre, slip, (translation_rows, rotation_rows, drilling_row), (v, b), constants)
     rate = slip.rate[..., None, None] * curvature
     projection = _weighted_row_sum(translation_rows, slip.push[..., None] * v + slip.mixed[..., None] * b)
@@ -135,13 +134,11 @@ def _potential_curvature(
 
 
 def _sum_outer_products(first: Array, second: Array) -> Array:
-    """Compute the outer products of two sets of direction rows, summed over the rows."""
     xp = arrays.namespace(first)
     return xp.matmul(xp.matrix_transpose(first), second)
 
 
 def _weighted_row_sum(directions: Array, rates: Array) -> Array:
-    """Multiply direction rows by rates, and sum over the rows."""
     return arrays.namespace(directions).sum(rates[..., :, None] * directions, axis=-2)
 
 
@@ -158,22 +155,11 @@ def _normal_speed(centre: BallCentre, velocity: Vector) -> Array:
     return velocity[0] * centre.x + velocity[1] * centre.y + velocity[2] * centre.z
 
 
-def _ones_and_zeros(like: Array) -> tuple[Array, Array]:
-    """Return arrays of ones and zeros in the shape of a given array."""
-    return 0.0 * like + 1.0, 0.0 * like
-
-
-def _stack_components(*components: Array) -> Any:
-    """Join components to an array, along its last axis."""
-    return arrays.namespace(*components).stack(components, axis=-1)
-
-
 def join_matrix(rows: Any) -> Any:
     """Join rows of components to matrices, along the last two axes of an array."""
-    stacked = [_stack_components(*row) for row in rows]
+    stacked = [join_vector(object, *row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 
 
 def _floats_to_arrays(components: Any) -> Any:
-    """Convert Python floats among some components to NumPy arrays."""
     return tuple(numpy.asarray(value) if type(value) is float else value for value in components)

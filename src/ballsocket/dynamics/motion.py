@@ -128,19 +128,16 @@ class Motion:
     def summary(self) -> dict[str, Any]:
         """Return the main results of the motion as a dictionary for JSON, in s, mm, N and N mm."""
         force = numpy.linalg.norm(self.load.force, axis=1)
-        ends = {
-            "stored": self.energy,
-            "kinetic": self.kinetic_energy,
-            "lost": self.dissipated_energy,
-            "work": self.work,
-        }
         return {
             "duration": float(self.time[-1]),
             "steps": len(self.time) - 1,
             "bounces": self.bounces,
             "deepest": float(self.indentation.max()),
             "largest_force": float(force.max()),
-            **{name: float(values[-1]) for name, values in ends.items()},
+            "stored": float(self.energy[-1]),
+            "kinetic": float(self.kinetic_energy[-1]),
+            "lost": float(self.dissipated_energy[-1]),
+            "work": float(self.work[-1]),
             "drift": self.drift,
             "angular_drift": self.angular_drift,
             "ended": self.end_reason,

@@ -79,7 +79,6 @@ class CurvePotential:
 
     @cached_property
     def _coefficient_rows(self) -> PolynomialPieces:
-        """Coefficients of the curve as tuples of floats, for fast evaluation."""
         return tuple(map(tuple, self.curve.pieces.tolist()))
 
     def __call__(self, indentation: Array) -> Slopes:
@@ -115,8 +114,7 @@ def energy_derivatives_of_number(
     return energy, force, (force * (exponent - 1.0) + energy * inverse_indentation * curvature) * inverse_indentation
 
 
-_MIN_INDENTATION = 1e-150
-"""Smallest indentation in mm whose energy does not underflow in an intermediate result."""
+_MIN_INDENTATION = 1e-150  # smallest indentation in mm whose energy does not underflow in an intermediate result
 
 
 def energy_derivatives_of_array(
@@ -161,13 +159,12 @@ def potential_of(model: Model, joint: Joint) -> Potential:
         return SpringPotential(springs=law)
     if isinstance(law, ClosedLaw):
         return FormulaPotential(model=law.model, joint=law.joint)
-    return CurvePotential(curve=energy_curve(law, *_curve_ends(law, joint)))
+    ends = (law.shallowest, law.deepest) if isinstance(law, CurveLaw) else curve_range(joint)
+    return CurvePotential(curve=energy_curve(law, *ends))
 
 
-def _curve_ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
-    """Return the smallest and the largest indentation in mm of a curve for a force law."""
-    if isinstance(law, CurveLaw):
-        return law.shallowest, law.deepest
+def curve_range(joint: Joint) -> tuple[float, float]:
+    """Return the indentations in mm between which quantities of a joint are fitted by curves."""
     return 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius
 
 
@@ -192,15 +189,12 @@ def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbe
     return initial_work + numpy.cumsum(numpy.diff(log_depths) * ((forces * gauss_indentations) @ weights))
 
 
-_GAUSS_NODES = 16
-"""Number of Gauss points between two indentations."""
+_GAUSS_NODES = 16  # number of Gauss points between two indentations
 
 
 @dataclass(frozen=True, kw_only=True)
 class AdhesionPotential:
-    """Elastic energy of an adhesive socket as a function of d + u_c, zero at the separation of the ball.
-
-    That is at the distance u_c before first touch.
+    """Elastic energy of an adhesive socket as a function of d + u_c, where u_c is the distance at separation.
 
     The energy is zero at separation, and negative at first touch.
     """
@@ -251,10 +245,7 @@ def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential
 def fit_quantity_curve(model: Model, joint: Joint, quantity: str) -> CurveLaw:
     """Fit a curve to a contact quantity over the indentation, from almost 0 to the socket radius."""
     joint = joint.with_floats()
-    shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-    return fit_curve_law(
-        lambda depths: getattr(model.press(joint, indentation=depths), quantity), shallowest, joint.socket_radius
-    )
+    return fit_curve_law(lambda depths: getattr(model.press(joint, indentation=depths), quantity), *curve_range(joint))
 
 
 def evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:

@@ -39,8 +39,7 @@ NODES = 7
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
 
-_PIECES = 24
-"""Number of polynomial pieces of a curve over ln e."""
+_PIECES = 24  # number of polynomial pieces of a curve over ln e
 
 _SHALLOWEST, _LARGEST_STRAIN = 0.02, 0.1
 """First tabulated displacement over the interference, and last one over the thickness of the liner."""
@@ -51,11 +50,6 @@ _ZERO_VECTOR = (0.0, 0.0, 0.0)
 def node_cosines() -> Numbers:
     """Return the cosines t_j of the tabulated directions with the axis of the dome."""
     return numpy.cos(pi * numpy.arange(NODES) / (NODES - 1))
-
-
-def node_weights() -> Numbers:
-    """Return the coefficients (nodes, powers) of the Lagrange polynomials w_j(t), the lowest power first."""
-    return numpy.linalg.inv(numpy.vander(node_cosines(), increasing=True)).T
 
 
 class PreloadedForce(NamedTuple):
@@ -195,7 +189,6 @@ def _friction_levers(contact: Any) -> tuple[Numbers, Numbers]:
 
 
 def _cell_values(contact: Any) -> tuple[Numbers, Numbers]:
-    """Return the largest pressure of a cell in MPa, and the half angle in rad of a round contact of the same area."""
     ((_, contacts),) = contact.laws.pieces
     grid, pressure = contacts.state.bore.compliance.grid, contacts.state.equilibrium.pressure
     solid_angle = ((pressure > 0) * grid.areas).sum(axis=(1, 2))
@@ -252,16 +245,14 @@ def interpolate(values: Any, cosine: Array, order: int = 0) -> Array:
 
 
 def _weighted_sum(weights: Sequence[float], values: Any) -> Array:
-    """Sum values with weights, without those of weight 0."""
     first, *others = (weight * value for weight, value in zip(weights, values, strict=True) if weight != 0.0)
     return sum(others, first)
 
 
-_WEIGHTS = numpy.round(node_weights().T, 12).tolist()
-"""Coefficients of the Lagrange polynomials: (powers, nodes)."""
+_WEIGHTS = numpy.round(numpy.linalg.inv(numpy.vander(node_cosines(), increasing=True)), 12).tolist()
+"""Coefficients of the Lagrange polynomials w_j(t): (powers, nodes), the lowest power first."""
 
-_CENTRE = 1e-9
-"""Displacement in mm below which the direction of the displacement does not matter."""
+_CENTRE = 1e-9  # displacement in mm below which the direction of the displacement does not matter
 
 
 def displacement_from_equilibrium(
@@ -315,10 +306,8 @@ def preloaded_load(
     speed = vx * force.nx + vy * force.ny + vz * force.nz
     radial = force.slope + constants.hysteresis * clip(force.slope, 0.0, inf) * speed
     along = a * vx + b * vy + c * vz
-    drag, extra = (
-        constants.time * table.stiffness_across,
-        constants.time * (table.stiffness_along - table.stiffness_across) * along,
-    )
+    drag = constants.time * table.stiffness_across
+    extra = constants.time * (table.stiffness_along - table.stiffness_across) * along
     fx = -radial * force.nx - across * force.px - drag * vx - extra * a
     fy = -radial * force.ny - across * force.py - drag * vy - extra * b
     fz = -radial * force.nz - across * force.pz - drag * vz - extra * c
@@ -504,7 +493,6 @@ class PreloadedElement(OneLine):
         return dome_x, dome_y, dome_z
 
     def _collect_constants(self) -> Constants:
-        """Collect the constants of joint, damping, friction and cup."""
         joint = self.joint.with_floats()
         return Constants(
             ball_radius=joint.ball_radius,
@@ -541,7 +529,6 @@ class PreloadedElement(OneLine):
         return self._load(object, r, v, w)
 
     def _load(self, kind: type, position: Vector, velocity: Vector, spin: Vector) -> PreloadedLoad:
-        """Compute the load at states given by components."""
         with numpy.errstate(all="ignore"):
             is_finite = isfinite(OVERFLOW_GUARD * sum((part * part for part in (*position, *velocity, *spin)), 0.0))
             place = displacement_from_equilibrium(*position, self.constants, self.table.offset)

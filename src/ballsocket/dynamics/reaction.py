@@ -91,10 +91,8 @@ def elastic_at_rim(
     rim_ratio = (constants.rim - gamma) / epsilon
     W, W1, W2 = rim_share(rim_ratio)
     U, F, k = where(rim_ratio > -1.0, U, 0.0), where(rim_ratio > -1.0, F, 0.0), where(rim_ratio > -1.0, k, 0.0)
-    s1, s2 = (
-        -rim_ratio * epsilon_slope / epsilon,
-        rim_ratio * (2.0 * epsilon_slope * epsilon_slope / epsilon - epsilon_bend) / epsilon,
-    )
+    s1 = -rim_ratio * epsilon_slope / epsilon
+    s2 = rim_ratio * (2.0 * epsilon_slope * epsilon_slope / epsilon - epsilon_bend) / epsilon
     # derivatives of U W(s) over the depth and γ; s decreases by 1/ε per γ
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * epsilon_slope / epsilon - F * W1 - U * W2 * s1) / epsilon
@@ -173,20 +171,14 @@ def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vect
     ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
     bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
     patch_versine = versine(centre)
-    lever, kappa = (
-        constants.socket_radius * friction.drill_lever(patch_versine),
-        friction.rolling_slip_ratio(patch_versine),
-    )
+    lever = constants.socket_radius * friction.drill_lever(patch_versine)
+    kappa = friction.rolling_slip_ratio(patch_versine)
     squared, squared_kappa = lever * lever * patch_versine * (2.0 - patch_versine), kappa * kappa
-    squared_velocity, squared_rotation, cross = (
-        ax * ax + ay * ay + az * az,
-        bx * bx + by * by + bz * bz,
-        2.0 * (ax * bx + ay * by + az * bz),
-    )
-    squared_sum, transition_squared = (
-        squared_velocity + squared_rotation,
-        constants.transition_speed * constants.transition_speed,
-    )
+    squared_velocity = ax * ax + ay * ay + az * az
+    squared_rotation = bx * bx + by * by + bz * bz
+    cross = 2.0 * (ax * bx + ay * by + az * bz)
+    squared_sum = squared_velocity + squared_rotation
+    transition_squared = constants.transition_speed * constants.transition_speed
     squared_drill_speed, mixed_product = squared * turning * turning, kappa * (squared_velocity - squared_rotation)
     q2, by_slip, by_tilt, by_drill, by_mixed = friction.effective_slip(
         squared_sum + cross,

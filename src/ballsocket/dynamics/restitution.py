@@ -72,13 +72,7 @@ def restitution_of(damping: float) -> float:
     require("damping", damping, 0.0 <= damping < math.inf, "χ v must be at least 0 and finite")
     if damping < 1e-4:
         return 1.0 - 2.0 * damping / 3.0 + 4.0 * damping * damping / 9.0
-    low, high = 0.0, min(1.0, 1.0 / damping)
-    for _ in range(200):
-        middle = (low + high) / 2
-        if not low < middle < high:
-            break
-        low, high = (middle, high) if _impact_energy_balance(damping, middle) > 0 else (low, middle)
-    return low
+    return _bisect(min(1.0, 1.0 / damping), lambda e: _impact_energy_balance(damping, e) > 0)
 
 
 def _impact_energy_balance(h: float, e: float) -> float:
@@ -89,23 +83,21 @@ def _impact_energy_balance(h: float, e: float) -> float:
     return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
 
 
-def _exact_damping(e: float) -> float:
-    """Compute the dimensionless damping h of a coefficient of restitution e by bisection."""
-    if e == 1.0:
-        return 0.0
-    low, high = 0.0, 1.0 / e
+def _bisect(high: float, is_below_root: Callable[[float], bool]) -> float:
+    """Find the root between 0 and `high` to rounding, from below."""
+    low = 0.0
     for _ in range(200):
         middle = (low + high) / 2
         if not low < middle < high:
             break
-        low, high = (middle, high) if restitution_of(middle) > e else (low, middle)
+        low, high = (middle, high) if is_below_root(middle) else (low, middle)
     return low
 
 
 exact = Relation(
     name="the exact solution",
     law="h (1 + e) = ln[(1 + h)/(1 - h e)]",
-    formula=_exact_damping,
+    formula=lambda e: 0.0 if e == 1.0 else _bisect(1.0 / e, lambda h: restitution_of(h) > e),
     sources=(Source("gonthier2004"),),
 )
 """h (1 + e) = ln[(1 + h)/(1 - h e)]."""

@@ -82,8 +82,7 @@ def simulate(
     return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
 
-_MAX_STEPS = 1e8
-"""Largest number of steps of a simulation."""
+_MAX_STEPS = 1e8  # largest number of steps of a simulation
 
 
 @dataclass(frozen=True)
@@ -112,11 +111,9 @@ class _InitialValueProblem:
 
     def simulate_by_energy_steps(self) -> Motion:
         """Simulate the motion by energy-momentum steps."""
-        step, step_count, potential_and_constants = (
-            self.step,
-            self.count,
-            (self.element.potential, self.element.constants),
-        )
+        step = self.step
+        step_count = self.count
+        potential_and_constants = (self.element.potential, self.element.constants)
         states, dissipated = numpy.zeros((step_count + 1, 9)), numpy.zeros(step_count + 1)
         pulls = _pull_forces_at(self.pull, step * (numpy.arange(step_count) + 0.5))
         is_uncompiled = isinstance(self.element, ForceElement)
@@ -165,7 +162,6 @@ class _InitialValueProblem:
         )
 
     def _build_motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
-        """Build a `Motion` from states (steps, 9), the contact load, and other results."""
         return Motion(
             element=self.force_element,
             mass=self.mass,
@@ -180,21 +176,18 @@ class _InitialValueProblem:
 
 
 def _pull_forces_at(pull: Any, time: Numbers) -> Numbers:
-    """Evaluate the pull on the ball in N at some times in s: (times, 3)."""
     if callable(pull):
         return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
     return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
-    """Describe the reason for the early end of a motion, with time and state of the ball."""
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"
 
 
-_MASS_RANGE = (1e-100, 1e100)
-"""Range of masses and moments of inertia whose products are neither zero nor infinite."""
+_MASS_RANGE = (1e-100, 1e100)  # range of masses and moments of inertia whose products are neither zero nor infinite
 
 
 def _check_mass_or_inertia(name: str, value: Any) -> float:
@@ -206,14 +199,12 @@ def _check_mass_or_inertia(name: str, value: Any) -> float:
 
 
 def _check_positive_number(name: str, value: Any) -> float:
-    """Check that a number is above 0 and finite, and return it."""
     checked = check_number(name, value)
     require(name, checked, 0.0 < checked < inf, "it must be above 0 and finite")
     return checked
 
 
-_TOLERANCE = 1e-10
-"""Relative and absolute tolerance of the integration."""
+_TOLERANCE = 1e-10  # relative and absolute tolerance of the integration
 
 _STATE_SIZE = 15
 """Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""
@@ -303,7 +294,6 @@ class StatefulIntegrator:
         """Make the right-hand side of the equations of motion, for an attached or a separate ball."""
 
         def time_derivatives(time: float, state: Numbers) -> list[float]:
-            """Compute the time derivatives of the unknowns; raise `_NoLoad` at a state without a load."""
             load, pull = self._load_at(state, attached), self.pull(time)
             if load.force[0] != load.force[0] or load.contact.rim_margin <= -1.0:
                 raise _NoLoad(load)
@@ -322,12 +312,10 @@ class StatefulIntegrator:
         return time_derivatives
 
     def _load_at(self, state: Numbers, attached: bool) -> Load:
-        """Compute the load at a state of the integrator."""
         s = state.tolist()
         return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
 
     def _is_touching(self, state: Numbers) -> bool:
-        """Check if the ball touches the socket."""
         return bool(self._indentation_at(state) >= 0.0)
 
     def _indentation_at(self, state: Numbers) -> float:
@@ -368,5 +356,4 @@ def _dissipated_power(load: Load) -> float:
 
 
 def _dot_product(a: Any, b: Any) -> float:
-    """Compute the dot product of two vectors."""
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])

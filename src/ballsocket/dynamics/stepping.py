@@ -202,12 +202,10 @@ def mean_contact(  # type: ignore[no-untyped-def]
     )
     end = ball_centre_at(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
     mean_distance = 0.5 * (distance + end.distance)
-    nx, ny, nz, inverse_distance = (
-        midpoint_centre.x,
-        midpoint_centre.y,
-        midpoint_centre.z,
-        1.0 / safe_divisor(mean_distance),
-    )
+    nx = midpoint_centre.x
+    ny = midpoint_centre.y
+    nz = midpoint_centre.z
+    inverse_distance = 1.0 / safe_divisor(mean_distance)
     shortening, depth = midpoint_centre.distance * inverse_distance, mean_distance - constants.clearance
     centre = BallCentre(mean_distance, nx, ny, nz, depth, inverse_distance)
     if constants.rim == 0.0:
@@ -219,11 +217,9 @@ def mean_contact(  # type: ignore[no-untyped-def]
     sine_ratio, inverse_sine = mean_sine * across, 1.0 / safe_divisor(mean_sine)
     gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
-    kx, ky, kz = (
-        kx + sine_ratio * (nx - cosine * gx),
-        ky + sine_ratio * (ny - cosine * gy),
-        kz + sine_ratio * (nz - cosine * gz),
-    )
+    kx = kx + sine_ratio * (nx - cosine * gx)
+    ky = ky + sine_ratio * (ny - cosine * gy)
+    kz = kz + sine_ratio * (nz - cosine * gz)
     contact = elastic_contact(potential, BallCentre(mean_distance, kx, ky, kz, depth, inverse_distance), constants)
     tilt = lean * shortening
     return MeanContact(
@@ -339,16 +335,12 @@ def newton_correction(
     ux = residual.wy * nz - residual.wz * ny
     uy = residual.wz * nx - residual.wx * nz
     uz = residual.wx * ny - residual.wy * nx
-    dx, dy, dz = (
-        (C * ux - B * tx) * inverse_determinant,
-        (C * uy - B * ty) * inverse_determinant,
-        (C * uz - B * tz) * inverse_determinant,
-    )
-    ex, ey, ez = (
-        (C * tx - A * ux) * inverse_determinant,
-        (C * ty - A * uy) * inverse_determinant,
-        (C * tz - A * uz) * inverse_determinant,
-    )
+    dx = (C * ux - B * tx) * inverse_determinant
+    dy = (C * uy - B * ty) * inverse_determinant
+    dz = (C * uz - B * tz) * inverse_determinant
+    ex = (C * tx - A * ux) * inverse_determinant
+    ey = (C * ty - A * uy) * inverse_determinant
+    ez = (C * tz - A * uz) * inverse_determinant
     change = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
     new_midpoint = Midpoint(
         midpoint.x + dx + dn * nx,

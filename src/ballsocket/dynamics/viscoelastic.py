@@ -99,8 +99,8 @@ class Prony:
 
     @cached_property
     def _retardation_rates_and_weights(self) -> tuple[Numbers, Numbers]:
-        # strains r of the dashpots: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
         """Retardation rates in 1/s and weights of the creep compliance."""
+        # strains r of the dashpots: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
         g, tau = self.shares, self.times
         root = numpy.sqrt(g / tau)
         rates, modes = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
@@ -193,12 +193,9 @@ class Viscoelastic:
         time, depth = _check_history(time, depth)
         peak_index = int(numpy.argmax(depth))
         rising_steps = numpy.flatnonzero(numpy.diff(depth)[peak_index:] > 0)
-        require(
-            "depth",
-            depth,
-            _mask_before_second_rise(len(depth), peak_index, rising_steps),
-            "it must rise once and then fall; use `spring_force`",
-        )
+        last = peak_index + rising_steps[0] if len(rising_steps) else len(depth)
+        before_rise = numpy.arange(len(depth)) <= last
+        require("depth", depth, before_rise, "it must rise once and then fall; use `spring_force`")
         force = self.hereditary_force(time, depth)
         weights, positive_depth = self._mean_relaxation(time), numpy.maximum(depth, 0.0)
         for instant in range(peak_index + 1, len(time)):
@@ -284,7 +281,6 @@ def _maxwell_pressures(modulus: Prony, time: Numbers, spring_displacements: Numb
 
 
 def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
-    """Check the times and indentations of a history, and convert them to arrays; ValueError if invalid."""
     time, depth = numpy.asarray(time, dtype=float), numpy.asarray(depth, dtype=float)
     if time.ndim != 1 or time.shape != depth.shape or len(time) < 2:
         raise ValueError(f"time and depth must be rows of equal length, at least 2, got {time.shape} and {depth.shape}")
@@ -293,11 +289,3 @@ def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
     require("time", time, increasing, "times must increase")
     require("depth", depth[:1], depth[:1] <= 0, "a history must begin without contact")
     return time, depth
-
-
-def _mask_before_second_rise(instant_count: int, peak_index: int, rising_steps: Numbers) -> Numbers:
-    """Return a mask (instants,) that is true until the indentation rises again."""
-    valid = numpy.ones(instant_count, dtype=bool)
-    if len(rising_steps):
-        valid[peak_index + rising_steps[0] + 1 :] = False
-    return valid

@@ -34,18 +34,13 @@ Ranges = Mapping[str, Sequence[float]]
 """Smallest and largest value of each similarity number."""
 
 
-def _modulus_ratio(joint: Joint) -> Array:
-    ratio = 0.0 if joint.ball is None else joint.liner.young / joint.ball.young
-    return where(ratio < 0.02, 0.0, ratio)
-
-
 SIMILARITY: Mapping[str, Callable[[Joint, Array], Array]] = MappingProxyType(
     {
         "c/R1": lambda joint, force: joint.clearance / joint.ball_radius,
         "R1/L": lambda joint, force: joint.ball_radius / joint.liner_thickness,
         "ν": lambda joint, force: joint.liner.poisson,
         "F/(E R1²)": lambda joint, force: force / (joint.liner.young * joint.ball_radius**2),
-        "E/E of the ball": lambda joint, force: _modulus_ratio(joint),
+        "E/E of the ball": lambda joint, force: where(joint.modulus_ratio < 0.02, 0.0, joint.modulus_ratio),
     }
 )
 """Similarity numbers of a linear contact, without units: joints with equal numbers are similar at every size. A ball
@@ -104,7 +99,6 @@ _QUANTITIES = {
 
 
 def _result_ranges(joints: Sequence[Joint], force: float) -> dict[str, tuple[float, float]]:
-    """Compute the ranges of our results over joints at a force in N."""
     contacts = [reference.press(joint, force=force) for joint in joints]
     return {title: _range(getattr(contact, name) for contact in contacts) for title, name in _QUANTITIES.items()}
 

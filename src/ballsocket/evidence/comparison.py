@@ -49,7 +49,6 @@ class Difference:
     reason: str = ""
 
     def __str__(self) -> str:
-        """Return the difference as one line of text."""
         return f"{self.where}: {self.reason or f'written {shown(self.written)}, now {shown(self.now)}'}"
 
 

@@ -169,7 +169,6 @@ def _band_rows(record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _source_rows(record: Record) -> Iterator[dict[str, Any]]:
-    """List the checks of the code and the sources of the inputs."""
     for index, check in enumerate(record["code_verification"]):
         evidence = "not run" if check["observed"] is None else f"{check['observed']:.2g}"
         text, where, gap = f"code check {check['name']}", f"code_verification[{index}]", "a check that passes"

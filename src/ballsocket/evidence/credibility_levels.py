@@ -75,7 +75,7 @@ def error_margins(record: Record) -> list[dict[str, Any]]:
 
 
 def _titles(names: Sequence[str]) -> str:
-    return ", ".join(NAMES[name].title for name in names)
+    return ", ".join(map(input_title, names))
 
 
 def _discretization_level(record: Record) -> ReachedLevel:
@@ -123,12 +123,8 @@ def _use_level(record: Record) -> ReachedLevel:
     supported = "the question file, which is checked on reading, and the call for every number"
     missing = "a second person who compares drawing, inputs and the text of the question"
     if without:
-        return ReachedLevel("a", supported, f"a source for the {_input_titles(without)}; {missing}")
+        return ReachedLevel("a", supported, f"a source for the {_titles(without)}; {missing}")
     return ReachedLevel("b", supported, missing)
-
-
-def _input_titles(names: Sequence[str]) -> str:
-    return ", ".join(map(input_title, names))
 
 
 def _form_level(record: Record) -> ReachedLevel:
@@ -160,8 +156,8 @@ def _inputs_level(record: Record) -> ReachedLevel:
     known = {item["name"]: item for item in record["inputs"]}
     fixed = [name for name in _KEY_INPUTS if name in known and not known[name]["tolerance"]]
     without = [name for name, item in known.items() if not item["source"]]
-    missing = [f"a tolerance for the {_input_titles(fixed)}"] if fixed else []
-    missing += [f"a source for the {_input_titles(without)}"] if without else []
+    missing = [f"a tolerance for the {_titles(fixed)}"] if fixed else []
+    missing += [f"a source for the {_titles(without)}"] if without else []
     if not record["uncertainty"]:
         return ReachedLevel("a", "sources of the inputs as stated", "; ".join(["tolerances, propagated", *missing]))
     supported = "tolerances propagated about the worst case, with Sobol indices"

@@ -53,7 +53,6 @@ class Published:
     read: str = "abstract"
 
     def __str__(self) -> str:
-        """Return the value with its half width."""
         return f"{self.value:g} ± {self.half_width:g}" if self.half_width else f"{self.value:g}"
 
 

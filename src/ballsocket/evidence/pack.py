@@ -288,7 +288,6 @@ STATED = ("python", "system", *_LIBRARIES)
 
 
 def _made_with() -> dict[str, str]:
-    """Return the machine and the versions of the installed libraries that compute and draw."""
     versions = {"python": platform.python_version(), "system": f"{sys.platform} {platform.machine()}"}
     for name in _LIBRARIES:
         with suppress(PackageNotFoundError):

@@ -240,7 +240,6 @@ def read_question(path: str | Path) -> Question:
 
 
 def _question(content: Mapping[str, Any], path: Path) -> Question:
-    """Create the question of a file."""
     tables = read_table(content, QuestionTable)
     axes = parsed_values(tables.matrix, content.get("matrix", {}))
     check_contradictions(axes)

@@ -26,6 +26,7 @@ from ..hip.simulation import HipSimulation
 from ..hip.wear_uncertainty import uncertainty
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
+from ..problem.gaps import GAP_KINDS, CircularGap, select_gap
 from ..studies.axes import Method
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
@@ -86,7 +87,8 @@ class CalculationMethod:
 def compare_methods(question: Question, case: Case) -> list[CalculationMethod]:
     """Solve a case by every method for a load along the axis; a tilted load also by the off-axis solver.
 
-    The off-axis solver has rings of its width, and of half the width. Methods that cannot solve the case are omitted.
+    The off-axis solver has rings of its width, and of half the width. Methods that cannot solve the case are omitted,
+    and `Tabulated`, whose gap is linear, where the others take the circular gap.
     """
     joint, load, size = _joint_and_load(question, case)
     methods = []
@@ -104,6 +106,8 @@ def compare_methods(question: Question, case: Case) -> list[CalculationMethod]:
     }
     if question.finite_elements and find_spec("skfem") is not None:
         models[f"finite elements{suffix}"] = with_gap(FiniteElement(cup=cup), question.gap)
+    if select_gap(None if question.gap is None else GAP_KINDS[question.gap], joint) is CircularGap:
+        del models[f"tabulated{suffix}"]
     for name, model in models.items():
         with suppress(OutsideDomainError):
             methods.append(_solve(name, model, joint, size))
@@ -117,7 +121,6 @@ def _joint_and_load(question: Question, case: Case) -> tuple[Joint, dict[str, An
 
 
 def _solve(name: str, model: Model, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
-    """Solve a case with one model; return its numbers, known errors and notes."""
     contact = model.press(joint, **load)
     return CalculationMethod(
         name=name,

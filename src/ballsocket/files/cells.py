@@ -125,16 +125,11 @@ def read_excel(raw: bytes) -> dict[str, list[NumberedRow]]:
         sheets: dict[str, list[NumberedRow]] = {}
         for sheet in load_workbook(BytesIO(raw), read_only=True, data_only=True).worksheets:
             sheet.reset_dimensions()  # some programs state too few cells
-            sheets[sheet.title] = [
-                (number, [_excel_cell(cell) for cell in cells]) for number, cells in enumerate(sheet.rows, 1)
-            ]
+            sheets[sheet.title] = list(enumerate((list(map(_excel_cell, cells)) for cells in sheet.rows), 1))
     except (BadZipFile, SyntaxError, LookupError, AttributeError, TypeError, OSError) as error:
         raise ValueError(f"it is not a readable .xlsx file: {error}") from error
-    return (
-        {title: rows for title, rows in sheets.items() if any(is_data(cells) for _, cells in rows)}
-        or sheets
-        or {"": []}
-    )
+    filled = {title: rows for title, rows in sheets.items() if any(is_data(cells) for _, cells in rows)}
+    return filled or sheets or {"": []}
 
 
 def _excel_cell(cell: Any) -> Cell:

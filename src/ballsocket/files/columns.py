@@ -45,17 +45,11 @@ _COPIES = 3
 _MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
 """Largest number of characters of a known column head, and of words in its name."""
 
-_MAX_HEAD_ROWS = 4
-"""Number of lines above the numbers in which the column heads are searched."""
+_MAX_HEAD_ROWS, _MAX_TABLES = 4, 100
+"""Lines above the numbers in which the column heads are searched, and tables of a file whose heads are compared."""
 
-_MAX_TABLES = 100
-"""Largest number of tables in a file whose heads are compared."""
-
-_MAX_NAMES = 3
-"""Number of known names in a message."""
-
-_MAX_LISTED = 20
-"""Largest number of heads in a message."""
+_MAX_NAMES, _MAX_LISTED = 3, 20
+"""Largest numbers of known names and of heads in a message."""
 
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
@@ -193,9 +187,8 @@ class NumberTable:
         """
         counts = {**self.left_out, **unused}
         parts = [f"{count} {'line' if count == 1 else 'lines'} {place}" for place, count in counts.items() if count]
-        return (
-            f"{self.title}: {len(self) - sum(unused.values())} rows read, left out {', '.join(parts)}" if parts else ""
-        )
+        n_rows = len(self) - sum(unused.values())
+        return f"{self.title}: {n_rows} rows read, left out {', '.join(parts)}" if parts else ""
 
     def items(self) -> Iterator[tuple[Head, Numbers]]:
         """Yield each head with the numbers below it."""
@@ -235,19 +228,9 @@ class NumberTable:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CellTable:
-    """Cells below column heads.
+    """Cells below column heads, each row with its line in the file; Excel files have cells of numbers.
 
-    Attributes
-    ----------
-    title : str
-        Name of the file, and of the sheet if there are several.
-    heads : tuple of Head
-    rows : sequence of (int, sequence of str or float)
-        Line in the file and cells of each row; Excel files have cells of numbers.
-    separator : str
-        Separator of cells in text.
-    left_out : mapping of str to int
-        Numbers of lines that are not used, by their description.
+    `title` has the sheet if there are several. `left_out` has the numbers of lines that are not used, by description.
     """
 
     title: str
@@ -273,19 +256,15 @@ class CellTable:
         )
         cells = [self.cells(head) for head in heads]
         mark = decimal_mark(chain.from_iterable(cells), self.separator)
-        columns = [numpy.array([cell_number(cell, mark) for _, cell in column]) for column in cells]
+        columns = tuple(numpy.array([cell_number(cell, mark) for _, cell in column]) for column in cells)
         gaps = {}
         for head, column, values in zip(heads, cells, columns, strict=True):
             if not numpy.isfinite(values).all():
                 line, cell = column[int(numpy.isfinite(values).argmin())]
                 gaps[head.name] = line, str(cell)
+        lines, left_out = tuple(line for line, _ in self.rows), self.left_out
         return NumberTable(
-            title=self.title,
-            heads=tuple(heads),
-            columns=tuple(columns),
-            lines=tuple(line for line, _ in self.rows),
-            gaps=gaps,
-            left_out=self.left_out,
+            title=self.title, heads=tuple(heads), columns=columns, lines=lines, gaps=gaps, left_out=left_out
         )
 
 
@@ -303,10 +282,6 @@ def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_CO
         Names of the columns that are known.
     choice : HeadChoice
         Columns that get another name, or that are not used.
-
-    Returns
-    -------
-    NumberTable
 
     Raises
     ------
@@ -395,9 +370,7 @@ class _HeadReader:
     """Reader of column heads, with the names that are known and the choice of the user."""
 
     def __init__(self, names: Collection[str], choice: HeadChoice, texts: Collection[str] = ()) -> None:
-        self.names = names
-        self.texts = texts
-        self.choice = choice
+        self.names, self.texts, self.choice = names, texts, choice
         self.targets = {plain_name(head): name for head, name in choice.columns.items()}
         self.skipped = {plain_name(head) for head in choice.skip}
 
@@ -509,9 +482,8 @@ class _Block:
         body, left_out = _select_rows(self.rows, self.start)
         width = max((index + 1 for index, text in enumerate(texts) if text), default=0)
         for line, cells in body:
-            if any(cell != "" for cell in cells[max(width, len(texts)) :]) or len(cells) < width * (
-                self.separator == " "
-            ):
+            is_wide = any(cell != "" for cell in cells[max(width, len(texts)) :])
+            if is_wide or (self.separator == " " and len(cells) < width):
                 raise ValueError(
                     f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas and empty "
                     "cells need semicolons or tabs between the cells, or quotes"

@@ -50,7 +50,6 @@ class MaterialName(Text):
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
-        """Return the JSON schema of the names and further names of the presets."""
         return choices_schema((*materials, *MATERIAL_ALIASES))
 
 
@@ -231,12 +230,8 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
     """Convert the tables of a joint file, or of the command line; see `read_joint`."""
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
-    load = tables.load or LoadTable()
-    return replace(file, load=_load_of(load), aim=_aim_of(load), report=_details_of(tables.report or ReportTable()))
-
-
-def _details_of(table: ReportTable) -> ReportDetails:
-    return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
+    load, report = tables.load or LoadTable(), tables.report or ReportTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load), report=ReportDetails(**report.stated()))
 
 
 def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
@@ -246,7 +241,7 @@ def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
 
 def report_details(table: ReportTable, folder: Path) -> ReportDetails:
     """Return the head of a report from its table; the path of the logo starts at a folder."""
-    return _logo_in(folder, _details_of(table))
+    return _logo_in(folder, ReportDetails(**table.stated()))
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
@@ -257,7 +252,11 @@ def describe_joint(tables: JointTables, name: str = "", source: str = "") -> Joi
     layers = tables.backing or []
     if len(layers) > _MAX_LAYERS:
         raise ValueError(f"{len(layers)} layers are behind the liner; at most {_MAX_LAYERS} are read")
-    backing = tuple(_layer(f"backing[{number}]", layer) for number, layer in enumerate(layers))
+    backing: tuple[Layer, ...] = ()
+    for number, layer in enumerate(layers):
+        material = _material(f"backing[{number}]", layer)
+        with as_given(written_in(layer), f"backing[{number}]."):
+            backing += (Layer(thickness=float(layer.thickness), material=material),)
     numbers: Any = quantities_of(lengths)
     if tables.shell is not None:
         shell, numbers = _shell(tables.shell, lengths, numbers, {})
@@ -380,42 +379,33 @@ def _shell(
         thickness = float(table.thickness)
     else:
         outer = next((key for key in ("outer_diameter", "outer_radius") if key in remaining), "")
+        share = 2 if outer == "outer_diameter" else 1
         if not outer:
             raise ValueError(
                 "the thickness of the shell is missing: state it, or outer_diameter and liner_thickness, which leave it"
             )
         if "liner_thickness" not in remaining and not current:
             raise ValueError(f"liner_thickness is missing: {outer} alone does not tell liner and shell apart")
-        radius = remaining.pop(outer) / (2 if outer == "outer_diameter" else 1)
+        radius = remaining.pop(outer) / share
         with as_given(written_in(lengths)):
             stored = resolve_lengths(remaining, current, 0.0)
         inner = stored["ball_radius"] + stored["clearance"] + stored["liner_thickness"]
         thickness = round(radius - inner, 12)
         remaining |= {name: stored[name] for name in STORED_LENGTHS} if current else {}
         if not thickness > 0:
-            least = inner * (2 if outer == "outer_diameter" else 1)
             raise ValueError(
                 f"{outer} = {shown(getattr(lengths, outer).written)} is not allowed: ball, clearance and liner take "
-                f"{least:g} mm, which leaves no shell"
+                f"{inner * share:g} mm, which leaves no shell"
             )
     with as_given(written_in(table), "shell."):
         return Layer(thickness=thickness, material=material), remaining
-
-
-def _layer(name: str, table: LayerTable) -> Layer:
-    material = _material(name, table)
-    with as_given(written_in(table), f"{name}."):
-        return Layer(thickness=float(table.thickness), material=material)
-
-
-_ELASTIC = ("young", "poisson")
 
 
 def _material(name: str, table: MaterialTable, present: Material | None = None) -> Material:
     """Create a material from a preset, from numbers that win over its own, or from the present material."""
     numbers: Any = quantities_of(table, *(key for key in MaterialTable.__struct_fields__ if key != "material"))
     preset = present if table.material is None else named_material(name, table.material)
-    missing = [key for key in _ELASTIC if key not in numbers]
+    missing = [key for key in ("young", "poisson") if key not in numbers]
     if missing and preset is None:
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
     with as_given(written_in(table), f"{name}."):
@@ -429,11 +419,7 @@ _PARTS = ("liner", "ball", "shell", "backing", "cup")
 def joint_in(tables: JointTables, folder: Path) -> JointFile:
     """Create the joint of a file from its tables, or read it by its name.
 
-    Parameters
-    ----------
-    tables : JointTables
-        `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
-    folder : Path
+    `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
 
     Raises
     ------
@@ -454,7 +440,6 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
 
 
 def _named(name: str, folder: Path) -> JointFile:
-    """Return a preset, or read a joint file of the folder."""
     if not check_text("joint", name):
         raise ValueError("joint is empty")
     if normalise_name(name) in joints:

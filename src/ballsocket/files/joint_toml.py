@@ -18,7 +18,6 @@ from .joint_file import (
     LoadTable,
     MaterialName,
     MaterialTable,
-    ReportDetails,
     ReportTable,
 )
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Text
@@ -61,20 +60,14 @@ def cup_table(cup: Cup) -> Tables:
 
 
 def _file_table(file: JointFile) -> JointFileTable:
-    """Return the tables of a joint file; ValueError for a joint of arrays."""
-    joint = file.joint
+    joint, report = file.joint, {name: Text(value) for name, value in vars(file.report).items() if value}
     if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
-        report=ReportTable(**{name: Text(value) for name, value in vars(file.report).items() if value})
-        if file.report != ReportDetails()
-        else None,
+        report=ReportTable(**report) if report else None,
         source=Text(joint.source) if joint.source else None,
-        joint=LengthsTable(
-            **{name: Length(value) for name, value in _lengths(joint).items()},
-            support=joint.support,
-        ),
+        joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
         liner=MaterialTable(**_material(joint.liner)),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
@@ -107,14 +100,8 @@ def _cup(cup: Cup) -> CupTable:
 
 
 def _load(file: JointFile) -> LoadTable:
-    keys: dict[str, Any] = {
-        "force": Force,
-        "indentation": Length,
-        "half_angle": Angle,
-        "tilt": Angle,
-        "direction": Direction,
-    }
-    return LoadTable(**{key: keys[key](value) for key, value in (file.load | file.aim).items()})
+    kinds: Any = {"force": Force, "indentation": Length, "direction": Direction}
+    return LoadTable(**{key: kinds.get(key, Angle)(value) for key, value in (file.load | file.aim).items()})
 
 
 def _material(material: Material) -> dict[str, Any]:

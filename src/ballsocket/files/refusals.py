@@ -57,7 +57,6 @@ def format_refusal(error: msgspec.ValidationError, content: Mapping[str, Any], t
 
 
 def _step_into(location: _Location, step: re.Match[str]) -> _Location:
-    """Return the location of a key or of an element of a list."""
     if step["key"] is not None:
         key, struct = step["key"], struct_in(location.type)
         assert struct is not None
@@ -137,7 +136,6 @@ def meaning_of(key: str, kind: inspect.Type) -> str:
 
 
 def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, root: _Location) -> str:
-    """Format the sentence for a key that a table does not know, or lacks."""
     keys = {field.encode_name: field for field in struct.fields}
     table = location.key or root.table
     for key in location.value:
@@ -192,7 +190,6 @@ _NAMING_KEYS = ("material", "name", "law", "file")
 
 
 def _expected(location: _Location) -> str:
-    """Describe what a value must be."""
     parts = list(parts_of(location.type))
     texts = [text(location, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
     return " or ".join(texts) or "another kind of value"
@@ -204,7 +201,6 @@ def expected(key: str, kind: inspect.Type) -> str:
 
 
 def _array(location: _Location, kind: inspect.ListType) -> str:
-    """Describe an array of tables, or a list."""
     if struct_in(kind.item_type):
         return f"an array of tables: [[{location.key}]] before each of them"
     items = "texts" if any(issubclass(custom, str) for custom in customs_in(kind.item_type)) else "numbers"

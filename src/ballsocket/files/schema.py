@@ -84,7 +84,6 @@ class Parsed(Value):
 
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
-        """Convert a value of a file."""
         return cls(cls.parse(name, value))
 
     @classmethod
@@ -102,12 +101,10 @@ class Text(Value, str):
 
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
-        """Convert a text of a file."""
         return cls(check_text(name, value))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
-        """Return the JSON schema of the accepted texts."""
         return choices_schema(cls.choices) if cls.choices else dict(cls.schema)
 
 
@@ -135,7 +132,6 @@ class HeadMap(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> dict[str, str]:
-        """Check the names and the heads."""
         if not isinstance(value, Mapping):
             raise ValueError(f"{name} = {shown(value)} must be a table, such as {{'Kraft' = 'force_N'}}")
         return {check_text(name, head): check_text(name, column) for head, column in value.items()}
@@ -148,7 +144,6 @@ class Texts(Value, list[str]):
 
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
-        """Convert one text or a list of texts of a file."""
         return cls(check_text(name, text) for text in (value if isinstance(value, list) else [value]))
 
 
@@ -166,7 +161,6 @@ class WholeNumber(Value, int):
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
-        """Return the JSON schema of the accepted numbers."""
         return {"type": "integer", **dict(zip(("minimum", "maximum"), cls.limits, strict=False))}
 
 
@@ -185,12 +179,8 @@ class QuantityValue(Value, float):
 
     def write(self, with_unit: bool) -> float | str:
         """Return the number as a file has it: bare in mm, N, MPa and degrees, or as a text with its unit."""
-        number = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self)
-        return (
-            f"{number!r} {self.kind.assumed_unit}"
-            if with_unit and self.kind.assumed_unit and not isinf(number)
-            else number
-        )
+        number, unit = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self), self.kind.assumed_unit
+        return f"{number!r} {unit}" if with_unit and unit and not isinf(number) else number
 
 
 def _in_degrees(angle: float) -> float:
@@ -257,10 +247,13 @@ def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[Table
     >>> read_table({"gap": "1 cm"}, TestTable).gap
     10.0
     """
-    fields = [(key, _or_none(kind), None) for key, kind in keys.items()]
+    fields: list[Any] = []
+    for key, kind in keys.items():
+        metadata = getattr(kind, "__metadata__", ())  # the meaning of the key
+        optional = Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
+        fields.append((key, optional, None))
 
     def decorate(table: type[TableType]) -> type[TableType]:
-        """Create a subclass of the same name with the keys."""
         extended: Any = msgspec.defstruct(
             table.__name__,
             fields,
@@ -273,12 +266,6 @@ def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[Table
         return cast(type[TableType], extended)
 
     return decorate
-
-
-def _or_none(kind: Any) -> Any:
-    """Return the type of a key that may be absent, with the meaning of the type."""
-    metadata = getattr(kind, "__metadata__", ())
-    return Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
 
 
 def quantity_keys(quantities: Mapping[str, Quantity], value: type[Value] = QuantityValue) -> dict[str, Any]:

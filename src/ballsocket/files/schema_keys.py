@@ -15,18 +15,10 @@ from .schema import QuantityValue, Table, Value, choices_schema
 
 @dataclass(frozen=True)
 class Key:
-    """Key of a table of files, for the documentation.
+    """Key of a table of files, for the documentation, with its accepted values in words.
 
-    Attributes
-    ----------
-    table : str
-        Head of its table, such as "[joint]" or "[[backing]]"; empty at the top of the file.
-    name : str
-    values : str
-        Accepted values in words.
-    default : str
-        Default as the file writes it; "required", or empty without a default.
-    meaning : str
+    `table` is the head of its table, such as "[joint]" or "[[backing]]", and empty at the top of the file. `default` is
+    as the file writes it, "required", or empty without a default.
     """
 
     table: str
@@ -63,7 +55,6 @@ def _key(head: str, field: inspect.Field) -> Key:
 
 
 def _values(field: inspect.Field) -> str:
-    """Describe the accepted values of a key in words."""
     choices = choices_in(field.type)
     if choices:
         return ", ".join(choices)
@@ -124,7 +115,6 @@ def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, A
 
 
 def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a single type of values."""
     if isinstance(part, inspect.CustomType):
         value: type[Value] = part.cls
         definitions[value.__name__] = value.json_schema()

@@ -65,7 +65,6 @@ def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
 
 
 def _write(value: Any, with_units: bool) -> Any:
-    """Return a value of a table as a file has it."""
     if isinstance(value, Table):
         return write_table(value, with_units)
     if isinstance(value, QuantityValue):

@@ -39,18 +39,9 @@ def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Result]
 
 
 def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, Any]], Result]) -> Result:
-    """Convert the content of a file.
+    """Convert the content of a file, TOML in UTF-8 of at most `MAX_FILE_SIZE` bytes, with the function `make`.
 
-    Parameters
-    ----------
-    raw : bytes
-        TOML in UTF-8, at most `MAX_FILE_SIZE` bytes.
-    title : str
-        Name of the file, with which every message begins.
-    kind : str
-        Kind of the expected file in a word: "joint", "study".
-    make : callable
-        Function from the tables of the file to the result.
+    Every message begins with `title`, the name of the file. `kind` is the expected kind in a word: "joint", "study".
 
     Raises
     ------

@@ -32,7 +32,6 @@ _TOKEN = re.compile(
     | (?P<sign>[*/()\u00b7\u00d7])""",
     re.ASCII | re.VERBOSE,
 )
-_PRODUCT_SIGNS = ("*", "/", "·", "×")
 _SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 
@@ -53,15 +52,11 @@ _COMMON_UNITS = {
 """Names of common units in pint, whose import takes as long as a press."""
 
 _COMMON_FACTORS: dict[tuple[tuple[str, float], ...], float] = {
-    (("millimeter", 1), ("millimeter", 1)): 1.0,
     (("micrometer", 1), ("millimeter", 1)): 0.001,
     (("centimeter", 1), ("millimeter", 1)): 10.0,
     (("meter", 1), ("millimeter", 1)): 1000.0,
-    (("newton", 1), ("newton", 1)): 1.0,
     (("kilonewton", 1), ("newton", 1)): 1000.0,
-    (("megapascal", 1), ("megapascal", 1)): 1.0,
     (("gigapascal", 1), ("megapascal", 1)): 1000.0,
-    (("degree", 1), ("degree", 1)): 1.0,
 }
 """Conversion factors from a unit to another one, equal to those of pint."""
 
@@ -93,9 +88,8 @@ def parse(name: str, value: Any, kind: str) -> float:
     >>> parse("clearance", 0.1, "length")
     0.1
     """
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(_refusal(name, value, kind))
-    if isinstance(value, str) and len(value) > LONGEST:
+    is_long = isinstance(value, str) and len(value) > LONGEST
+    if is_long or isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(_refusal(name, value, kind))
     number = _number(name, value, kind) + 0.0  # no -0
     if isinf(number) and not (isinstance(value, float) or _INFINITE.fullmatch(str(value))):
@@ -123,19 +117,16 @@ def _number(name: str, value: float | str, kind: str) -> float:
     except OverflowError as error:
         raise ValueError(_too_large(name, value)) from error
     except ValueError:
-        return _quantity(name, str(value), kind)
-
-
-def _quantity(name: str, text: str, kind: str) -> float:
+        pass
     try:
-        number, unit = split_quantity(text)
+        number, unit = split_quantity(str(value))
         if not unit:  # a fraction
             return number
         if kind == Kind.NUMBER:
             raise ValueError(f"{shown(unit)} is the unit of a plain number")
         return convert(number, parse_units(unit), parse_units(Kind(kind).assumed_unit))
     except ValueError as error:
-        raise ValueError(_refusal(name, text, kind)) from error
+        raise ValueError(_refusal(name, value, kind)) from error
 
 
 def split_quantity(text: str) -> tuple[float, str]:
@@ -218,7 +209,7 @@ def _product(tokens: list[re.Match[str]]) -> dict[str, float]:
         if following == ")":
             return units
         sign = -1 if following == "/" else 1
-        if following in _PRODUCT_SIGNS:
+        if following in ("*", "/", "·", "×"):
             tokens.pop()
 
 
@@ -261,7 +252,7 @@ def convert(number: float, units: Units, target: Units) -> float:
     ValueError
         Units of another dimension, or a number out of range.
     """
-    factor = _COMMON_FACTORS.get((*units.items(), *target.items()))
+    factor = 1.0 if units == target else _COMMON_FACTORS.get((*units.items(), *target.items()))
     if factor is not None:
         return number * factor
     import pint

@@ -49,16 +49,8 @@ def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
     cells = numpy.stack(
         [(ring + i) * grid.meridians + (meridian + j) % grid.meridians for i in (0, 1) for j in (0, 1)], axis=-1
     )
-    inner_weight, outer_weight = 1 - polar_fraction, polar_fraction
-    weights = numpy.stack(
-        [
-            inner_weight * (1 - meridian_fraction),
-            inner_weight * meridian_fraction,
-            outer_weight * (1 - meridian_fraction),
-            outer_weight * meridian_fraction,
-        ],
-        axis=-1,
-    )
+    shares = 1 - meridian_fraction, meridian_fraction
+    weights = numpy.stack([ring * share for ring in (1 - polar_fraction, polar_fraction) for share in shares], axis=-1)
     return BilinearInterpolation(cells=cells, weights=weights * (polar <= grid.reach)[..., None])
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import degrees
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.display import finite_or_none
 from .contact_checks import list_check_notes
 from .series_accuracy import SeriesAccuracy
 from .variability import (
@@ -22,10 +23,7 @@ from .variability import (
     PatientVariability,
     summarize_distributions,
 )
-from .wear_law import coefficient_field
-
-COEFFICIENT = "coefficient"
-"""Name of the wear coefficient among the sampled quantities."""
+from .wear_law import COEFFICIENT, coefficient_field
 
 CONVERTED = ("volume", "depth", "penetration")
 """Results that are converted to shared coefficients."""
@@ -55,7 +53,6 @@ class SharedCoefficient:
 
     @cached_property
     def _quantiles(self) -> dict[tuple[str, str, float], Numbers]:
-        """Computed quantiles by coefficient, result and fraction."""
         return {}
 
 
@@ -130,7 +127,6 @@ class Bands:
 
     @property
     def _probabilities_by_name(self) -> dict[str, float]:
-        """Probabilities of the lower end, the median and the upper end of each band, by name."""
         low, high = self._end_probabilities
         return {"low": low, "median": 0.5, "high": high}
 
@@ -153,7 +149,6 @@ class Bands:
 
     @cached_property
     def _quantiles(self) -> dict[tuple[str, float], Numbers]:
-        """Computed quantiles by result and fraction."""
         return {}
 
     def band(self, name: str) -> tuple[Numbers, Numbers]:
@@ -212,7 +207,6 @@ class Bands:
 
     @property
     def _coefficient_note(self) -> tuple[str, ...]:
-        """Sentence on a wear coefficient that is unknown but equal for all patients."""
         if COEFFICIENT not in self.variability.distributions:
             return ()
         low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._end_probabilities)
@@ -223,7 +217,6 @@ class Bands:
 
     @property
     def _surface_note(self) -> tuple[str, ...]:
-        """Sentence on the foundation of the patients, if the nominal patient or they have full elasticity."""
         patients = self.variability.coarse_simulation
         if not patients.uses_springs:
             rings = degrees(patients.ring_width)
@@ -239,7 +232,6 @@ class Bands:
 
     @property
     def _failure_note(self) -> tuple[str, ...]:
-        """Sentence on the number of patients without a result."""
         if not self.n_failed:
             return ()
         reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
@@ -249,16 +241,12 @@ class Bands:
 
     @property
     def _wear_through_note(self) -> tuple[str, ...]:
-        """Sentence on the number of patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
         n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (
-            (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) if n_worn_through else ()
-        )
+        return (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) * bool(n_worn_through)
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
-        """Sentence on the number of patients with contacts outside the validity of the contact model."""
         invalid_count = int((self.cohort.valid[:, -1] == 0).sum())
         model = self.variability.coarse_simulation.contact_model.name
         sentence = (
@@ -286,11 +274,9 @@ class Bands:
     def utilisation_quantile(self, fraction: float) -> Numbers:
         """Compute a quantile of the patients' largest ratio of von Mises to yield stress at each report."""
         known_utilisations = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
-        return (
-            numpy.quantile(known_utilisations, fraction, axis=0)
-            if len(known_utilisations)
-            else numpy.full(len(self.counts), numpy.nan)
-        )
+        if not len(known_utilisations):
+            return numpy.full(len(self.counts), numpy.nan)
+        return numpy.quantile(known_utilisations, fraction, axis=0)
 
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
@@ -339,48 +325,36 @@ class Bands:
         }
 
     def _summarize_report(self, report: int) -> dict[str, Any]:
-        """Return the bands of all results at one report as a dictionary for JSON."""
-        bands: dict[str, dict[str, Any]] = {
-            name: {
-                end_name: _finite_or_none(self.quantile(name, fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            }
-            for name in RESULT_UNITS
-        }
+
+        def ends(quantile: Callable[[float], Numbers]) -> dict[str, Any]:
+            """Return a quantile at the report for the ends and the middle of a band."""
+            probabilities = self._probabilities_by_name.items()
+            return {end_name: finite_or_none(quantile(fraction)[report]) for end_name, fraction in probabilities}
+
+        bands = {name: ends(partial(self.quantile, name)) for name in RESULT_UNITS}
         if self.shared is not None:
             for name in CONVERTED:
-                bands[name]["given_coefficient"] = self._summarize_coefficients(self.shared, name, report)
+                bands[name]["given_coefficient"] = {
+                    coefficient: ends(partial(self.shared.quantile, coefficient, name))
+                    for coefficient in self.shared.values
+                }
         year = self.variability.cycles_per_year
         return {
             "cycles": self.counts[report],
             **({} if year is None else {"years": self.counts[report] / year}),
             **bands,
-            "edge_loading": _finite_or_none(self.edge_loading(report)),
-            "edge_loaded": _finite_or_none(self.edge_loaded_fraction(report)),
-            "peak_utilisation": {
-                end_name: _finite_or_none(self.utilisation_quantile(fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            },
-            "valid": _finite_or_none(self.valid_fraction(report)),
-        }
-
-    def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
-        """Return the bands of one result at one report for each shared coefficient, for JSON."""
-        return {
-            coefficient: {
-                end_name: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
-                for end_name, fraction in self._probabilities_by_name.items()
-            }
-            for coefficient in shared.values
+            "edge_loading": finite_or_none(self.edge_loading(report)),
+            "edge_loaded": finite_or_none(self.edge_loaded_fraction(report)),
+            "peak_utilisation": ends(self.utilisation_quantile),
+            "valid": finite_or_none(self.valid_fraction(report)),
         }
 
     def _summarize_indices(self) -> dict[str, Any] | None:
-        """Return the Sobol indices by result and sampled quantity for JSON; None without indices."""
         if self.indices is None:
             return None
         return {
             result: {
-                name: {order: _finite_or_none(values[row, column]) for order, values in self.indices.items()}
+                name: {order: finite_or_none(values[row, column]) for order, values in self.indices.items()}
                 for column, name in enumerate(self.variability.distributions)
             }
             for row, result in enumerate(INFLUENCED_RESULTS)
@@ -391,8 +365,3 @@ def quantile_of_known(values: Numbers, fraction: float) -> Numbers:
     """Compute a quantile of the values (patients, reports) that are not NaN at each report."""
     reports = (column[~numpy.isnan(column)] for column in values.T)
     return numpy.array([numpy.quantile(known, fraction) if len(known) else numpy.nan for known in reports])
-
-
-def _finite_or_none(value: float) -> float | None:
-    """Return a finite number unchanged, and None for NaN or an infinite number."""
-    return float(value) if numpy.isfinite(value) else None

@@ -13,8 +13,7 @@ from numpy.polynomial.chebyshev import chebvander
 
 from ..core.arrays import Numbers
 
-_ROUNDING = 1e-9
-"""Margin of the ends of a box, whose numbers are logarithms and angles."""
+_ROUNDING = 1e-9  # margin of the ends of a box, whose numbers are logarithms and angles
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

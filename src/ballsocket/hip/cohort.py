@@ -31,20 +31,11 @@ PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
 
 _MAX_PATIENTS = 1_000_000
-
-_COPIES = 4
-"""Copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band."""
-
-_ROWS_PER_BLOCK = 10_000
-"""Rows of the table of patients that are written at once."""
-
-_LABEL_NAME = "patients.json"
-"""Name of the file with the identity of a stored cohort."""
-
+_COPIES = 4  # copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band
+_ROWS_PER_BLOCK = 10_000  # rows of the table of patients that are written at once
+_LABEL_NAME = "patients.json"  # name of the file with the identity of a stored cohort
 _SERIAL = Serial()
-
-_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}
-"""Unit suffixes of the table's columns."""
+_SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}  # units in the table's columns
 
 ProgressCallback = Callable[[int], None]
 """Function that is called with the number of finished patients."""
@@ -74,7 +65,6 @@ class CohortRun:
     code: str = field(default_factory=fingerprint)
 
     def __len__(self) -> int:
-        """Return the number of patients."""
         return len(next(iter(self.values.values())))
 
     @property
@@ -190,7 +180,6 @@ class CohortStore(ArrayPieceStore):
             raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
 
     def _read_label(self) -> bytes | None:
-        """Read the label file, which identifies the cohort; return None if it does not exist."""
         try:
             return self.folder.read(_LABEL_NAME)
         except FileNotFoundError:
@@ -287,13 +276,9 @@ def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
 
 
 def _csv_blocks(names: Sequence[str], columns: Sequence[Numbers]) -> Iterator[bytes]:
-    """Yield the lines of a table in blocks of rows, the names first."""
+    """Yield the lines of a table in blocks of rows, the names first; the cell of an unknown number is empty."""
     yield f"{','.join(names)}\n".encode()
     for first in range(0, len(columns[0]), _ROWS_PER_BLOCK):
         block = numpy.stack([column[first : first + _ROWS_PER_BLOCK] for column in columns], axis=1)
-        yield "".join(map(_format_row, block)).encode()
-
-
-def _format_row(row: Numbers) -> str:
-    """Write numbers with commas between them and a line break at the end; an unknown number is empty."""
-    return ",".join(["" if value != value else f"{value:.9g}" for value in row.tolist()]) + "\n"
+        rows = (["" if value != value else f"{value:.9g}" for value in row] for row in block.tolist())
+        yield "".join(f"{','.join(row)}\n" for row in rows).encode()

@@ -34,41 +34,21 @@ from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, Cohort
 N_HELD_OUT = 64
 """Number of patients that are simulated to estimate the error of a series: the first of the cohort."""
 
-_REFERENCE_COUNT = 65_536
-"""Number of samples that set the ranges of a series, for a cohort of any size."""
-
-_FIRST_DEGREES = (0, 12, 10, 7, 6)
-"""Degree of the first series by the number of its variables besides the clearance."""
-
-_DEGREE_STEP = 2
-"""Increase of the degree by a refinement."""
-
-_MAX_MEMBERS = 2048
-"""Largest number of simulations of a refined series."""
-
-_MEMBER_COST = 3
-"""Ratio of the time of a family member, which has many reports, to that of a patient."""
-
-_LEAST_IMPROVEMENT = 0.9
-"""Ratio of errors above which a refinement counts as useless."""
+_REFERENCE_COUNT = 65_536  # number of samples that set the ranges of a series, for a cohort of any size
+_FIRST_DEGREES = (0, 12, 10, 7, 6)  # degree of the first series by the number of its variables besides the clearance
+_DEGREE_STEP = 2  # increase of the degree by a refinement
+_MAX_MEMBERS = 2048  # largest number of simulations of a refined series
+_MEMBER_COST = 3  # ratio of the time of a family member, which has many reports, to that of a patient
+_LEAST_IMPROVEMENT = 0.9  # ratio of errors above which a refinement counts as useless
 
 _ANGLE_LIMITS = {"tilt": (0.0, pi / 2), "inclination": (0.0, pi / 2), "anteversion": (-pi / 2, pi / 2)}
 """Lowest and highest angle of a cup in rad."""
 
-_GRID_COUNT = 9
-"""Number of orientations that are checked along each angle of a range."""
-
-_BISECTIONS = 12
-"""Number of bisections for the end of a covered range."""
-
-_LEAST_WIDTH = 1e-9
-"""Relative width below which a range is one number."""
-
-_MAX_CUT = 1e-3
-"""Largest fraction of patients outside the covered orientations for which Sobol indices are computed."""
-
-_SOBOL_COUNT = 4096
-"""Samples in each set of the Sobol indices."""
+_GRID_COUNT = 9  # number of orientations that are checked along each angle of a range
+_BISECTIONS = 12  # number of bisections for the end of a covered range
+_LEAST_WIDTH = 1e-9  # relative width below which a range is one number
+_MAX_CUT = 1e-3  # largest fraction of patients outside the covered orientations for which Sobol indices are computed
+_SOBOL_COUNT = 4096  # samples in each set of the Sobol indices
 
 METHODS = ("series", "runs")
 """Methods of a cohort: a series of polynomials, or a simulation of each patient."""
@@ -206,7 +186,10 @@ class CohortSeries:
         result, inside = series.results(self.run.values, self.run.counts)
         outside = numpy.flatnonzero(~inside)
         if len(outside):
-            simulated = self._select(outside).simulate(self.engine, self._outside_store(series.degree))
+            store = self.store
+            if store is not None:
+                store = replace(store, prefix="outside", identity=f"{store.identity} degree {series.degree}")
+            simulated = self._select(outside).simulate(self.engine, store)
             merged = {name: getattr(result, name).copy() for name in ("table", "contact", "refused")}
             for name, values in merged.items():
                 values[outside] = getattr(simulated, name)
@@ -216,20 +199,14 @@ class CohortSeries:
             result=result, accuracy=replace(accuracy, n_outside=len(outside)), indices=self._indices(series)
         )
 
-    def _outside_store(self, degree: int) -> CohortStore | None:
-        """Return the store of the patients outside the ranges of a series of a degree."""
-        if self.store is None:
-            return None
-        return replace(self.store, prefix="outside", identity=f"{self.store.identity} degree {degree}")
-
     def _select(self, patients: Numbers) -> CohortRun:
-        """Return the run of some patients."""
         return replace(self.run, values={name: samples[patients] for name, samples in self.run.values.items()})
 
     def _refine(
         self, held_out: CohortRun, expected: CohortResult, progress: ProgressCallback
     ) -> tuple[PatientSeries, SeriesAccuracy]:
         """Fit series of increasing degree until the error is allowed, or falls no more."""
+        max_members = min(_MAX_MEMBERS, len(self.run) // _MEMBER_COST)  # less time than all patients
         degree, pieces = self.first_degree, dict[int, Mapping[str, Numbers]]()
         best: tuple[PatientSeries, SeriesAccuracy] | None = None
         while True:
@@ -239,7 +216,7 @@ class CohortSeries:
             if best is None or accuracy.tolerance_ratio < best[1].tolerance_ratio:
                 best = series, accuracy
             degree += _DEGREE_STEP
-            if accuracy.within_tolerance or not improved or members_of(self.family.box, degree) > self._max_members:
+            if accuracy.within_tolerance or not improved or members_of(self.family.box, degree) > max_members:
                 return best
 
     def _estimate_accuracy(self, series: PatientSeries, held_out: CohortRun, expected: CohortResult) -> SeriesAccuracy:
@@ -255,11 +232,6 @@ class CohortSeries:
             series.n_members,
             series.degree,
         )
-
-    @property
-    def _max_members(self) -> int:
-        """Largest number of simulations of a refined series, which takes less time than all patients."""
-        return min(_MAX_MEMBERS, len(self.run) // _MEMBER_COST)
 
     def _simulate_members(
         self, degree: int, pieces: dict[int, Mapping[str, Numbers]], progress: ProgressCallback
@@ -279,22 +251,17 @@ class CohortSeries:
         """Compute the Sobol indices of the results at the last report; None if orientations are not covered."""
         run = self.run
         names, counts, box = list(run.variability.distributions), run.counts[-1:], self.family.box
-        cut_angles = [name for name in self.family.similarity.angles if _cuts(box.ranges[name], run.values[name])]
-        if cut_angles:
-            return None
+        for name in self.family.similarity.angles:
+            low, high = box.ranges[name]
+            if ((run.values[name] < low) | (run.values[name] > high)).mean() > _MAX_CUT:
+                return None
         columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
 
         def evaluate(samples: Numbers) -> Numbers:
-            """Compute the results (results, points) of samples (quantities, points)."""
             return series.results(dict(zip(names, samples, strict=True)), counts)[0].table[:, 0, columns].T
 
         distributions = list(run.variability.distributions.values())
         return sobol_indices(evaluate, distributions, _SOBOL_COUNT, self.seed, DEFAULT_LEVEL)
-
-
-def _cuts(ends: tuple[float, float], angles: Numbers) -> bool:
-    """Check if a range leaves out more than one of a thousand angles."""
-    return bool(((angles < ends[0]) | (angles > ends[1])).mean() > _MAX_CUT)
 
 
 def _range(values: Numbers) -> tuple[float, float]:
@@ -340,7 +307,6 @@ def _extend(
     """Move some ends of covered ranges towards those of the limited ranges, until a load points to the rim."""
 
     def move_ends(fraction: float) -> dict[str, tuple[float, float]]:
-        """Return the ranges after a fraction of the movement."""
         ends = {name: list(pair) for name, pair in covered.items()}
         for name, end in moved_ends:
             ends[name][end] += fraction * (limited[name][end] - ends[name][end])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from math import degrees, inf, pi
 from pathlib import Path
 from types import MappingProxyType
@@ -121,7 +122,6 @@ def _with_coefficient(content: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
-    """Build a `HipFile` from the content of a hip file; paths in the file are relative to a folder."""
     tables = read_table(content, HipTable)
     joint_file = _parse_joint(tables, folder)
     cycle, law_numbers = cycle_of(tables, folder), content.get("wear", {})
@@ -154,12 +154,10 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     )
 
 
-_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")
-"""Ends of the unit of a rate, behind the slash."""
+_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")  # ends of the unit of a rate, behind the slash
 
 
 def _lubricant(table: FilmTable) -> Lubricant:
-    """Make the lubricant of a table [film]."""
     values: dict[str, Any] = quantities_of(table)
     boundary = values.pop("boundary_friction", None)
     if boundary is None:
@@ -170,8 +168,7 @@ def _lubricant(table: FilmTable) -> Lubricant:
 
 
 _DENSITY_UNIT = "mg/mm^3"
-_WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}
-"""Units of measured wear; others are in mm."""
+_WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}  # units of measured wear; others are in mm
 
 
 def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable, folder: Path) -> MeasuredWear:
@@ -195,7 +192,7 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     begin, end = (None if count is None else float(count) for count in (table.begin, table.end))
     return MeasuredWear(
         quantity="volume" if quantity == "mass" else quantity,
-        values=parse_all("values", stated),
+        values=parse_all("values" if table.file is None else f"{table.file}: values", stated),
         cycles=cycles,
         rate=None if table.rate is None else str(table.rate),
         begin=begin,
@@ -259,7 +256,14 @@ def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float
         number, text = split_quantity(total_text if has_period else str(value))
         total = convert(number, parse_units(text or unit), parse_units(unit))
     except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} must be a number with a unit, such as '38 {unit}'") from error
+        raise ValueError(
+            f"{name} = {shown(value)} must be a number with {unit} or a unit that converts to it, such as '38 {unit}'"
+        ) from error
+    if not 0 < total < inf:
+        raise ValueError(
+            f"{name} = {shown(value)} is not allowed: a measured wear and its uncertainty are positive and finite; "
+            "leave out readings without wear"
+        )
     if period.strip() not in _PER_YEAR:
         return total
     if per_year is None:
@@ -321,10 +325,7 @@ def _report_points(points: list[float] | None, end: float) -> tuple[float, ...]:
 
 
 def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
-    """Create the joint and the cup of a hip file.
-
-    The cup may have a tilt instead of an orientation, also next to the name of a joint.
-    """
+    """Create joint and cup of a hip file; the cup may have a tilt in place of angles, also with a named joint."""
     cup = tables.cup or HipCupTable()
     file = joint_in(msgspec.structs.replace(tables, cup=None), folder)
     if any(getattr(cup, key) is not None for key in CupTable.__struct_fields__):
@@ -333,7 +334,6 @@ def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
 
 
 def _tilt_cup(cup: Cup, table: HipCupTable) -> Cup:
-    """Return the cup tilted from the load by the angle that a hip file states."""
     for name in ("inclination", "anteversion"):
         if getattr(table, name) is not None:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")
@@ -374,12 +374,14 @@ class UncertaintySettings:
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:
-    """Read distributions and sample settings from the table [uncertainty] of a hip file, for the nominal patient."""
+    coefficient, cup = coefficient_field(use.wear), use.frame.placed
+    readers: dict[str, Read] = {name: partial(parse, kind=kind) for name, kind in _SAMPLED_KINDS.items()}
+    readers[COEFFICIENT] = wear_factor if coefficient is None else coefficient.unit.read
+    nominal = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
+    nominal |= {} if coefficient is None else {COEFFICIENT: getattr(use.wear, coefficient.name)}
     stated = {name: value for name, value in table.stated().items() if isinstance(value, PatientNumber)}
     distributions = {
-        name: distribution_of(name, stated[name].value, _quantity_reader(name, use))
-        for name in SAMPLED_QUANTITIES
-        if name in stated
+        name: distribution_of(name, stated[name].value, readers[name]) for name in SAMPLED_QUANTITIES if name in stated
     }
     count = int(table.count)
     require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
@@ -387,18 +389,10 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
     variability = PatientVariability(
         use=use, distributions=distributions, body_weight=weight, surface=_ELASTIC_SURFACES[table.contact]
     )
-    for name, value in _nominal_values(use).items():
+    for name, value in nominal.items():
         if name in distributions:
-            check_nominal(name, value, distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
+            check_nominal(name, float(value), distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
     return UncertaintySettings(variability=variability, count=count, seed=int(table.seed))
-
-
-def _nominal_values(use: HipSimulation) -> dict[str, float]:
-    """Return the nominal values of the quantities that may differ between patients."""
-    coefficient, cup = coefficient_field(use.wear), use.frame.placed
-    values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
-    known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
-    return {name: float(value) for name, value in known.items()}
 
 
 def _body_weight(tables: HipTable) -> float | None:
@@ -408,11 +402,3 @@ def _body_weight(tables: HipTable) -> float | None:
     if len(stated) > 1:
         raise ValueError("body_weight has several values, but patients need one: give it once, at the top of the file")
     return float(stated.pop()) if stated else None
-
-
-def _quantity_reader(name: str, use: HipSimulation) -> Read:
-    """Return the function that reads a sampled quantity from text with a unit."""
-    if name != "coefficient":
-        return lambda key, value: parse(key, value, _SAMPLED_KINDS[name])
-    coefficient = coefficient_field(use.wear)
-    return wear_factor if coefficient is None else coefficient.unit.read

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import degrees, isfinite, nan
+from math import degrees, nan
 from typing import Any
 
 import numpy
@@ -16,6 +16,7 @@ import numpy
 from ..contact import Contact, Model, strength
 from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
+from ..core.display import finite_or_none
 from ..core.validity import RIGID_BACKING, Status
 from ..elasticity.exact.exact_curve import exact_stress_ratio
 from ..elasticity.off_axis.grid import Grid
@@ -64,8 +65,7 @@ class GridContact(Contact):
         return Bounded(self.von_mises, (1 - strength.TABLE_ERROR) * self.von_mises, (1 + _WORN_ERROR) * self.von_mises)
 
 
-_WORN_ERROR = 0.2
-"""Relative error by which the stress of a worn contact may be larger; assumed, 0.12 without wear for ν up to 0.46."""
+_WORN_ERROR = 0.2  # stress of a worn contact above its value, assumed; 0.12 without wear for ν up to 0.46
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,7 @@ class ContactCheck:
     @property
     def utilisation(self) -> float | None:
         """Largest von Mises stress over yield stress; None where no yield stress is known."""
-        return _finite_or_none(self.utilisation_bar.value)
+        return finite_or_none(self.utilisation_bar.value)
 
     @property
     def verdict(self) -> Verdict:
@@ -127,18 +127,13 @@ class ContactCheck:
             "max_pressure_MPa": self.max_pressure,
             "half_angle_deg": degrees(self.half_angle),
             "utilisation": self.utilisation,
-            "utilisation_low": _finite_or_none(self.utilisation_bar.low),
-            "utilisation_high": _finite_or_none(self.utilisation_bar.high),
+            "utilisation_low": finite_or_none(self.utilisation_bar.low),
+            "utilisation_high": finite_or_none(self.utilisation_bar.high),
             "verdict": self.verdict.word,
             "utilisation_note": self.utilisation_note or None,
             "valid": self.valid,
             "notes": list(self.notes),
         }
-
-
-def _finite_or_none(value: float) -> float | None:
-    """Return a finite number for JSON, and None for another."""
-    return value if isfinite(value) else None
 
 
 def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
@@ -158,10 +153,8 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     crossing = numpy.divide(
         inner_level, level_drop, out=numpy.full_like(level_drop, 0.5), where=(inner_level < 0) != (outer_level < 0)
     )
-    start_fraction, end_fraction = (
-        numpy.where(inner_level > 0, 0.0, crossing),
-        numpy.where(outer_level > 0, 1.0, crossing),
-    )
+    start_fraction = numpy.where(inner_level > 0, 0.0, crossing)
+    end_fraction = numpy.where(outer_level > 0, 1.0, crossing)
     pressed = (inner_level > 0) | (outer_level > 0)
     polar, polar_step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]
     ring_versines = numpy.where(
@@ -169,15 +162,10 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     )
     end_versines = (
         (level[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])),
-        (level[:, -1] > 0) * _solid_angle_fraction(grid.polar[-1], reach),
+        (level[:, -1] > 0) * float(numpy.cos(grid.polar[-1]) - numpy.cos(reach)),
     )
     versine = (ring_versines.sum(axis=1) + end_versines[0] + end_versines[1]).mean(axis=1)
     return numpy.arccos(numpy.clip(1 - versine, -1.0, 1.0))
-
-
-def _solid_angle_fraction(polar: float, reach: float) -> float:
-    """Compute the solid angle between two polar angles in rad, divided by 2π."""
-    return float(numpy.cos(polar) - numpy.cos(reach))
 
 
 def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
@@ -263,14 +251,9 @@ def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> It
     """
     listed_kinds = set()
     for stage, checks in stages:
-        for check in sorted(checks, key=_severity_key):
+        for check in sorted(checks, key=lambda check: (-(check.utilisation or 0.0), -check.max_pressure)):
             for note in check.notes:
                 kind = "".join(letter for letter in note if not letter.isdigit())
                 if kind not in listed_kinds:
                     listed_kinds.add(kind)
                     yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
-
-
-def _severity_key(check: ContactCheck) -> tuple[float, float]:
-    """Return the sort key of a check: the largest ratios of stress to strength come first, then pressures."""
-    return -(check.utilisation or 0.0), -check.max_pressure

@@ -41,7 +41,6 @@ class CreepLaw(Law):
 
     @property
     def _confined_elements(self) -> tuple[Numbers, Numbers]:
-        """Compliances in 1/MPa and retardation times in s of the elements of the confined liner."""
         compliances, times = self.elements
         return self.confinement * numpy.array(compliances), numpy.array(times)
 

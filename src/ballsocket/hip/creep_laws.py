@@ -12,19 +12,11 @@ from ..core.checks import NamedItems, known_name
 from .creep_law import CreepLaw, constrained_share
 from .law_fields import law_field, list_unit, read_law, select_law_class
 
-_MINUTE = 60.0
-"""Seconds in a minute."""
-
+_MINUTE = 60.0  # seconds in a minute
 _EULER_GAMMA = 0.5772156649015329
-
-_STRAIN_AT_REFERENCE = 3.491e-3
-"""Strain per MPa of the logarithmic law after 10^4 minutes."""
-
-_STRAIN_PER_DECADE = 7.966e-4
-"""Strain per MPa that the logarithmic law adds in each decade of time."""
-
-_N_DECADES = 9
-"""Number of elements of the logarithmic law, one for each decade: they last 4000 years."""
+_STRAIN_AT_REFERENCE = 3.491e-3  # strain per MPa of the logarithmic law after 10^4 minutes
+_STRAIN_PER_DECADE = 7.966e-4  # strain per MPa that the logarithmic law adds in each decade of time
+_N_DECADES = 9  # number of elements of the logarithmic law, one for each decade: they last 4000 years
 
 UNVERIFIED_NOTE = "the logarithmic law of creep has coefficients whose source was not read: they are not verified"
 """Note on the coefficients of the logarithmic law."""

@@ -20,8 +20,7 @@ from .rim import Microseparation, SpringLoadedBall
 ANGLES = ("inclination", "anteversion", "tilt")
 """Names of the angles that orient a cup, in rad; summaries and tables show them in degrees."""
 
-_MIN_RELATIVE_FORCE = 1e-6
-"""Force below which the ball counts as unloaded, relative to the largest force."""
+_MIN_RELATIVE_FORCE = 1e-6  # force below which the ball counts as unloaded, relative to the largest force
 
 
 _REVERSED_NOTE = "; if the force acts on the other body, socket or ball, state this by force_on in [cycle]"
@@ -54,7 +53,6 @@ class CupFrame:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
-        """Check that no load pushes the ball over the rim, unless a spring balances it; ValueError otherwise."""
         dislocated = self._instants_beyond_rim
         if self.separation is not None:
             dislocated = dislocated[numpy.isnan(self.separation.displacement[:, 0])]
@@ -86,13 +84,11 @@ class CupFrame:
 
     @cached_property
     def _load_mask(self) -> Numbers:
-        """Mask of the instants with a load: (instants,)."""
         magnitudes = self.cycle.force_magnitudes
         return numpy.asarray(magnitudes > _MIN_RELATIVE_FORCE * max(float(magnitudes.max()), 1e-300))
 
     @cached_property
     def _spring_loaded_ball(self) -> SpringLoadedBall | None:
-        """Model of the ball on the lateral spring of the cycle; None without a spring."""
         spring = self.side_cycle.spring
         if spring is None:
             return None
@@ -126,21 +122,16 @@ class CupFrame:
     def _instants_beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load points beyond the rim."""
         beyond_rim = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
-        return (
-            beyond_rim
-            if self._spring_loaded_ball is None
-            else beyond_rim[self._spring_loaded_ball.leaves_bore(self.forces[beyond_rim])]
-        )
+        ball = self._spring_loaded_ball
+        return beyond_rim if ball is None else beyond_rim[ball.leaves_bore(self.forces[beyond_rim])]
 
     @cached_property
     def separation(self) -> Microseparation | None:
         """Microseparation: instants in which a spring has pushed the ball onto the rim; None without any."""
-        beyond_rim = self._instants_beyond_rim
-        return (
-            None
-            if self._spring_loaded_ball is None or not len(beyond_rim)
-            else self._spring_loaded_ball.solve_separation(self.forces[beyond_rim], beyond_rim)
-        )
+        beyond_rim, ball = self._instants_beyond_rim, self._spring_loaded_ball
+        if ball is None or not len(beyond_rim):
+            return None
+        return ball.solve_separation(self.forces[beyond_rim], beyond_rim)
 
     @cached_property
     def placed(self) -> Cup:
@@ -195,9 +186,10 @@ class CupFrame:
         magnitudes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, magnitudes, out=numpy.zeros_like(self.forces), where=magnitudes > 0)
         rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
-        return sliding_distance(
-            float(self.joint.ball_radius), rotations, _fill_unloaded_directions(directions, self.loaded)
-        )
+        if len(self.loaded):  # an unloaded instant has the direction of the last loaded one before
+            last_loaded = numpy.searchsorted(self.loaded, numpy.arange(len(directions)), side="right") - 1
+            directions = directions[self.loaded[last_loaded]]
+        return sliding_distance(float(self.joint.ball_radius), rotations, directions)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -208,7 +200,6 @@ class CupFrame:
 
     @property
     def _unloaded_instants_note(self) -> tuple[str, ...]:
-        """Sentence on the instants without a load; empty if all are loaded."""
         unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
@@ -223,16 +214,7 @@ _LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact
 
 
 def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
-    """Convert vectors (n, 3) from the body's frame to the cup's frame."""
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
-
-
-def _fill_unloaded_directions(directions: Numbers, loaded: Numbers) -> Numbers:
-    """Replace the direction of each unloaded instant by that of the last loaded instant before."""
-    if not len(loaded):
-        return directions
-    last_loaded = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
-    return directions[loaded[last_loaded]]
 
 
 T = TypeVar("T")

@@ -20,8 +20,7 @@ DEFAULT_STEPS = 100
 """Number of time steps of a cycle, unless another is set."""
 
 MIN_STEPS, MAX_STEPS = 8, 10_000
-_PEAK_SAMPLES = 10_000
-"""Number of intervals in which the largest force of a cycle is searched."""
+_PEAK_SAMPLES = 10_000  # number of intervals in which the largest force of a cycle is searched
 
 PhaseFunction = Callable[[Numbers], Numbers]
 """Function from phases 0 to 1 of a cycle to a quantity, with the phases as the last axis."""

@@ -38,8 +38,7 @@ from .mix import Activity, Mix
 from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
 
 _FRAMES, _BODIES = FrameName.choices, LoadedPart.choices
-_MAX_FORCE = 1e9
-"""Largest allowed force in N, beyond any hip and any test machine."""
+_MAX_FORCE = 1e9  # largest allowed force in N, beyond any hip and any test machine
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,12 +141,9 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
     columns, motion = table.columns, options.motion
     phase, duration = phases_and_duration(columns)
     for title, values in columns.items():
-        if title.startswith("force"):
-            _check_force(title, values)
+        _check_size(title, values)
         if title != time_column(columns):
             check_closed(title, values, options.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
-        if title in ANGLES:
-            _check_angle(title, values)
     angles = _angle_function(phase, columns, motion)
     frame = known_name("frame", options.frame or table.frame or _FRAMES[0], _FRAMES)
     loaded_body = known_name("force_on", options.force_on or table.force_on or _BODIES[0], _BODIES)
@@ -189,27 +185,18 @@ def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:
     return (f"the motion has no columns of {', '.join(missing)}: they are assumed to be 0, so that {meaning}",)
 
 
-def _check_force(title: str, values: Numbers) -> None:
-    """Raise ValueError for forces (N) above those of any hip, which suggest a wrong unit."""
-    largest = float(abs(values).max())
-    if largest > _MAX_FORCE:
-        raise ValueError(
-            f"{title} goes to {plain_number(largest)} N; allowed are forces up to {plain_number(_MAX_FORCE)} N"
-        )
-
-
-def _check_angle(title: str, values: Numbers) -> None:
-    """Raise ValueError for angles (rad) beyond 180°, which suggest degrees in a column of radians."""
+def _check_size(title: str, values: Numbers) -> None:
+    """Raise ValueError for forces (N) above those of any hip and for angles (rad) beyond 180°: a wrong unit."""
     largest = float(values[abs(values).argmax()])
-    if abs(largest) > pi:
+    if title.startswith("force") and abs(largest) > _MAX_FORCE:
+        allowed = f"allowed are forces up to {plain_number(_MAX_FORCE)} N"
+        raise ValueError(f"{title} goes to {plain_number(abs(largest))} N; {allowed}")
+    if title in ANGLES and abs(largest) > pi:
         raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
 
 
 def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
-    """Return the angles in rad as a function of phase, from the table or from another cycle.
-
-    The other cycle counts if the table has no columns of angles.
-    """
+    """Return the angles in rad as a function of phase, from the columns of the table or from another cycle."""
     if motion is None:
         return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
     if any(name in columns for name in ANGLES):
@@ -266,7 +253,6 @@ def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:
 def _create_activity(
     table: ActivityTable, folder: Path, weight: float | None, cycles_per_year: float | None
 ) -> Activity:
-    """Create an activity from a table [[activity]] of a hip file, whose share refers to all cycles per year."""
     if (table.per_year is None) == (table.share is None):
         raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
     cycle = _create_cycle(table, folder, weight, "[[activity]]")
@@ -278,7 +264,6 @@ def _create_activity(
 
 
 def _check_weight(body_weight: float | None) -> float | None:
-    """Check a body weight in N; None without one."""
     return None if body_weight is None else check_body_weight(float(body_weight))
 
 
@@ -304,12 +289,10 @@ def _cycle_keys(table: CycleKeys) -> list[str]:
 
 
 def _order(table: CycleKeys) -> str:
-    """Return the rotation order of a table as letters of axes."""
     return "xyz" if table.rotation_order is None else str(table.rotation_order.value)
 
 
 def _cycle_by_name(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
-    """Create a named cycle with the parameters of its table."""
     definition = CYCLES[table.name or ""]
     weight_key = ("body_weight",) if definition.per_body_weight or table.times_body_weight is not None else ()
     allowed = ("name", *_COMMON_KEYS, *weight_key, *(parameter.key for parameter in definition.parameters))
@@ -321,7 +304,6 @@ def _cycle_by_name(table: CycleKeys, folder: Path, weight: float | None, where: 
 
 
 def _cycle_from_file(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
-    """Read a cycle from the measured tables that a hip file names."""
     allowed = ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS)
     check_names(_cycle_keys(table), allowed, f"with a file in {where}")
     if not table.file or not all(table.file):
@@ -331,7 +313,6 @@ def _cycle_from_file(table: CycleKeys, folder: Path, weight: float | None, where
 
 
 def _table_options(table: CycleKeys, weight: float | None) -> TableOptions:
-    """Create the `TableOptions` for measured tables from a table of a hip file."""
     motion = None
     if table.motion is not None:
         body_weight = (weight or 1.0) if CYCLES[table.motion].per_body_weight else None

@@ -35,9 +35,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     }
 )
 _ORTHOLOAD = MappingProxyType({"fx": "force_x", "fy": "force_y", "fz": "force_z"})
-_IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")
-"""Columns of OrthoLoad that repeat others, or that wear does not need."""
-
+_IGNORED_ORTHOLOAD = ("f", "fres", "fr", "mx", "my", "mz", "m", "mres", "mr")  # repeated, or not needed
 _HEADS = (*_UNITS, *_ORTHOLOAD, *_IGNORED_ORTHOLOAD)
 
 
@@ -59,8 +57,7 @@ def read_table(path: Path, choice: HeadChoice) -> NumberTable:
 
 _OPENSIM_ANGLE = re.compile(r"(?:.*/)?hip_(flexion|adduction|rotation)_([rl])(?:/value)?")
 _OPENSIM_REACTION = re.compile(r"hip_([rl])_on_(femur|pelvis)(?:_[rl])?_in_(femur|pelvis|ground)(?:_[rl])?_f([xyz])")
-_OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"})
-"""Axes of OpenSim to the right, to the front and upwards."""
+_OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"})  # right, front, up
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,7 +94,6 @@ def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Sid
 
 
 def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
-    """Convert the columns of a text table to s, N and rad."""
     columns: dict[str, Numbers] = {}
     orthoload = any(head.name in _ORTHOLOAD for head in table.heads)
     names = _ORTHOLOAD if orthoload else {"f": "force"}
@@ -117,7 +113,6 @@ def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipC
 
 
 def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
-    """Return the factor that converts a column to s, N or rad."""
     factors = _UNITS[name]
     if not head.unit:
         example = next(iter(factors)).replace("n", "N")
@@ -159,7 +154,6 @@ def _angle_factor(table: NumberTable) -> float:
 
 
 def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
-    """Add the loaded body and the frame of OpenSim's joint reaction to columns."""
     if not reactions:
         return HipColumns(columns=columns)
     if len(reactions) > 1:
@@ -194,11 +188,8 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
 DEFAULT_CLOSURE = 0.01
 """Largest difference between the ends of a column, as a share of its range."""
 
-_MAX_STEP_RATIO = 3.0
-"""Longest time step as a multiple of the median step; a longer one is a gap."""
-
-_TIME_TOLERANCE = 1e-6
-"""Difference by which two tables may end apart, as a share of the duration."""
+_MAX_STEP_RATIO = 3.0  # longest time step as a multiple of the median step; a longer one is a gap
+_TIME_TOLERANCE = 1e-6  # difference by which two tables may end apart, as a share of the duration
 
 
 def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
@@ -295,7 +286,6 @@ def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
 
 
 def _check_increasing_times(name: str, time: Numbers) -> None:
-    """Check that times increase from row to row; ValueError otherwise."""
     steps = numpy.diff(time)
     if not (steps > 0).all():
         row = int((steps <= 0).argmax())

@@ -21,20 +21,11 @@ from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
 from .socket_foundation import NO_LATERAL_SPRING, CycleEquilibrium, contact_shares, grid_neighbours
 
-_POWER_ITERATIONS = 60
-"""Number of power iterations for the largest stiffness."""
-
-_SEED = 1
-"""Seed of the initial field of the power iteration."""
-
-_DEEPER_STARTS = 1.0, 1.2
-"""Factors of the initial displacement for loads that have not converged."""
-
-_MAX_LEVELS = 12
-"""Largest number of load levels of one direction."""
-
-_PARALLEL_TOLERANCE = 1e-9
-"""Relative tolerance for loads of one direction, and for loads of one magnitude."""
+_POWER_ITERATIONS = 60  # number of power iterations for the largest stiffness
+_SEED = 1  # seed of the initial field of the power iteration
+_DEEPER_STARTS = 1.0, 1.2  # factors of the initial displacement for loads that have not converged
+_MAX_LEVELS = 12  # largest number of load levels of one direction
+_PARALLEL_TOLERANCE = 1e-9  # relative tolerance for loads of one direction, and for loads of one magnitude
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,20 +102,14 @@ class GridSmoothing:
         m = numpy.arange(self.grid.max_harmonic + 1)
         return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
 
-    @cached_property
-    def _ring_exchange(self) -> Numbers:
-        """Exchange coefficients between neighbouring rings in the filter, as areas: (rings - 1, 1)."""
-        areas = self.grid.areas
-        return numpy.minimum(areas[1:], areas[:-1]) / 4
-
     def __call__(self, fields: Numbers) -> Numbers:
         """Smooth fields (..., rings, meridians) on the grid."""
         waves = scipy.fft.rfft(fields) * self._harmonic_factors
         filtered = scipy.fft.irfft(waves, n=self.grid.meridians)
-        flux = self._ring_exchange * numpy.diff(filtered, axis=-2)
-        no_flux = numpy.zeros_like(filtered[..., :1, :])
+        areas, no_flux = self.grid.areas, numpy.zeros_like(filtered[..., :1, :])
+        flux = numpy.minimum(areas[1:], areas[:-1]) / 4 * numpy.diff(filtered, axis=-2)  # between neighbouring rings
         flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
-        return filtered + numpy.diff(flux, axis=-2) / self.grid.areas
+        return filtered + numpy.diff(flux, axis=-2) / areas
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,7 +152,6 @@ class ElasticFoundation:
 
     @cached_property
     def _smoothing_filter(self) -> GridSmoothing:
-        """Filter that smooths fields on the grid of the bore."""
         return GridSmoothing(grid=self.grid)
 
     def smooth(self, depth: Numbers) -> Numbers:
@@ -216,7 +200,6 @@ class ElasticFoundation:
 
     @cached_property
     def _neighbour_indices(self) -> Numbers:
-        """Indices of the four neighbours of each cell: (2, 2, cells)."""
         return grid_neighbours(self.grid)
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:

@@ -14,12 +14,13 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
-from ..core.display import load_plot
+from ..core.display import finite_or_none, load_plot
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
 from ..lubrication.cycle_film import CYCLES
-from .film_cycle import CarriedFilm, LoadedCycle, carry_film
+from .cup_frame import CupFrame
+from .film_cycle import CarriedFilm, carry_film
 from .hamrock_dowson import CONFORMITY_NOTE, film_thickness
 from .kinematics import SurfaceSliding
 from .socket_foundation import CycleEquilibrium, SocketFoundation
@@ -30,14 +31,9 @@ WAVE_NOTE = "Film carried over the dry contacts from instant to instant, from a 
 METHODS = ("wave", "hamrock-dowson")
 """Names of the methods; the first is the default."""
 
-_SMALL_SHARE = 0.01
-"""Share of a contact without fresh lubricant up to which it is not noted."""
-
-_MAX_ERROR = 0.1
-"""Largest estimated error of a valid film."""
-
-_MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
-"""Film ratios at which mixed and full-film lubrication begin."""
+_SMALL_SHARE = 0.01  # share of a contact without fresh lubricant up to which it is not noted
+_MAX_ERROR = 0.1  # largest estimated error of a valid film
+_MIXED_RATIO, _FULL_RATIO = 1.0, 3.0  # film ratios at which mixed and full-film lubrication begin
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -196,7 +192,7 @@ class Film(Record):
         }
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
         return {
-            **{name: _number(value) for name, value in values.items()},
+            **{name: finite_or_none(value) for name, value in values.items()},
             "moment_on_cup_Nmm": largest_moment,
             "central_nm": _mean_nm(self.central),
             "regime": self.regime,
@@ -233,11 +229,6 @@ class Film(Record):
         return load_plot("cycle_film")(self)
 
 
-def _number(value: float) -> float | None:
-    """Return a number, or None if it is not finite."""
-    return float(value) if numpy.isfinite(value) else None
-
-
 def _mean_nm(thickness: Numbers) -> float | None:
     """Compute the mean over the cycle in nm of a thickness (instants,) in mm, where it exists."""
     known = thickness[numpy.isfinite(thickness)]
@@ -245,7 +236,7 @@ def _mean_nm(thickness: Numbers) -> float | None:
 
 
 def film(
-    frame: LoadedCycle,
+    frame: CupFrame,
     foundation: SocketFoundation,
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,

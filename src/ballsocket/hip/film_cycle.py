@@ -4,74 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..elasticity.off_axis.grid import Grid
-from ..lubrication.cycle_film import CycleFilm, CycleInstant, carry_over_cycle
+from ..lubrication.cycle_film import CycleFilm, carry_over_cycle
+from ..lubrication.film_core import CycleInstant
 from ..lubrication.inlet import Edge, ElasticEdge, SpringEdge
 from ..lubrication.mesh import FilmMesh, polar_mesh, thinned_meridians
-from ..problem import Joint
+from .cup_frame import CupFrame
 from .socket_foundation import CycleEquilibrium, SocketFoundation
-
-
-class CycleTimes(Protocol):
-    """Interface of the instants of a cycle, such as `Cycle` and `Mix`."""
-
-    @property
-    def n_steps(self) -> int:
-        """Number of instants."""
-        ...
-
-    @property
-    def duration(self) -> float:
-        """Duration in s."""
-        ...
-
-    @property
-    def seconds(self) -> Numbers:
-        """Durations of the instants in s: (instants,)."""
-        ...
-
-    @property
-    def phases(self) -> Numbers:
-        """Phases of the instants, 0 to 1: (instants,)."""
-        ...
-
-
-class LoadedCycle(Protocol):
-    """Interface of the loads and rotations of a cycle in the cup's frame, such as `CupFrame`."""
-
-    @property
-    def joint(self) -> Joint:
-        """Joint of single numbers."""
-        ...
-
-    @property
-    def cycle(self) -> CycleTimes:
-        """Instants of the cycle."""
-        ...
-
-    @property
-    def loaded(self) -> Numbers:
-        """Indices of the loaded instants: (loaded,)."""
-        ...
-
-    @property
-    def activities(self) -> tuple[tuple[str, Numbers], ...]:
-        """Name of each activity, and indices of its loads among the loaded instants."""
-        ...
-
-    @property
-    def rotation_increments(self) -> Numbers:
-        """Rotation vectors of the ball in the loaded instants in rad: (loaded, 3)."""
-        ...
-
-    def socket_forces(self, displacement: Numbers) -> Numbers:
-        """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,7 +45,7 @@ class CarriedFilm:
 
 
 def carry_film(
-    frame: LoadedCycle,
+    frame: CupFrame,
     foundation: SocketFoundation,
     equilibrium: CycleEquilibrium,
     depth: Numbers,
@@ -116,20 +59,13 @@ def carry_film(
     """
     meridians = thinned_meridians(grid.edges, grid.meridians)
     mesh = polar_mesh(foundation.socket_radius, grid.edges, meridians)
-    merged = _merged_cells(grid, meridians)
+    starts = numpy.concatenate([[0], numpy.cumsum(meridians)[:-1]])
+    merged = (starts[:, None] + numpy.arange(grid.meridians) * meridians[:, None] // grid.meridians).ravel()
     instants = _instants(frame, foundation, equilibrium, depth, mesh, grid, merged)
     films = [
         carry_over_cycle(mesh, viscosity, [instants[index] for index in loads], cycles) for _, loads in frame.activities
     ]
     return CarriedFilm(films=tuple(films), mesh=mesh, merged=merged)
-
-
-def _merged_cells(grid: Grid, meridians: Numbers) -> Numbers:
-    """Return the number of the merged cell of each cell of a grid: (rings * meridians,)."""
-    starts = numpy.concatenate([[0], numpy.cumsum(meridians)[:-1]])
-    column = numpy.arange(grid.meridians)
-    merged: Numbers = starts[:, None] + column * meridians[:, None] // grid.meridians
-    return merged.ravel()
 
 
 def _merge(fields: Numbers, merged: Numbers) -> Numbers:
@@ -139,7 +75,7 @@ def _merge(fields: Numbers, merged: Numbers) -> Numbers:
 
 
 def _instants(
-    frame: LoadedCycle,
+    frame: CupFrame,
     foundation: SocketFoundation,
     equilibrium: CycleEquilibrium,
     depth: Numbers,
@@ -147,7 +83,6 @@ def _instants(
     grid: Grid,
     merged: Numbers,
 ) -> list[CycleInstant]:
-    """Collect pressure, edge and motion of the loaded instants."""
     pressure, levels = _merge(equilibrium.pressure, merged), foundation.edge_field(equilibrium, depth)
     forces = frame.socket_forces(equilibrium.displacement)
     axes = forces / numpy.linalg.norm(forces, axis=1)[:, None]
@@ -188,7 +123,7 @@ def _spring_edges(mesh: FilmMesh, pressure: Numbers, modulus: float) -> list[Edg
 
 
 def _elastic_edges(
-    frame: LoadedCycle,
+    frame: CupFrame,
     foundation: SocketFoundation,
     equilibrium: CycleEquilibrium,
     levels: Numbers,

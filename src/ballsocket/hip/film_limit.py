@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_number, require
+from ..core.display import finite_or_none
 from ..lubrication import Lubricant
 from ..lubrication.cycle_film import CYCLES
 
@@ -70,7 +70,7 @@ class FilmLimit:
 
     def summary(self, excluded_share: float) -> dict[str, Any]:
         """Return the limit and the share of the sliding work without wear for JSON; an infinite limit is null."""
-        return {"lambda": self.ratio if isfinite(self.ratio) else None, "excluded_work_share": excluded_share}
+        return {"lambda": finite_or_none(self.ratio), "excluded_work_share": excluded_share}
 
 
 def _spread_to_all_cells(thickness: Numbers, directions: Numbers) -> Numbers:

@@ -40,13 +40,10 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
     speed_parameter = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * effective_radius)
     load_parameter = force / (modulus * effective_radius**2)
     with numpy.errstate(divide="ignore", invalid="ignore"):
-        minimum, central = (
-            2.80 * effective_radius * speed_parameter**0.65 * load_parameter**-0.21,
-            3.34 * effective_radius * speed_parameter**0.64 * load_parameter**-0.22,
-        )
+        minimum = 2.80 * effective_radius * speed_parameter**0.65 * load_parameter**-0.21
+        central = 3.34 * effective_radius * speed_parameter**0.64 * load_parameter**-0.22
     return minimum, central
 
 
 def _plane_strain_compliance(material: Material) -> float:
-    """Compute the plane-strain compliance (1 - ν²)/E of a material in 1/MPa."""
     return float((1 - material.poisson**2) / material.young)

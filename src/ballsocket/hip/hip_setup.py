@@ -42,14 +42,9 @@ from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 MIN_RING_WIDTH = radians(0.5)
 """Smallest ring width in rad."""
 
-_MAX_RING_WIDTH = radians(10.0)
-"""Largest ring width in rad."""
-
-_DIAMETERS = 1.0, 1000.0
-"""Allowed diameters of head and bore in mm."""
-
-_CYCLES_PER_MILLION = 1e6
-"""Cycles to which wear rates refer."""
+_MAX_RING_WIDTH = radians(10.0)  # largest ring width in rad
+_DIAMETERS = 1.0, 1000.0  # allowed diameters of head and bore in mm
+_CYCLES_PER_MILLION = 1e6  # cycles to which wear rates refer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -82,7 +77,6 @@ class HipSetup(OneLine):
     socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
 
     def __post_init__(self) -> None:
-        """Check types and limits of the fields, and that no load pushes the ball over the rim."""
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
@@ -187,7 +181,6 @@ class HipSetup(OneLine):
 
     @property
     def _unoriented_cup(self) -> Cup:
-        """Cup without its orientation, with the same arc and interface."""
         return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
@@ -356,13 +349,11 @@ class HipSetup(OneLine):
     def _film(
         self, equilibrium: CycleEquilibrium, depth: Numbers | float, lubricant: Lubricant, method: str, cycles: int
     ) -> Film:
-        """Compute lubricant film and friction of a cycle from its contacts on a bore of a worn depth in mm."""
         frame, foundation, worn = self.frame, self.foundation, self._depth_field(depth)
         return film(frame, foundation, self.sliding, equilibrium, worn, lubricant, self.grid, method, cycles)
 
     @cached_property
     def _unworn_films(self) -> dict[tuple[Lubricant, str, int], Film]:
-        """Cached films of the unworn bore."""
         return {}
 
     @cached_property

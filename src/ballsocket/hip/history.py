@@ -263,7 +263,6 @@ class History(OneLine):
 
     @property
     def _contact_notes(self) -> tuple[str, ...]:
-        """Sentences of the contact model, each kind only once."""
         later = (_AFTER_CYCLES.format(plain_number(report.cycles)) for report in self.reports)
         return tuple(
             list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
@@ -286,7 +285,6 @@ class History(OneLine):
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
-        """Sentences on the first stages with edge loading, and with a bore that is worn to the rim."""
         frame = self.use.frame
         stages = [(_FIRST_CYCLE, self.worst)] + [
             (_AFTER_CYCLES.format(plain_number(report.cycles)), report.edge.closest_approach(frame))
@@ -324,6 +322,9 @@ class History(OneLine):
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
         first, separation, limit = self.use.first, self.use.frame.separation, self.use.film_limit
+        film = None if self.film is None else self.film.summary()
+        if film and self.lubricant is not None:
+            film["hamrock_dowson"] = self.use.film(self.lubricant, method="hamrock-dowson").summary()
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -353,7 +354,7 @@ class History(OneLine):
                 "creep": law_summary(self.use.creep),
                 "film_limit": None if limit is None else limit.summary(self.use.excluded_work_share),
             },
-            "film": None if self.film is None else self._film_summary(self.film),
+            "film": film,
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
             "history": list(map(self._report_summary, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
@@ -365,13 +366,7 @@ class History(OneLine):
         """Film of the first cycle by the wave; None for a hip without film."""
         return None if self.lubricant is None else self.use.film(self.lubricant)
 
-    def _film_summary(self, film: Film) -> dict[str, Any]:
-        """Return the film by the wave for JSON, and Hamrock and Dowson's formula under `hamrock_dowson`."""
-        wave, formula = film.summary(), self.use.film(film.lubricant, method="hamrock-dowson").summary()
-        return {**wave, "hamrock_dowson": formula} if wave else {}
-
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        """Return a report with its contact checks as a dictionary for JSON, with years if known."""
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
         years = {} if per_year is None else {"years": report.cycles / per_year}
         lateral, upward = self.radiographic_displacement(report)
@@ -388,9 +383,7 @@ class History(OneLine):
         return {**report.summary(), **radiograph, **years, "edge": _closest_approach_summary(edge), **contact}
 
 
-_THIN_LINER = 0.25
-"""Worn depth above which a note appears, relative to the thickness of the liner."""
-
+_THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
 _WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
 _WORN_THIN = (
     "after {} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
@@ -409,5 +402,4 @@ _NOT_CONVERGED = "a contact did not balance its load: the results of this run ar
 
 
 def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
-    """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()

@@ -18,16 +18,8 @@ from .simulator_cycles import iso_14242_1
 
 _ISO_WALKING = iso_14242_1()
 _ISO_ASSUMPTION = "waveform and motion are those of ISO 14242-1"
-_MAX_BODY_WEIGHT = 1e4
-"""Largest allowed body weight in N."""
-
-_UNLOADED_SHARE = 0.1
-"""Force of the muscles on an unloaded leg, as a share of the peak."""
-
-
-def _iso_waveform(phases: Numbers) -> Numbers:
-    """Compute the force of ISO 14242-1 divided by its peak, at phases from 0 to 1."""
-    return numpy.asarray(_ISO_WALKING.force(phases)) / 3000.0
+_MAX_BODY_WEIGHT = 1e4  # largest allowed body weight in N
+_UNLOADED_SHARE = 0.1  # force of the muscles on an unloaded leg, as a share of the peak
 
 
 def _single_peak_waveform(end: float) -> PhaseFunction:
@@ -37,19 +29,8 @@ def _single_peak_waveform(end: float) -> PhaseFunction:
     )
 
 
-def _double_peak_waveform(phases: Numbers) -> Numbers:
-    """Compute a force, divided by its peak, with one peak in each half of the cycle."""
-    return _single_peak_waveform(0.5)(phases % 0.5)
-
-
 def _zero_angles(phases: Numbers) -> Numbers:
-    """Return zero angles (3, n) for phases (n,), for an activity without motion."""
     return numpy.zeros((3, len(phases)))
-
-
-def _sit_to_stand_angles(phases: Numbers) -> Numbers:
-    """Compute the joint angles (3, n) in rad of standing up from 80° of flexion and sitting down."""
-    return radians(80.0) * numpy.stack([numpy.cos(pi * phases) ** 2, 0 * phases, 0 * phases])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +55,7 @@ class InVivo:
 
     percent: float
     source: str
-    waveform: Callable[[Numbers], Numbers] = _iso_waveform
+    waveform: Callable[[Numbers], Numbers] = lambda phases: numpy.asarray(_ISO_WALKING.force(phases)) / 3000.0
     angles: Callable[[Numbers], Numbers] = _ISO_WALKING.angles
     duration: float = 1.0
     assumption: str = _ISO_ASSUMPTION
@@ -98,8 +79,8 @@ _ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
         "stand-up": InVivo(
             percent=215,
             source=_BERGMANN_2016,
-            waveform=_double_peak_waveform,
-            angles=_sit_to_stand_angles,
+            waveform=lambda phases: _single_peak_waveform(0.5)(phases % 0.5),
+            angles=lambda phases: radians(80.0) * numpy.stack([numpy.cos(pi * phases) ** 2, 0 * phases, 0 * phases]),
             duration=6.0,
             assumption="standing up and sitting down with 80° of flexion, one peak each",
         ),

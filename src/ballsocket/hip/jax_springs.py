@@ -14,11 +14,8 @@ from ..core.arrays import Array, Numbers
 from ..core.checks import check_shape, needs, require, shown
 from .spring_equilibrium import FORCE_TOLERANCE, MAX_ITERATIONS, REGULARISATION, SpringContact, newton_step
 
-_TRIANGLE = numpy.triu_indices(3)
-"""Rows and columns of the matrix entries xx, xy, xz, yy, yz, zz."""
-
-_DIAGONAL = numpy.array([0, 3, 5])
-"""Indices of xx, yy and zz among these entries."""
+_TRIANGLE = numpy.triu_indices(3)  # rows and columns of the matrix entries xx, xy, xz, yy, yz, zz
+_DIAGONAL = numpy.array([0, 3, 5])  # indices of xx, yy and zz among these entries
 
 
 class PatientEquilibria(NamedTuple):
@@ -110,7 +107,6 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
 
 @cache
 def _compiled_solver() -> Any:
-    """Compile the loop over the lanes of all patients and loads."""
     import jax
     import jax.numpy as xp
 
@@ -118,7 +114,6 @@ def _compiled_solver() -> Any:
     solve_loads = jax.vmap(_solve_load, in_axes=(of_loads, 0))
 
     def solve_patient(contact: SpringContact, start: Array) -> tuple[Array, Array, Array]:
-        """Solve one patient under all loads."""
         closing: Any = xp.broadcast_to(contact.closing, (len(contact.loads), contact.closing.shape[1]))
         displacement, pressure, converged = solve_loads(contact._replace(closing=closing), start)
         return displacement, pressure, converged.all()
@@ -143,7 +138,6 @@ def _solve_load(contact: SpringContact, start: Array) -> tuple[Array, Array, Arr
     magnitude = _length(contact.loads)
 
     def is_unfinished(lane: _Lane) -> Array:
-        """Return True until the load is balanced."""
         return (lane.iterations < MAX_ITERATIONS) & ~(_length(lane.residual) <= FORCE_TOLERANCE * magnitude)
 
     def advance(lane: _Lane) -> _Lane:
@@ -176,10 +170,8 @@ def _make_lane(contact: SpringContact, iterations: Array | int, displacement: Ar
 
 
 def _overlap(contact: SpringContact, displacement: Array) -> Array:
-    """Compute the overlap (cells,) of ball and bore in mm."""
     return displacement @ contact.normals - contact.closing
 
 
 def _length(vector: Array) -> Array:
-    """Compute the length of a vector (3,)."""
     return (vector * vector).sum() ** 0.5

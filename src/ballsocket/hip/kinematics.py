@@ -27,18 +27,15 @@ def parse_rotation_order(text: Any) -> str:
     ValueError
         `text` does not name the three rotations once each.
     """
-    words = text if isinstance(text, list | tuple) else _split_rotation_order(text) if isinstance(text, str) else []
+    words = text if isinstance(text, list | tuple) else []
+    if isinstance(text, str):
+        words = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
+        words = list(words[0].strip()) if len(words) == 1 and len(words[0].strip()) == 3 else words
     axes = "".join(_AXIS_NAMES.get(str(word).strip().lower(), "?") for word in words)
     if sorted(axes) != ["x", "y", "z"]:
         allowed = "'flexion, adduction, rotation' in any order"
         raise ValueError(f"rotation_order = {shown(text)} is not allowed: {allowed} (R is their product from the left)")
     return axes
-
-
-def _split_rotation_order(text: str) -> list[str]:
-    """Split the text of a rotation order into three words or letters."""
-    words = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
-    return list(words[0].strip()) if len(words) == 1 and len(words[0].strip()) == 3 else words
 
 
 def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
@@ -177,15 +174,9 @@ class SurfaceSliding:
     @cached_property
     def _sliding_second_moments(self) -> tuple[Numbers, ...]:
         """Second moments xx, yy and xy of each sliding step divided by its length: (steps, points)."""
-        first_component, second_component = self._rotated_sliding_components
-        inverse_length = numpy.divide(
-            1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0
-        )
-        return (
-            first_component * first_component * inverse_length,
-            second_component * second_component * inverse_length,
-            first_component * second_component * inverse_length,
-        )
+        (x, y), length = self._rotated_sliding_components, self.distances
+        inverse_length = numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
+        return x * x * inverse_length, y * y * inverse_length, x * y * inverse_length
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Compute the cross-shear ratio (points,) of sliding, weighted by the pressure (steps, points)."""
@@ -198,13 +189,9 @@ class SurfaceSliding:
         a circle.
         """
         xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments)
-        principal, (first_component, second_component) = (
-            numpy.arctan2(2 * xy, xx - yy) / 2,
-            self._rotated_sliding_components,
-        )
-        deviation = numpy.arccos(
-            numpy.clip(abs(numpy.cos(numpy.arctan2(second_component, first_component) - principal)), 0.0, 1.0)
-        )
+        first_component, second_component = self._rotated_sliding_components
+        direction = numpy.arctan2(second_component, first_component) - numpy.arctan2(2 * xy, xx - yy) / 2
+        deviation = numpy.arccos(numpy.clip(abs(numpy.cos(direction)), 0.0, 1.0))
         weight = pressure * self.distances
         total, weighted_sum = weight.sum(axis=0), numpy.einsum("tp,tp->p", weight, deviation)
         return numpy.divide(weighted_sum, total, out=numpy.zeros_like(total), where=total > 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from math import inf
 from numbers import Real
@@ -58,7 +58,6 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     """Create a unit for a field that is a list of plain numbers."""
 
     def read_numbers(name: str, value: Any) -> tuple[float, ...]:
-        """Read a list of plain numbers from a file."""
         if not isinstance(value, list) or not value:
             raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in {text}")
         return tuple(parse(name, number, Kind.NUMBER) for number in value)
@@ -179,7 +178,6 @@ class Law(ABC):
     """True if the text of the law identifies it, so that a run can be stored."""
 
     def __post_init__(self) -> None:
-        """Check all fields of the law against their limits."""
         for law_number in self.law_fields():
             law_number.check(getattr(self, law_number.name))
 
@@ -206,18 +204,12 @@ class Law(ABC):
 
     def summary(self) -> dict[str, Any]:
         """Return name and numbers of the law as a dictionary for JSON, with units at the ends of keys."""
-        numbers = {
-            "_".join(filter(None, (law_number.name, law_number.unit.suffix))): _field_value_for_json(
-                getattr(self, law_number.name), law_number
-            )
-            for law_number in self.law_fields()
-        }
-        return {"law": self.name, **numbers}
-
-
-def _field_value_for_json(value: Any, law_number: LawField) -> Any:
-    """Convert the value of a field for JSON: to a number or a list of numbers."""
-    return list(map(float, value)) if law_number.is_list else float(value)
+        summary: dict[str, Any] = {"law": self.name}
+        for law_number in self.law_fields():
+            key = "_".join(filter(None, (law_number.name, law_number.unit.suffix)))
+            value = getattr(self, law_number.name)
+            summary[key] = list(map(float, value)) if law_number.is_list else float(value)
+        return summary
 
 
 def law_summary(law: Any) -> dict[str, Any] | None:
@@ -263,7 +255,9 @@ def read_law(
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):
         if key in table and key not in {*fields_by_key, *keys}:
-            raise ValueError(f"{key} belongs to {_describe_laws_with_key(key, laws)}, and the law is {law.name!r}")
+            names = [repr(name) for name, other in laws.items() if key in law_keys({name: other})]
+            owner = f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
+            raise ValueError(f"{key} belongs to {owner}, and the law is {law.name!r}")
     for key, law_number in fields_by_key.items():
         if law_number.required and key not in table:
             raise ValueError(
@@ -278,12 +272,6 @@ def read_law(
     return law(**numbers, **values)
 
 
-def _describe_laws_with_key(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
-    """Describe in words the laws that have a field with a key, for messages."""
-    names = [repr(name) for name, law in laws.items() if any(law_number.key == key for law_number in law.law_fields())]
-    return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
-
-
 def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
     """Select the class of a law by its name in a table, else by the keys in the table.
 
@@ -291,11 +279,5 @@ def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]],
     """
     if "law" in table:
         return laws[known_name(noun, table["law"], laws)]
-    return next(_laws_with_keys(table, laws), next(iter(laws.values())))
-
-
-def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
-    """Yield the laws that have at least one of their keys in a table."""
-    for law in laws.values():
-        if any(law_number.key in table for law_number in law.law_fields()):
-            yield law
+    stated = (law for law in laws.values() if any(law_number.key in table for law_number in law.law_fields()))
+    return next(stated, next(iter(laws.values())))

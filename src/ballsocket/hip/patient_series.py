@@ -20,32 +20,15 @@ from .variability import RESULT_UNITS, CohortResult
 MEMBERS_PER_PIECE = 8
 """Simulations of one piece of work: about half a second."""
 
-_NODES_PER_UNIT = 1.5
-"""Interpolation points per unit of the logarithm of the exposure."""
-
-_MAX_NODES = 24
-"""Largest number of interpolation points of the exposure."""
-
-_MEMBERS_PER_TERM = 2
-"""Simulations per term of the polynomial."""
-
-_WEIGHTS = {CLEARANCE: 4}
-"""Weights of variables in the degree. The modulus, and with it the creep of a family, hardly depends on clearance."""
-
-_MIN_MEMBERS_PER_TERM = 1.5
-"""Least number of simulations with a result per term of the polynomial."""
-
-_WEAR_SAFETY = 0.95
-"""Fraction of the largest allowed wear up to which a patient takes its result from the series."""
-
-_ROUNDING = 1e-12
-"""Margin of the range of the logarithm of the exposure."""
-
-_BLOCK = 2048
-"""Patients whose results are computed at once."""
-
-_CONTACT_FIELDS = 3
-"""Numbers of each worst contact: indentation, half angle, pressure."""
+_NODES_PER_UNIT = 1.5  # interpolation points per unit of the logarithm of the exposure
+_MAX_NODES = 24  # largest number of interpolation points of the exposure
+_MEMBERS_PER_TERM = 2  # simulations per term of the polynomial
+_WEIGHTS = {CLEARANCE: 4}  # weights in the degree; the modulus, and with it creep, hardly depends on clearance
+_MIN_MEMBERS_PER_TERM = 1.5  # least number of simulations with a result per term of the polynomial
+_WEAR_SAFETY = 0.95  # fraction of the largest allowed wear up to which a patient takes its result from the series
+_ROUNDING = 1e-12  # margin of the range of the logarithm of the exposure
+_BLOCK = 2048  # patients whose results are computed at once
+_CONTACT_FIELDS = 3  # numbers of each worst contact: indentation, half angle, pressure
 
 
 class NoSeriesError(ValueError):
@@ -125,7 +108,6 @@ def members_of(box: Box, degree: int) -> int:
 
 
 def _exponents(box: Box, degree: int) -> Numbers:
-    """List the exponents of the terms up to a degree: (terms, axes)."""
     return exponents_of([_WEIGHTS.get(name, 1) for name in box.axes], degree)
 
 
@@ -218,7 +200,8 @@ class PatientSeries:
         worst = [unworn[:, len(UNWORN_NUMBERS) :], *(stage[:, rim + len(RIM_NUMBERS) :] for stage in stages)]
         checks = numpy.stack([self._contact_checks(contacts, values) for contacts in worst], axis=1)
         at_rim = unworn[:, UNWORN_NUMBERS.index("rim_distance")] <= 0
-        edge = [at_rim, *(_edge_loaded(stage[:, rim], stage[:, rim + 1], at_rim) for stage in stages)]
+        # by the distance and the excess of the pressure at the rim, see `mask_edge_loading`
+        edge = [at_rim, *((stage[:, rim] <= 0) & (at_rim | (stage[:, rim + 1] >= 0)) for stage in stages)]
         return numpy.concatenate([checks, numpy.stack(edge, axis=1)[:, :, None]], axis=2)
 
     def _contact_checks(self, stage: Numbers, values: Mapping[str, Numbers]) -> Numbers:
@@ -227,23 +210,12 @@ class PatientSeries:
         clearance, forces = similarity.clearances(values), similarity.largest_forces(values)
         indentation, half_angle, pressure = stage.reshape(len(stage), -1, _CONTACT_FIELDS).transpose(2, 1, 0)
         pressure_unit = similarity.modulus(clearance) * clearance
-        columns = (
-            numpy.zeros_like(forces),
-            forces,
-            numpy.exp(indentation) * clearance,
-            half_angle,
-            numpy.exp(pressure) * pressure_unit,
-        )
+        depth, max_pressure = numpy.exp(indentation) * clearance, numpy.exp(pressure) * pressure_unit
+        columns = (numpy.zeros_like(forces), forces, depth, half_angle, max_pressure)
         rows = numpy.stack(columns, axis=-1).reshape(-1, len(columns))
         joint = replace(similarity.setup.joint, clearance=numpy.tile(clearance, len(forces)))
         utilisation, valid = check_rows(similarity.setup.contact_model, joint, rows).reshape(2, *forces.shape)
         return numpy.stack([utilisation.max(axis=0), valid.min(axis=0)], axis=1)
-
-
-def _edge_loaded(distance: Numbers, excess: Numbers, unworn_at_rim: Numbers) -> Numbers:
-    """Return the mask of the patients with edge loading of a worn bore; see `mask_edge_loading`."""
-    mask: Numbers = (distance <= 0) & (unworn_at_rim | (excess >= 0))
-    return mask
 
 
 def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:

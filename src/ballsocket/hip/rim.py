@@ -14,29 +14,18 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
-from .cycle import Spring
+from .cycle import Cycle, Spring
+from .mix import Mix
 
 _BISECTIONS = 60
-_BALANCE_TOLERANCE = 1e-6
-"""Tolerance of the ball's displacement on its spring, as a share of the mismatch."""
-
-
-class StepSequence(Protocol):
-    """Interface of the time steps of a cycle or a mix of activities."""
-
-    @property
-    def n_steps(self) -> int:
-        """Number of time steps."""
-
-    def describe_step(self, step: int) -> str:
-        """Describe the time of a step in words, such as "12.5 % of the cycle"."""
+_BALANCE_TOLERANCE = 1e-6  # tolerance of the ball's displacement on its spring, as a share of the mismatch
 
 
 class CupLoading(Protocol):
     """Interface of the loads of a cycle in a cup, such as `CupFrame`."""
 
     @property
-    def cycle(self) -> StepSequence:
+    def cycle(self) -> Cycle | Mix:
         """Cycle of load and motion."""
 
     @property
@@ -240,25 +229,20 @@ class Microseparation:
         """Largest distance in mm between the centres of ball and socket."""
         return float(numpy.linalg.norm(self.displacement, axis=1).max(initial=0.0))
 
-    def _first_and_last_step(self, n_steps: int) -> tuple[int, int]:
-        """Return the first and the last step of the microseparation."""
-        distances = numpy.diff(self.steps, append=self.steps[0] + n_steps)
-        longest = int(distances.argmax())
-        return int(self.steps[(longest + 1) % len(distances)]), int(self.steps[longest])
-
-    def summary(self, cycle: StepSequence) -> dict[str, Any]:
+    def summary(self, cycle: Cycle | Mix) -> dict[str, Any]:
         """Return the microseparation as a dictionary for JSON, in mm and degrees."""
-        first_text, last_text = (cycle.describe_step(step) for step in self._first_and_last_step(cycle.n_steps))
+        distances = numpy.diff(self.steps, append=self.steps[0] + cycle.n_steps)
+        last = int(distances.argmax())
         azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
         return {
-            "from": first_text,
-            "to": last_text,
+            "from": cycle.describe_step(int(self.steps[(last + 1) % len(distances)])),
+            "to": cycle.describe_step(int(self.steps[last])),
             "medial_lateral_mm": self.medial_lateral,
             "centre_distance_mm": self.centre_distance,
             "place_deg": degrees(azimuth),
         }
 
-    def describe(self, cycle: StepSequence) -> str:
+    def describe(self, cycle: Cycle | Mix) -> str:
         """Describe the microseparation in one sentence for reports."""
         values = self.summary(cycle)
         measured = " and ".join(f"{value} ± {spread} mm" for value, spread in MEASURED_SEPARATIONS.values())
@@ -331,14 +315,9 @@ class SpringLoadedBall:
         mismatch = abs(self.spring.mismatch)
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
         for _ in range(_BISECTIONS):
-            trial_displacement = (low + high) / 2
-            is_beyond = (
-                self._ball_centre_on_rim(forces, trial_displacement) @ self._spring_force_direction > trial_displacement
-            )
-            low, high = (
-                numpy.where(is_beyond, low, trial_displacement),
-                numpy.where(is_beyond, trial_displacement, high),
-            )
+            middle = (low + high) / 2
+            is_beyond = self._ball_centre_on_rim(forces, middle) @ self._spring_force_direction > middle
+            low, high = numpy.where(is_beyond, low, middle), numpy.where(is_beyond, middle, high)
         ball_centre = self._ball_centre_on_rim(forces, high)
         is_balanced = abs(ball_centre @ self._spring_force_direction - high) <= _BALANCE_TOLERANCE * mismatch
         loads = self._loads_after_displacement(forces, high)

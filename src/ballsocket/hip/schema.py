@@ -169,8 +169,7 @@ class Counts(Value, list[float]):
         return cls(Cycles.read(f"{name}[{i}]", number) for i, number in enumerate(value))
 
 
-_MAX_INTEGER = 1 << 20
-"""Largest number of samples and largest seed."""
+_MAX_INTEGER = 1 << 20  # largest number of samples and largest seed
 
 
 class SampleNumber(WholeNumber):

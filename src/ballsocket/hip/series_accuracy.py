@@ -19,8 +19,7 @@ TOLERANCES: Mapping[str, float] = {
 }
 """Relative errors that a series is refined to, for 95 % of the results of the held-out patients."""
 
-_FRACTION = 0.95
-"""Fraction of the held-out results within the stated error."""
+_FRACTION = 0.95  # fraction of the held-out results within the stated error
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,28 +12,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, radians
-from typing import Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..problem.cup import Cup
-from ..studies.distributions import Distribution
 from .cup_frame import ANGLES
 from .cycle import Frame
 from .history import Report
 from .simulation import HipSimulation, make_report
+from .variability import PatientVariability
 from .wear_integrator import WearIntegrator
 from .wear_law import coefficient_field, with_coefficient
 
-_RIM_MARGIN = radians(5.0)
-"""Least angle in rad between a load and the end of the bore in a family member."""
-
-_RIM_SLOPE = 0.5
-"""Angle in rad beyond the rim per overlap of one clearance at the rim. It continues the rim distance below 0."""
-
-_CONTACT_COLUMNS = slice(2, 5)
-"""Indentation, half angle and largest pressure in a table of worst contacts."""
+_RIM_MARGIN = radians(5.0)  # least angle in rad between a load and the end of the bore in a family member
+_RIM_SLOPE = 0.5  # angle in rad beyond the rim per overlap of one clearance there; continues the distance below 0
+_CONTACT_COLUMNS = slice(2, 5)  # indentation, half angle and largest pressure in a table of worst contacts
 
 FORCE, CLEARANCE, TIME = "force", "clearance", "time"
 """Names of the numbers of a family besides the angles of the cup, all logarithms."""
@@ -48,25 +41,7 @@ The excess is the largest overlap at the rim minus the largest elsewhere, over c
 """
 
 
-class SimilarPatients(Protocol):
-    """Interface of the patients of a cohort: `PatientVariability`."""
-
-    @property
-    def distributions(self) -> Mapping[str, Distribution]:
-        """Distributions of the sampled quantities by name."""
-
-    @property
-    def coarse_simulation(self) -> HipSimulation:
-        """Simulation of the nominal patient."""
-
-    def nominal_value(self, name: str) -> float:
-        """Return a body weight in N or cycles a year of the nominal patient."""
-
-    def orient_cup(self, values: Mapping[str, float]) -> Cup:
-        """Return the cup of a patient, with the angles in rad among the patient's values."""
-
-
-def find_obstacle(variability: SimilarPatients, counts: Sequence[float]) -> str:
+def find_obstacle(variability: PatientVariability, counts: Sequence[float]) -> str:
     """State why patients with reports at given cycle counts are not similar, in one clause; empty if they are."""
     use = variability.coarse_simulation
     scattered = set(variability.distributions)
@@ -114,11 +89,11 @@ class Similarity:
 
     Attributes
     ----------
-    variability : PatientVariability or SimilarPatients
+    variability : PatientVariability
         Distributions of the patients. `find_obstacle` states whether they are similar.
     """
 
-    variability: SimilarPatients
+    variability: PatientVariability
 
     @cached_property
     def setup(self) -> HipSimulation:
@@ -129,7 +104,6 @@ class Similarity:
         return replace(use, wear=with_coefficient(use.wear, self._median("coefficient")))
 
     def _median(self, name: str) -> float:
-        """Return the median of a sampled quantity."""
         return float(self.variability.distributions[name].frozen.median())
 
     @cached_property
@@ -206,7 +180,7 @@ class Similarity:
         """Check if the loads of a cycle point into the bore, away from the rim, for angles of the cup in rad."""
         frame = self.setup.frame
         try:
-            cup: Cup = self.variability.orient_cup(angles)
+            cup = self.variability.orient_cup(angles)
         except ValueError:
             return False
         forces = frame.side_cycle.forces[frame.loaded]
@@ -265,7 +239,6 @@ class Similarity:
     def _worn_numbers(
         self, use: HipSimulation, report: Report, depth: Numbers, integrator: WearIntegrator
     ) -> list[float]:
-        """Compute the numbers of a worn bore from its report."""
         units = self.units(numpy.asarray(float(use.joint.clearance)))
         with numpy.errstate(divide="ignore"):
             logarithms = [float(numpy.log(getattr(report, name) / units[name])) for name in self.results]
@@ -288,17 +261,13 @@ class Similarity:
         return angle, excess
 
     def _contact_numbers(self, use: HipSimulation, worst_contacts: Numbers) -> list[float]:
-        """Compute indentation, half angle and pressure of the worst contact of each activity."""
         clearance = float(use.joint.clearance)
         indentation, half_angle, pressure = worst_contacts[:, _CONTACT_COLUMNS].T
         with numpy.errstate(divide="ignore"):
-            indentation, pressure = (
-                numpy.log(indentation / clearance),
-                numpy.log(pressure / float(self.modulus(clearance)) / clearance),
-            )
+            indentation = numpy.log(indentation / clearance)
+            pressure = numpy.log(pressure / float(self.modulus(clearance)) / clearance)
         return [float(number) for number in numpy.stack([indentation, half_angle, pressure], axis=1).ravel()]
 
 
 def _count(values: Mapping[str, Numbers]) -> int:
-    """Return the number of patients."""
     return len(next(iter(values.values())))

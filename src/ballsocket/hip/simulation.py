@@ -28,15 +28,10 @@ from .wear_integrator import WearIntegrator
 MAX_WORN_LINERS = 10.0
 """Largest wear by the rate of the first cycle, in liner thicknesses."""
 
-_VERSION = 7
-"""Version of the file's format."""
-
+_VERSION = 7  # version of the file's format
 _FILE_NAME = "hip_in_use.npz"
-
 _REPORT_FIELDS = fields(Report)
-
-_CONVERTERS = {"float": float, "bool": bool}
-"""Converters of a stored array to a field of a report, by the field's type; other fields are arrays."""
+_CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +96,6 @@ class Checkpoint:
 
 
 def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    """Build a report from stored arrays, whose names begin with a prefix."""
     values: dict[str, Any] = {}
     for field in _REPORT_FIELDS:
         convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
@@ -123,19 +117,9 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     frame = use.frame
     arrays = (frame.loads, frame.lateral_stiffness, frame.rotation_increments, frame.loaded)
     loads = sha256(b"".join(array.tobytes() for array in arrays)).hexdigest()
-    inputs = (
-        use.joint,
-        frame.placed,
-        use.wear,
-        use.ball_wear,
-        use.surface,
-        use.ring_width,
-        use.tolerance,
-        use.creep,
-        use.seconds,
-        *(() if use.film_limit is None else (use.film_limit,)),
-    )
-    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, inputs))
+    laws = (use.joint, frame.placed, use.wear, use.ball_wear, use.surface, use.ring_width, use.tolerance, use.creep)
+    limit = () if use.film_limit is None else (use.film_limit,)
+    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, (*laws, use.seconds, *limit)))
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:
@@ -355,11 +339,7 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
         A total count that is not positive and finite, or a report beyond it.
     """
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
+    rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
     for count in report_at:
-        require(
-            "report_at",
-            count,
-            0 <= count <= cycles,
-            f"it lies between 0 and the {plain_number(cycles)} cycles of the run",
-        )
+        require("report_at", count, 0 <= count <= cycles, rule)
     return sorted({float(count) for count in (*report_at, cycles)})

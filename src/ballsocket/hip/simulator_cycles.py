@@ -43,20 +43,12 @@ def _iso_14242_1_force(phases: Numbers) -> Numbers:
 
 
 def _iso_14242_1_angles(phases: Numbers) -> Numbers:
-    """Compute the angles of ISO 14242-1 in rad, one cosine each.
-
-    Flexion is 25° to -18°, adduction 7° to -4°, inward rotation -10° to 2°.
-    """
+    """Compute flexion of 25° to -18°, adduction of 7° to -4° and rotation of -10° to 2° in rad, one cosine each."""
     cycle_angle = 2 * pi * phases
     flexion = 3.5 + 21.5 * numpy.cos(cycle_angle)
     adduction = 1.5 + 5.5 * numpy.cos(cycle_angle - 2 * pi * 0.21)
     rotation = -4.0 - 6.0 * numpy.cos(cycle_angle)
     return numpy.radians([flexion, adduction, rotation])
-
-
-def _iso_14242_1_key_point_angles(phases: Numbers) -> Numbers:
-    """Compute the angles of ISO 14242-1 in rad by half cosines between its key points."""
-    return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
 
 
 def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseFunction | None = None) -> Cycle:
@@ -86,7 +78,11 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
 
 def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of ISO 14242-1 with half cosines between the key points of each angle; see `iso_14242_1`."""
-    return replace(iso_14242_1(n_steps, order, _iso_14242_1_key_point_angles), name="iso-14242-1-key-points")
+    return replace(
+        iso_14242_1(n_steps, order),
+        name="iso-14242-1-key-points",
+        angles=lambda phases: numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES]),
+    )
 
 
 def flexion(
@@ -113,7 +109,6 @@ def flexion(
     middle = radians(_ISO_FLEXION_MIDDLE)
 
     def flexion_angles(phases: Numbers) -> Numbers:
-        """Compute the angles (3, n) in rad, of which adduction and rotation are 0."""
         angles = _iso_14242_1_angles(phases) * numpy.array([[1.0], [0.0], [0.0]])
         if angle_ratio != 1:
             angles[0] = middle + angle_ratio * (angles[0] - middle)

@@ -16,8 +16,7 @@ from .spring_equilibrium import SpringContact, load_blocks, spring_solver
 NO_LATERAL_SPRING = numpy.zeros((3, 3))
 """Stiffness matrix (N/mm) for a ball without a lateral spring."""
 
-_CONTACT_STEP = 1e-3
-"""Step of a ball without contact beyond the clearance, relative to the socket's radius."""
+_CONTACT_STEP = 1e-3  # step of a ball without contact beyond the clearance, relative to the socket's radius
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,53 +47,43 @@ class SocketFoundation(Protocol):
     @property
     def clearance(self) -> float:
         """Radial clearance in mm."""
-        ...
 
     @property
     def socket_radius(self) -> float:
         """Radius of the bore in mm."""
-        ...
 
     @property
     def directions(self) -> Numbers:
         """Unit vectors to the centres of the cells, in the cup's frame: (3, cells)."""
-        ...
 
     @property
     def normals(self) -> Numbers:
         """Mean outward normal of each cell, in the cup's frame: (3, cells)."""
-        ...
 
     @property
     def areas(self) -> Numbers:
         """Areas of the cells in mm²: (cells,)."""
-        ...
 
     @property
     def max_stiffness(self) -> float:
         """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore."""
-        ...
 
     @property
     def edge_inset(self) -> float:
         """Distance from the zero of `edge_field` inwards to the contact edge, in cell widths."""
-        ...
 
     @property
     def edge_exponent(self) -> float:
         """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
-        ...
 
     def select_cells(self, cells: Numbers) -> SocketFoundation:
         """Return the foundation for a subset of the cells."""
-        ...
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
         """Return a mask (cells,) of the cells in a contact or close to one.
 
         The margin is relative to the largest overlap.
         """
-        ...
 
     def solve_equilibrium(
         self,
@@ -104,19 +93,15 @@ class SocketFoundation(Protocol):
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
         """Solve for displacements in mm and pressures in MPa under all loads."""
-        ...
 
     def smooth(self, depth: Numbers) -> Numbers:
         """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
-        ...
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
-        ...
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
-        ...
 
 
 def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringFoundation:

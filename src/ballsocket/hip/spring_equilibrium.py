@@ -24,8 +24,7 @@ FORCE_TOLERANCE = 1e-8
 REGULARISATION = 1e-12
 """Stiffness added to the tangent stiffness, relative to its trace."""
 
-_BLOCK_SIZE = 131_072
-"""Number of values (loads times cells) that are computed together, so that they stay in the processor's cache."""
+_BLOCK_SIZE = 131_072  # values (loads times cells) computed together, which stay in the processor's cache
 
 
 class SpringContact(NamedTuple):
@@ -156,10 +155,7 @@ def _solve_block(
 
 
 def _displacement_step(contact: SpringContact, tangent: Numbers, residual: Numbers, magnitude: Numbers) -> Numbers:
-    """Compute the Newton step (loads, 3) in mm from the contact's tangent stiffness (loads, 6).
-
-    A ball without contact moves along its load towards the bore.
-    """
+    """Compute the Newton step (loads, 3) in mm; a ball without contact moves along its load towards the bore."""
     trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
     separated = trace <= 0
     regularisation = numpy.where(separated, 1.0, REGULARISATION * trace)
@@ -186,10 +182,7 @@ def _compiled_solver() -> Solver:
 
 
 def _solve_one_by_one(contact, displacement, pressure):  # type: ignore[no-untyped-def]
-    """Solve a contact load by load in one pass over the cells per Newton step; numba compiles this function.
-
-    Arguments and result are those of `solve_in_blocks`.
-    """
+    """Solve as `solve_in_blocks`, load by load, in one pass over the cells per Newton step; numba compiles it."""
     K, lateral, areas = contact.modulus, contact.lateral_stiffness, contact.areas
     all_converged = True
     for i in range(len(contact.loads)):

@@ -15,8 +15,7 @@ from ..files.cells import Cell, count_words
 from ..files.columns import CellTable, Head, HeadChoice, read_cells
 
 _STATION = "station"
-_CYCLES = {"cycles": 1.0, "million_cycles": 1e6}
-"""Numbers of cycles by the head of their column."""
+_CYCLES = {"cycles": 1.0, "million_cycles": 1e6}  # numbers of cycles by the head of their column
 
 _CYCLE_UNITS = {
     "": 1.0,
@@ -80,7 +79,6 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
 
 
 def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> StationReadings:
-    """Find the columns of a table, and collect its readings."""
     heads = {head.name: head for head in table.heads}
     counts = [heads[name] for name in _CYCLES if name in heads]
     columns = [head for head in table.heads if head not in counts]

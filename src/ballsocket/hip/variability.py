@@ -39,14 +39,9 @@ SAMPLED_QUANTITIES = (
 DEFAULT_COUNT = 64
 """Default number of samples in each sample set of an uncertainty analysis."""
 
-_COARSE_RINGS = radians(8.0)
-"""Least ring width in a patient's simulation on springs, which is quick: its error is below the variability."""
-
-_COARSE_ELASTIC_RINGS = radians(6.0)
-"""Ring width in a patient's simulation with full elasticity, the largest of `Sphere`."""
-
-_COARSE_INSTANTS = 32
-"""Largest number of instants of a cycle in a patient's simulation."""
+_COARSE_RINGS = radians(8.0)  # least ring width of a patient on springs; its error is below the variability
+_COARSE_ELASTIC_RINGS = radians(6.0)  # ring width of a patient with full elasticity, the largest of `Sphere`
+_COARSE_INSTANTS = 32  # largest number of instants of a cycle in a patient's simulation
 
 DEFAULT_LEVEL = 0.95
 """Default fraction of the predictions within a band."""
@@ -108,7 +103,6 @@ class PatientVariability:
     surface: Springs | ClosedShell | RealCup | None = None
 
     def __post_init__(self) -> None:
-        """Check the names and the medians of the distributions."""
         check_names(self.distributions, SAMPLED_QUANTITIES, "among the quantities of patients")
         if not self.distributions:
             raise ValueError("no quantity differs between patients: give one of " + ", ".join(SAMPLED_QUANTITIES))
@@ -134,7 +128,6 @@ class PatientVariability:
 
     @cached_property
     def _medians_by_name(self) -> dict[str, float]:
-        """Median of each sampled quantity, by name."""
         return {name: float(distribution.frozen.median()) for name, distribution in self.distributions.items()}
 
     @property
@@ -172,10 +165,8 @@ class PatientVariability:
             A value that is not allowed, or an orientation in which the cup does not hold the ball.
         """
         use, cup = self.coarse_simulation, self.orient_cup(values)
-        cycle_ratio, force_ratio = (
-            self._ratio_to_nominal(values, "cycles_per_year"),
-            self._ratio_to_nominal(values, "body_weight"),
-        )
+        cycle_ratio = self._ratio_to_nominal(values, "cycles_per_year")
+        force_ratio = self._ratio_to_nominal(values, "body_weight")
         wear = use.wear
         if "coefficient" in values:
             require("coefficient", values["coefficient"], values["coefficient"] >= 0, "it must be at least 0")
@@ -194,7 +185,6 @@ class PatientVariability:
         )
 
     def _ratio_to_nominal(self, values: Mapping[str, float], name: str) -> float:
-        """Compute a patient's quantity divided by that of the nominal patient."""
         if name not in values:
             return 1.0
         require(name, values[name], 0 < values[name] < inf, "it must be positive")
@@ -255,15 +245,7 @@ class Patient:
 
 @dataclass(frozen=True, eq=False)
 class _CycleTable:
-    """Periodic function of the phase, linear between tabulated values.
-
-    Attributes
-    ----------
-    phases : array (n,)
-        Phases in parts of the cycle.
-    values : array (..., n)
-        Values at these phases.
-    """
+    """Periodic function of the phase, linear between values (..., n) at phases (n,) in parts of the cycle."""
 
     phases: Numbers
     values: Numbers
@@ -280,10 +262,8 @@ def _tabulate_cycle(cycle: Cycle) -> Cycle:
     """Convert a cycle to one with few time steps, whose forces and angles are tabulated."""
     coarse = replace(cycle, n_steps=min(cycle.n_steps, _COARSE_INSTANTS))
     midpoints, starts = coarse.phases, numpy.arange(coarse.n_steps) / coarse.n_steps
-    force, angles = (
-        numpy.asarray(coarse.force(midpoints), dtype=float),
-        numpy.asarray(coarse.angles(starts), dtype=float),
-    )
+    force = numpy.asarray(coarse.force(midpoints), dtype=float)
+    angles = numpy.asarray(coarse.angles(starts), dtype=float)
     return replace(coarse, force=_CycleTable(midpoints, force), angles=_CycleTable(starts, angles))
 
 
@@ -336,7 +316,8 @@ def join_results(results: Sequence[CohortResult]) -> CohortResult:
 
 def result_table(reports: Sequence[Report]) -> Numbers:
     """Tabulate the results named in `RESULT_UNITS` at each report: (reports, results)."""
-    return numpy.array([[_result_as_number(report, name) for name in RESULT_UNITS] for report in reports])
+    # of the edge distances of a cycle the least
+    return numpy.array([[numpy.min(getattr(report, name), initial=inf) for name in RESULT_UNITS] for report in reports])
 
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
@@ -349,22 +330,12 @@ def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     return numpy.column_stack([contacts, edge_loaded])
 
 
-def _result_as_number(report: Report, name: str) -> float:
-    """Return one result of a report as a number, for `edge_distance` the least of the cycle."""
-    value = getattr(report, name)
-    return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
-
-
 def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
-    """Return the distributions of all sampled quantities as a dictionary for JSON."""
-    return {
-        name: _summarize_distribution(name, distribution) for name, distribution in variability.distributions.items()
-    }
-
-
-def _summarize_distribution(name: str, distribution: Distribution) -> dict[str, Any]:
-    """Return type and parameters of a distribution as a dictionary for JSON, angles in degrees."""
-    factor = degrees(1.0) if name in ANGLES else 1.0
-    parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
-    shown_parameters = {key: factor * value for key, value in parameters.items() if isfinite(value)}
-    return {"distribution": type(distribution).__name__, **shown_parameters}
+    """Return type and parameters of all distributions as a dictionary for JSON, angles in degrees."""
+    summary = {}
+    for name, distribution in variability.distributions.items():
+        factor = degrees(1.0) if name in ANGLES else 1.0
+        parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
+        shown_parameters = {key: factor * value for key, value in parameters.items() if isfinite(value)}
+        summary[name] = {"distribution": type(distribution).__name__, **shown_parameters}
+    return summary

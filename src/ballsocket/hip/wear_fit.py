@@ -13,7 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, shown
-from ..core.display import plain_number
+from ..core.display import finite_or_none, plain_number
 from .history import History, NumericalError, Report
 from .law_fields import law_summary
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
@@ -30,27 +30,16 @@ RATES = ("initial", "steady", "mean")
 """Kinds of rates: of the new bore, between two cycle counts, and from the new bore to a cycle count."""
 
 _MILLION = 1e6
-_NODES = numpy.linspace(-0.5, 0.5, 5)
-"""Differences of ln(coefficient) from that of the centre, at which runs are computed."""
-
-_DEGREE = 3
-"""Degree of the polynomial of ln(result) over ln(coefficient) through the nodes."""
-
-_MAX_SHIFT = 0.3
-"""Largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted."""
-
+_NODES = numpy.linspace(-0.5, 0.5, 5)  # ln(coefficient) of the runs minus that of the centre
+_DEGREE = 3  # degree of the polynomial of ln(result) over ln(coefficient) through the nodes
+_MAX_SHIFT = 0.3  # largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted
 _MAX_CENTRES = 6
 _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
-_MAX_LOG_RANGE = 20.0
-"""Range of ln(coefficient) on both sides of the best one in which other readings of a rate are searched."""
-
-_SIGNIFICANCE = 0.05
-"""Probability of the scatter below which Student's quantile applies."""
-
+_MAX_LOG_RANGE = 20.0  # range of ln(coefficient) to both sides in which other readings of a rate are searched
+_SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
 _MIN_NOTED_WIDENING = 1.05
-
-_PREDICTED, _LEAST = 10, 1e-6
-"""Number of steps of a prediction, and the share of the coefficient that stands for an end of the band at 0."""
+_ROUNDING = 1e-9  # width of a band, relative to the coefficient, that is rounding alone
+_PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,7 +99,6 @@ class MeasuredWear:
     remark: str = ""
 
     def __post_init__(self) -> None:
-        """Check all fields, and convert numbers to arrays."""
         known_name("quantity", self.quantity, WEAR_QUANTITIES)
         values = _positive_array(self.quantity, self.values, "a measured wear is positive and finite")
         object.__setattr__(self, "values", values)
@@ -134,7 +122,6 @@ class MeasuredWear:
             object.__setattr__(self, "station", names)
 
     def _check_totals(self, values: Numbers) -> None:
-        """Check the cycle counts of totals; ValueError otherwise."""
         if self.begin is not None or self.end is not None:
             raise ValueError(f"from and to belong to a rate of {self.quantity}: state rate, or cycles for totals")
         if self.cycles is None:
@@ -147,7 +134,6 @@ class MeasuredWear:
         object.__setattr__(self, "cycles", cycles)
 
     def _check_rate(self, rate: str) -> None:
-        """Check the cycle counts of a rate; ValueError otherwise."""
         if self.cycles is not None:
             raise ValueError(f"a rate of {self.quantity} takes from and to, not cycles")
         if rate == "initial":
@@ -162,12 +148,8 @@ class MeasuredWear:
         if rate == "mean" and self.begin:
             raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
         begin = self.begin or 0.0
-        require(
-            "to",
-            self.end,
-            0 <= begin < self.end < inf,
-            f"it is above the {plain_number(begin)} cycles of from, and finite",
-        )
+        rule = f"it is above the {plain_number(begin)} cycles of from, and finite"
+        require("to", self.end, 0 <= begin < self.end < inf, rule)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -322,7 +304,6 @@ class WearFit:
         return (*remarks, *self._fit_notes(), *self.simulation.notes)
 
     def _fit_notes(self) -> Iterator[str]:
-        """Yield sentences on rates, uncertainties and scatter."""
         kinds = dict.fromkeys(measured.description for measured in self.data if measured.rate is not None)
         if kinds:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
@@ -342,13 +323,14 @@ class WearFit:
         yield "the band has the uncertainty of the measured wear alone, not that of loads, geometry or law"
 
     def _specimen_notes(self) -> Iterator[str]:
-        """Yield sentences on stations, and on values whose station is not stated."""
         count, unnamed = len(self.stations), [measured for measured in self.data if measured.station is None]
         if count > 1:
             yield (
                 f"the coefficient is the mean of {count} specimens, which scatter by {100 * self.scatter:.2g} % "
                 f"(k = 1); the band is by Student's quantile with {count - 1} degree{'s' * (count > 2)} of freedom"
             )
+            if self.high - self.low <= _ROUNDING * self.coefficient:
+                yield "the specimens agree exactly: their scatter gives no band; state uncertainty, such as '5 %'"
             if unnamed:
                 yield (
                     "no station is stated: each data set is a specimen of its own, and so is each further value at the "
@@ -379,12 +361,12 @@ class WearFit:
             }
             for measured, values in zip(self.data, self.results, strict=True)
         ]
-        low, high = (end if isfinite(end) else None for end in (self.low, self.high))
+        ends = {"low": finite_or_none(self.low), "high": finite_or_none(self.high)}
         return {
             "law": law_summary(self.simulation.wear),
-            "coefficient": {"value": self.coefficient, "low": low, "high": high, "unit": self.unit},
+            "coefficient": {"value": self.coefficient, **ends, "unit": self.unit},
             "stations": dict(self.stations),
-            "station_scatter": self.scatter if isfinite(self.scatter) else None,
+            "station_scatter": finite_or_none(self.scatter),
             "readings": dict(self.readings),
             "data": data,
             "noise_estimated": self.noise_estimated,
@@ -453,7 +435,6 @@ def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequenc
 
 
 def _join(sets: Sequence[MeasuredWear]) -> Numbers:
-    """Join the values of all data sets: (data,)."""
     return numpy.concatenate([measured.values for measured in sets])
 
 
@@ -464,7 +445,6 @@ def _standard_uncertainty(sets: Sequence[MeasuredWear], fitted: Numbers) -> Numb
 
 
 def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
-    """Find the indices of the values of each specimen, by its name."""
     names: list[str] = []
     for number, measured in enumerate(sets, start=1):
         if measured.station is not None:
@@ -478,18 +458,10 @@ def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _WearModel:
-    """Results of a simulation for all data sets, and for other readings of rates, at any coefficient.
-
-    Attributes
-    ----------
-    simulation : HipSimulation
-    start : float
-        Coefficient of the runs whose exposure is varied.
-    data : tuple of MeasuredWear
-    """
+    """Results of a simulation for all data sets, and for other readings of rates, at any coefficient."""
 
     simulation: HipSimulation
-    start: float
+    start: float  # coefficient of the runs whose exposure is varied
     data: tuple[MeasuredWear, ...]
 
     @cached_property
@@ -504,15 +476,10 @@ class _WearModel:
         """Cycle counts of all data sets and readings, in ascending order."""
         return sorted({count for measured in (*self.data, *self.readings) for count in measured.counts})
 
-    @property
-    def _is_scale_free(self) -> bool:
-        """True if the result depends on the product of coefficient and cycles alone: without creep and ball wear."""
-        return self.simulation.creep is None and self.simulation.ball_wear is None
-
     def log_results(self, coefficients: Numbers) -> Numbers:
         """Compute ln of the results of all data sets, then of all readings, at each coefficient: (nodes, results)."""
         ratios = coefficients / self.start
-        if self._is_scale_free:
+        if self.simulation.creep is None and self.simulation.ball_wear is None:  # coefficient times cycles counts
             exposures = sorted({float(count * ratio) for count in self.counts for ratio in ratios})
             history = self._run(self.start, exposures)
             rows = [self._row(history, ratio, float(ratio)) for ratio in ratios]
@@ -521,7 +488,6 @@ class _WearModel:
         return numpy.log(numpy.array(rows))
 
     def _run(self, coefficient: float, counts: Sequence[float]) -> History:
-        """Run the simulation with a coefficient to cycle counts."""
         simulation = replace(self.simulation, wear=with_coefficient(self.simulation.wear, coefficient))
         check_total_wear(simulation, counts[-1] if counts else _MILLION)
         integrator = WearIntegrator(setup=simulation)
@@ -545,7 +511,6 @@ def _totals_of(
     """Make the function from a cycle count to the total of a quantity, in a run with scaled exposures."""
 
     def total(count: float) -> float:
-        """Return the total of the quantity after a number of cycles."""
         report = reports[float(count * ratio)]
         if quantity == "radiographic_penetration":
             return history.radiographic_penetration(report)
@@ -556,21 +521,11 @@ def _totals_of(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Nodes:
-    """Interpolation of ln(result) over ln(coefficient), linear beyond the outer nodes.
+    """Interpolation of ln(result) over ln(coefficient), linear beyond the outer nodes."""
 
-    Attributes
-    ----------
-    centre : float
-        ln(coefficient) of the middle node.
-    polynomials : array (degree + 1, results)
-        Coefficients by ascending power of ln(coefficient) minus the centre.
-    n_data : int
-        Number of the first results that belong to measured values.
-    """
-
-    centre: float
-    polynomials: Numbers
-    n_data: int
+    centre: float  # ln(coefficient) of the middle node
+    polynomials: Numbers  # by ascending power of ln(coefficient) minus the centre: (degree + 1, results)
+    n_data: int  # number of the first results that belong to measured values
 
     def interpolate(self, log_coefficient: float) -> Numbers:
         """Compute ln of all results at a value of ln(coefficient): (results,)."""
@@ -623,30 +578,17 @@ def _find_nodes(model: _WearModel) -> _Nodes:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _MeanCoefficient:
-    """Coefficient of all specimens.
-
-    Attributes
-    ----------
-    coefficient, half_band : float
-        Mean, and half of its 95 % band.
-    stations : dict of str to float
-    scatter : float
-        Relative standard deviation between specimens; NaN for one.
-    share : float
-        Estimated relative uncertainty of the readings; 1 for stated uncertainties.
-    widening : float
-    """
+    """Mean coefficient of all specimens, and half of its 95 % band."""
 
     coefficient: float
     half_band: float
     stations: dict[str, float]
-    scatter: float = nan
-    share: float = 1.0
+    scatter: float = nan  # relative standard deviation between specimens; NaN for one
+    share: float = 1.0  # estimated relative uncertainty of the readings; 1 for stated uncertainties
     widening: float = 1.0
 
 
 def _mean_coefficient(nodes: _Nodes, sets: Sequence[MeasuredWear], noise_estimated: bool) -> _MeanCoefficient:
-    """Compute the coefficient of each specimen, their mean and its band."""
     from scipy.stats import chi2, norm, t
 
     values, specimens = _join(sets), _specimens(sets)

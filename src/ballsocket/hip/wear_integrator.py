@@ -19,32 +19,15 @@ from .hip_setup import HipSetup
 from .socket_foundation import CycleEquilibrium
 from .wear_law import CycleExposure, max_wear_sensitivity
 
-_FIRST_BLOCK = 1e-2
-"""Length of the first block, relative to the time in which the fastest wave of the bore decays."""
-
-_STEP_SAFETY = 0.8
-"""Safety factor of the next block's length."""
-
-_MIN_GROWTH, _MAX_GROWTH = 0.2, 4.0
-"""Limits of the ratio of a block's length to that of the block before."""
-
-_RATE_SAFETY = 1.1
-"""Safety factor of the fastest decay rate."""
-
-_FIRST_CREEP_BLOCK = 30.0
-"""Length in s of the first block with creep."""
-
-_CREEP_GROWTH = 0.25
-"""Length of a block with creep, relative to the total time before it."""
-
-_MAX_CREEP_SWEEPS = 8
-"""Largest number of iterations for the mean pressure under which the liner creeps."""
-
-_CREEP_TOLERANCE = 1e-3
-"""Relative tolerance of that mean pressure."""
-
-_MARGIN = 0.3
-"""Initial margin of the active cells, relative to the largest overlap."""
+_FIRST_BLOCK = 1e-2  # length of the first block, relative to the time in which the fastest wave of the bore decays
+_STEP_SAFETY = 0.8  # safety factor of the next block's length
+_MIN_GROWTH, _MAX_GROWTH = 0.2, 4.0  # limits of the ratio of a block's length to that of the block before
+_RATE_SAFETY = 1.1  # safety factor of the fastest decay rate
+_FIRST_CREEP_BLOCK = 30.0  # length in s of the first block with creep
+_CREEP_GROWTH = 0.25  # length of a block with creep, relative to the total time before it
+_MAX_CREEP_SWEEPS = 8  # largest number of iterations for the mean pressure under which the liner creeps
+_CREEP_TOLERANCE = 1e-3  # relative tolerance of that mean pressure
+_MARGIN = 0.3  # initial margin of the active cells, relative to the largest overlap
 
 
 @dataclass(kw_only=True, eq=False)
@@ -157,7 +140,6 @@ class WearIntegrator:
 
     @property
     def _ball_wear_per_cycle(self) -> Numbers:
-        """Worn depth of the ball per cycle in mm; empty for a ball without wear."""
         counterface, law = self._active.counterface, self.setup.ball_wear
         if counterface is None or law is None:
             return numpy.zeros(0)
@@ -207,9 +189,13 @@ class WearIntegrator:
 
     def _advance_block(self, count: float) -> None:
         """Integrate one block of cycles, whose length is limited by its error and the final count."""
-        decay_rate, remaining = self._max_decay_rate, count - self.cycles
+        decay_rate, remaining, creep_step = self._max_decay_rate, count - self.cycles, inf
+        if self.setup.creep:
+            creep_step = max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
         while True:
-            length = _block_length(min(self.length, max_step_length(decay_rate), self._max_creep_step), remaining)
+            length = min(self.length, max_step_length(decay_rate), creep_step)
+            # two last blocks share the remaining cycles equally
+            length = remaining if length >= remaining else min(length, remaining / 2)
             block = integrate_step(
                 self._compute_change_per_cycle, self._state_vector, self._rate, length, stage_count(length, decay_rate)
             )
@@ -236,23 +222,11 @@ class WearIntegrator:
         """Copy the state vector back to the depths of socket and ball and the friction work."""
         active, socket_cell_count = self._active, len(self._active.cells)
         self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(state_vector[-1])
-        self.depth[active.cells], self.ball[active.ball_cells] = (
-            state_vector[:socket_cell_count],
-            state_vector[socket_cell_count:-1],
-        )
-
-    @property
-    def _max_creep_step(self) -> float:
-        """Largest number of cycles in a block of a creeping liner; infinite without creep."""
-        if not self.setup.creep:
-            return inf
-        return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
+        self.depth[active.cells] = state_vector[:socket_cell_count]
+        self.ball[active.ball_cells] = state_vector[socket_cell_count:-1]
 
     def _advance_creep_strain(self, creep: CreepLaw, seconds: float) -> None:
-        """Advance the creep strains by a time in s, under the mean pressures of a cycle.
-
-        Creep decreases this pressure: both are iterated.
-        """
+        """Advance the creep strains by a time in s under the mean pressures of a cycle, which creep decreases."""
         active, setup = self._active, self.setup
         weights = setup.cycle.seconds[setup.frame.loaded] / setup.cycle.duration
         recovered_strain, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
@@ -279,11 +253,8 @@ class WearIntegrator:
         initial_depth = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
         allowed_error = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial_depth)
         depth_error = block.error[:-1]
-        return (
-            float(numpy.sqrt(depth_error @ depth_error / max(len(depth_error), 1))) / allowed_error
-            if allowed_error > 0
-            else 0.0
-        )
+        mean_error = float(numpy.sqrt(depth_error @ depth_error / max(len(depth_error), 1)))
+        return mean_error / allowed_error if allowed_error > 0 else 0.0
 
     def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
         """Check if a contact at the end of a block reaches inactive cells."""
@@ -296,7 +267,6 @@ class WearIntegrator:
 
     @property
     def _contact_near_inactive_cells(self) -> bool:
-        """True if a contact is close to inactive cells."""
         depth = self.depth + self.creep_depth
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
         mask[self._active.cells] = False
@@ -321,7 +291,6 @@ _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
 
 
 def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
-    """Convert the contacts of a cycle to named arrays for a stored state."""
     arrays = {
         "equilibrium_displacement": equilibrium.displacement,
         "equilibrium_pressure": equilibrium.pressure,
@@ -333,7 +302,6 @@ def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
 
 
 def _read_equilibrium(state: Mapping[str, Numbers]) -> CycleEquilibrium:
-    """Create the contacts of a cycle from the named arrays of a stored state."""
     has_levels = "level_displacement" in state
     return CycleEquilibrium(
         displacement=state["equilibrium_displacement"],
@@ -341,8 +309,3 @@ def _read_equilibrium(state: Mapping[str, Numbers]) -> CycleEquilibrium:
         converged=bool(state["equilibrium_converged"]),
         levels=(state["level_displacement"], state["level_pressure"]) if has_levels else None,
     )
-
-
-def _block_length(length: float, remaining: float) -> float:
-    """Limit the length of a block to the remaining cycles, which two last blocks share equally."""
-    return remaining if length >= remaining else min(length, remaining / 2)

@@ -25,21 +25,12 @@ METRE = 1e-3
 COEFFICIENT = "coefficient"
 """Key of the wear coefficient in files and among sampled quantities."""
 
-_PRESSURE_STEP = 1e-6
-"""Step of the pressure for the sensitivity of a law, relative to the largest pressure."""
-
-_PLAUSIBLE_FACTORS = 1e-9, 1e-4
-"""Range of wear factors of materials in joints, in mm³/(N m)."""
-
-_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
-"""Force times length in a denominator, which people write without brackets."""
-
+_PRESSURE_STEP = 1e-6  # step of the pressure for the sensitivity of a law, relative to the largest pressure
+_PLAUSIBLE_FACTORS = 1e-9, 1e-4  # range of wear factors of materials in joints, in mm³/(N m)
+_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")  # force times length in a denominator, without brackets
 _WEAR_FACTOR = "mm^3/(N m)"
-_FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")
-"""Accepted units of a wear factor: each is for metres of sliding."""
-
-_ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
-"""Accepted units of a wear volume per energy."""
+_FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")  # accepted units of a wear factor: each is for metres of sliding
+_ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")  # accepted units of a wear volume per energy
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,12 +106,10 @@ class AnyWearLaw(Protocol):
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         """Compute the worn depth in mm of each point in a cycle: (points,)."""
-        ...
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on the coefficients, for reports."""
-        ...
 
 
 class WearLaw(Law):
@@ -160,7 +149,6 @@ def coefficient_field(law: Any) -> LawField | None:
 
 
 def _require_coefficient_field(law: Any) -> LawField:
-    """Return the field with the wear coefficient of a law; ValueError without a coefficient."""
     coefficient_number = coefficient_field(law)
     if coefficient_number is None:
         raise ValueError("coefficient cannot be sampled: the wear law has no coefficient")
@@ -261,7 +249,6 @@ def wear_per_slide(name: str, value: Any) -> float:
 
 
 def _split_number_and_unit(name: str, value: Any, example: str) -> tuple[float, str]:
-    """Split a wear coefficient into its number and the text of its unit."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return parse(name, value, Kind.NUMBER), ""
     try:

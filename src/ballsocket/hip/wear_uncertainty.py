@@ -12,7 +12,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.executors.processes import Engine, Serial
 from ..studies.variance_indices import check_sample_memory, sobol_indices
-from .bands import COEFFICIENT, CONVERTED, Bands, SharedCoefficient
+from .bands import CONVERTED, Bands, SharedCoefficient
 from .cohort import CohortRun, CohortStore, ProgressCallback, check_cohort_memory, sample_patients
 from .cohort_series import solve_cohort
 from .history import History, Report
@@ -27,17 +27,11 @@ from .variability import (
     join_results,
     result_table,
 )
+from .wear_law import COEFFICIENT
 
 _CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
-
-_NODES = 12
-"""Number of runs of the nominal patient over the range of the coefficient."""
-
+_NODES = 12  # number of runs of the nominal patient over the range of the coefficient
 _SERIAL = Serial()
-
-
-def _ignore_progress(finished: int) -> None:
-    """Ignore the number of finished patients."""
 
 
 def uncertainty(
@@ -47,7 +41,7 @@ def uncertainty(
     count: int = DEFAULT_COUNT,
     seed: int = 0,
     engine: Engine = _SERIAL,
-    progress: ProgressCallback = _ignore_progress,
+    progress: ProgressCallback = lambda finished: None,
 ) -> Bands:
     """Compute uncertainty bands of a wear simulation, and Sobol indices of the sampled quantities.
 
@@ -105,7 +99,7 @@ def population(
     seed: int = 0,
     engine: Engine = _SERIAL,
     store: CohortStore | None = None,
-    progress: ProgressCallback = _ignore_progress,
+    progress: ProgressCallback = lambda finished: None,
     method: str | None = None,
 ) -> tuple[CohortRun, Bands]:
     """Compute the results of a sampled patient cohort, and their bands.
@@ -163,10 +157,7 @@ def population(
 
 @dataclass
 class _SampleSimulation:
-    """Function for Sobol indices that simulates samples and stores their results.
-
-    It returns `INFLUENCED_RESULTS` at the last report, with the shape (results, points).
-    """
+    """Function for Sobol indices: it simulates samples, and stores their results."""
 
     variability: PatientVariability
     counts: tuple[float, ...]
@@ -177,7 +168,7 @@ class _SampleSimulation:
     n_finished: int = 0
 
     def __call__(self, samples: Numbers) -> Numbers:
-        """Simulate samples (quantities, points), and return their results (results, points)."""
+        """Simulate samples (quantities, points); return `INFLUENCED_RESULTS` at the last report: (results, points)."""
         values = dict(zip(self.variability.distributions, samples.reshape(len(samples), -1), strict=True))
         run = CohortRun(variability=self.variability, counts=self.counts, values=values)
         result = run.simulate(self.engine, None, lambda finished: self.progress(self.n_finished + finished))
@@ -189,7 +180,6 @@ class _SampleSimulation:
 
 
 def _quick_run_errors(variability: PatientVariability, reports: Sequence[Report]) -> dict[str, float]:
-    """Compute the largest relative errors of the nominal patient's coarse simulation, by result."""
     coarse_reports = variability.patient({}).simulate([report.cycles for report in reports])
     coarse, full = result_table(coarse_reports), result_table(reports)
     errors = {}
@@ -242,10 +232,8 @@ def share_coefficient(
     coefficients = variability.distributions[COEFFICIENT].frozen.ppf([low_probability, 0.5, 1 - low_probability])
     values = dict(zip(("low", "median", "high"), map(float, coefficients), strict=True))
     sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], _cycle_ratios(variability, sampled)
-    low, high = (
-        min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min(),
-        max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max(),
-    )
+    low = min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min()
+    high = max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max()
     if not 0 < low < high or numpy.isnan(table).all():
         return None
     exposures = numpy.geomspace(low, high, _NODES)

@@ -12,7 +12,6 @@ from ..core.arrays import Numbers
 from .fit import minimise_misfit
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
-from .unknowns import Unknown
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
 _MIN_DECREASE = 1e-3  # decrease of χ²/2 on a profile that restarts the search
@@ -65,22 +64,14 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
         if profiles.cost > best.cost - _MIN_DECREASE:
             break
         best = replace(minimise_misfit(misfit, profiles.lowest), rivals=best.rivals)
-    unknowns_and_ends = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
-    intervals = tuple(_make_interval(index, *unknown_and_ends) for index, unknown_and_ends in unknowns_and_ends)
+    intervals = []
+    for index, unknown in enumerate(misfit.transform.unknowns):
+        ends_95, ends_99 = (pairs[index] for pairs in profiles.ends)
+        ends_and_sides = zip(ends_99, (-1, 1), strict=True)
+        closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends_and_sides)
+        intervals.append(Interval(*ends_95, closed))
     fisher_matrix = misfit.fisher_information(best.theta)
-    return misfit, best, Information(misfit.transform, best.theta, fisher_matrix, intervals, quantile)
-
-
-def _make_interval(
-    index: int, unknown: Unknown, ends_95: tuple[ProfileEnd, ProfileEnd], ends_99: tuple[ProfileEnd, ProfileEnd]
-) -> Interval:
-    """Make the interval of an unknown from the ends of its 95 % interval and of its 99 % interval.
-
-    The 99 % interval may be open.
-    """
-    ends_and_sides = zip(ends_99, (-1, 1), strict=True)
-    closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends_and_sides)
-    return Interval(*ends_95, closed)
+    return misfit, best, Information(misfit.transform, best.theta, fisher_matrix, tuple(intervals), quantile)
 
 
 def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
@@ -98,15 +89,8 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
     def excess_of_squares(factor: float) -> float:
         """Compute the sum of squared residuals minus the degrees of freedom, for a factor on uncertainties."""
-        scaled_residuals = residuals / factor
-        return (
-            float(
-                numpy.sum(
-                    scaled_residuals * misfit.scatter.misfit(scaled_residuals) * misfit.scatter.slope(scaled_residuals)
-                )
-            )
-            - misfit.freedom
-        )
+        z = residuals / factor
+        return float(numpy.sum(z * misfit.scatter.misfit(z) * misfit.scatter.slope(z))) - misfit.freedom
 
     if misfit.freedom <= 0 or excess_of_squares(1.0) <= 0:
         return 1.0
@@ -117,10 +101,7 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
 
 
 def _band_half_width(factor: float, freedom: int, noise_freedom: float) -> float:
-    """Compute the half width of a 95 % band in standard deviations, by Student's or the normal distribution.
-
-    It is Student's quantile for estimated uncertainties and for an improbably large scatter, else the normal quantile.
-    """
+    """Compute the half width of a 95 % band; by Student for estimated uncertainties and improbably large scatter."""
     from scipy.stats import chi2, t
 
     if isfinite(noise_freedom):
@@ -228,32 +209,25 @@ def _next_outermost_end(ends: Iterator[ProfileEnd], start_count: int, index: int
 def _limiting_unknowns(
     path: _EndSearch, point: _QuadraticModel, theta_step: Numbers, low: Numbers, high: Numbers
 ) -> tuple[int, ...]:
-    """Find the other unknowns whose search range limits an interval at its end.
-
-    The gradient of χ² points outward there.
-    """
+    """Find the other unknowns whose search range limits an interval at its end, where the gradient points outward."""
     theta = numpy.clip(path.theta + theta_step, low, high)
     new_gradient = point.gradient + point.hessian @ theta_step
     limited_mask = _mask_limited_by_range(theta, new_gradient, low, high)
     inner_indices = set(numpy.flatnonzero(~limited_mask).tolist()) - {path.index}
     at_limit = [index for index in numpy.flatnonzero(limited_mask).tolist() if index != path.index]
-    misfit_decreases = {
-        index: _chi_squared_decrease(point.hessian, new_gradient, [*inner_indices, index]) for index in at_limit
-    }
-    return tuple(index for index, decrease in misfit_decreases.items() if decrease > _MIN_LIMIT_GAIN * path.rise)
+    limiting = []
+    for index in at_limit:
+        free = [*inner_indices, index]
+        # decrease of χ² if the free unknowns minimise its quadratic approximation
+        decrease = new_gradient[free] @ numpy.linalg.solve(point.hessian[numpy.ix_(free, free)], new_gradient[free])
+        if decrease > _MIN_LIMIT_GAIN * path.rise:
+            limiting.append(index)
+    return tuple(limiting)
 
 
 def _mask_limited_by_range(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
     """Return a mask of the unknowns at an end of their range, beyond which χ² would decrease."""
     return ((theta - low < _LIMIT_TOLERANCE) & (gradient > 0)) | ((high - theta < _LIMIT_TOLERANCE) & (gradient < 0))
-
-
-def _chi_squared_decrease(hessian: Numbers, gradient: Numbers, free_indices: list[int]) -> float:
-    """Compute the decrease of χ² if the free unknowns minimise its quadratic approximation."""
-    return float(
-        gradient[free_indices]
-        @ numpy.linalg.solve(hessian[numpy.ix_(free_indices, free_indices)], gradient[free_indices])
-    )
 
 
 def _advance_end_search(
@@ -287,12 +261,7 @@ def _advance_end_search(
 
 
 def _newton_step(path: _EndSearch, point: _QuadraticModel, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
-    """Compute the Newton step towards an interval end: change of theta, rise of χ² and possible decrease.
-
-    Returns the step, the rise of χ² on the profile, and the gain.
-
-    The other unknowns minimise χ² within their ranges.
-    """
+    """Compute the Newton step towards an interval end: change of theta, rise of χ² and decrease by the others."""
     index, theta = path.index, path.theta
     fixed_mask = _mask_limited_by_range(theta, point.gradient, low, high)
     fixed_mask[index] = True

@@ -96,17 +96,22 @@ def read_measured(
             raise ValueError(f"{path.name} has no column of {name}; its columns are {', '.join(columns)}")
         needed = (kind, name, name + UNCERTAINTY, kind + UNCERTAINTY, "angle")
         rows, order = _complete_rows(table, {head: columns[head] for head in needed if head in columns}, gaps)
+        column = rows.get(name + UNCERTAINTY)
+        load_arguments: dict[str, Any] = {}
+        if kind:
+            load_arguments = {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}
+        noise = parse_uncertainty(_QUANTITIES[name], uncertainty) if column is None else {"uncertainty": column}
         sets.append(
             Measured(
                 quantity=name,
                 values=rows[name],
-                **_choose_uncertainty(name, rows, uncertainty),
+                **noise,
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
                 name=path.name,
                 remark=table.remark({"with a gap": len(table) - len(order)}),
-                **_load_arguments(kind, rows, load_uncertainty),
+                **load_arguments,
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )
@@ -139,13 +144,6 @@ def _complete_rows(table: NumberTable, columns: dict[str, Numbers], gaps: Gaps) 
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> dict[str, Any]:
-    """Return the uncertainties of a quantity, from its column or as stated for the file, as arguments of `Measured`."""
-    if name + UNCERTAINTY in rows:
-        return {"uncertainty": rows[name + UNCERTAINTY]}
-    return parse_uncertainty(_QUANTITIES[name], stated)
-
-
 def parse_uncertainty(quantity: Quantity, stated: float | str | None) -> dict[str, Any]:
     """Parse an uncertainty, "2 %" of each value, a text with a unit or a number, to arguments of `Measured`."""
     name = f"{quantity.name}{UNCERTAINTY}"
@@ -158,10 +156,3 @@ def parse_uncertainty(quantity: Quantity, stated: float | str | None) -> dict[st
     if not 0 < share < inf:
         raise ValueError(f"{name} = {shown(stated)} is not allowed: a share of each value is above 0 and finite")
     return {"relative_uncertainty": share}
-
-
-def _load_arguments(kind: str, rows: Mapping[str, Numbers], load_uncertainty: float) -> dict[str, Any]:
-    """Return load and load uncertainty as keyword arguments of `Measured`."""
-    if not kind:
-        return {}
-    return {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}

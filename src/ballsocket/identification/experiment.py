@@ -11,6 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from .fit import FittedModel
+from .forward_model import ForwardModel
 from .information import MAX_WIDTH_RATIO
 from .machine import IDEAL_MACHINE, Machine
 from .measured import OF_JOINT, Measured
@@ -152,13 +153,13 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.
     """
     candidate_list = standard_candidates(fitted) if candidates is None else tuple(candidates)
-    slope_rows = _candidate_slopes(fitted, candidate_list)
-    valid = [
-        (candidate, slopes)
+    forward = _candidate_model(fitted, candidate_list)
+    slope_rows = fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
+    gains = [
+        _compute_gain(fitted, candidate, slopes)
         for candidate, slopes in zip(candidate_list, slope_rows, strict=True)
         if numpy.isfinite(slopes).all()
     ]
-    gains = [_compute_gain(fitted, candidate, slopes) for candidate, slopes in valid]
     return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), fitted.information.unidentifiable)
 
 
@@ -174,7 +175,8 @@ def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
         Candidate(quantity, 1.0, force, *_choose_indentation_machine(fitted, quantity))
         for quantity, force in dict.fromkeys(quantities_and_forces)
     ]
-    values = _candidate_results(fitted, candidates)
+    best_values = numpy.atleast_2d(fitted.transform.to_values(fitted.best.theta))
+    values = _candidate_model(fitted, candidates).results_at(best_values)[0]
     return tuple(
         replace(candidate, uncertainty=_estimate_uncertainty(fitted, candidate.quantity, value))
         for candidate, value in zip(candidates, values.tolist(), strict=True)
@@ -204,10 +206,7 @@ def _choose_indentation_machine(fitted: FittedModel, quantity: str) -> tuple[Mac
 
 
 def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
-    """Estimate the uncertainty of a new measurement from the uncertainties of the data.
-
-    It is absolute or relative, whichever varies less; 2 % for a new quantity.
-    """
+    """Estimate the uncertainty of a new measurement: absolute or relative, whichever varies less in the data."""
     uncertainties_and_values = [
         (uncertainty if measured.has_unknown_noise else measured.uncertainty, abs(measured.values))
         for measured, uncertainty in zip(fitted.data, fitted.uncertainties, strict=True)
@@ -221,20 +220,11 @@ def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> f
     return float(numpy.median(absolute) if use_absolute else numpy.median(relative) * value)
 
 
-def _candidate_results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the model results of all candidates at the best-fit values: (candidates,)."""
-    forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
-    return forward.results_at(numpy.atleast_2d(fitted.transform.to_values(fitted.best.theta)))[0]
-
-
-def _candidate_slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the derivatives of all candidates' results by theta: (candidates, unknowns)."""
-    forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
-    return fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
+def _candidate_model(fitted: FittedModel, candidates: Sequence[Candidate]) -> ForwardModel:
+    return replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
 
 
 def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
-    """Compute the information gain of a candidate from the covariance before and after it."""
     old_covariance = fitted.information.covariance
     weighted_slopes = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
     cross_covariance = old_covariance @ weighted_slopes

@@ -51,8 +51,7 @@ _QUANTITIES = {
     **{name: observable.described for name, observable in FILE_OBSERVABLES.items()},
 }
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
-_FILE_KEYS = ("quantities", "load", "gaps", "columns", "skip")
-"""Keys of data in a file only; other data list their values."""
+_FILE_KEYS = ("quantities", "load", "gaps", "columns", "skip")  # keys of data in a file only
 
 
 class Numbers(Parsed):
@@ -239,7 +238,6 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
-    """Convert the tables of a file to model, joint, data and unknowns."""
     tables = read_table(content, IdentifyTable)
     joint_file = joint_in(tables, folder)
     if not tables.data:
@@ -268,7 +266,6 @@ def _parse_unknowns(table: FreeTable, content: Mapping[str, Any]) -> dict[str, P
 
 
 def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Create the sets of data of one table."""
     if (table.file is None) == (table.values is None):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
     machine = IDEAL_MACHINE if table.machine is None else machines[known_name("machine", table.machine, machines)]
@@ -283,7 +280,6 @@ def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder:
 
 
 def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -> tuple[Measured, ...]:
-    """Read the sets of data of a table that names a file."""
     load = str(table.load or "")
     return read_measured(
         folder / (table.file or ""),
@@ -298,7 +294,6 @@ def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -
 
 
 def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
-    """Create the set of data of a table that lists its values."""
     if table.quantity is None:
         raise ValueError("[[data]] with values needs its quantity")
     quantity = _QUANTITIES[table.quantity]

@@ -17,7 +17,7 @@ from .forward_model import insert_model_numbers, split_joint_and_model_values
 from .information import Estimate, Information
 from .measured import Measured
 from .misfit import FitResult, Misfit
-from .unknowns import ParameterTransform, Unknown
+from .unknowns import ParameterTransform
 
 _SEARCH_SECONDS = 3.0  # time limit of the global search
 _MIN_POINTS, _MAX_POINTS = 16, 128  # points of the global search
@@ -43,20 +43,14 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
 
 
 def _choose_best_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges.
-
-    Among fits of equal cost it is the one nearest to the middle of the ranges.
-    """
+    """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges."""
     least_cost, range_middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
     lowest_ends = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
     return min(lowest_ends, key=lambda end: float(numpy.max(abs(end.theta - range_middle))))
 
 
 def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
-    """Choose one or two starting points of the fit from a Sobol sequence over the search ranges.
-
-    They are the point of lowest cost, and the best point far from it.
-    """
+    """Choose the point of lowest cost of a Sobol sequence over the search ranges, and the best point far from it."""
     from scipy.stats import qmc
 
     low, high = misfit.transform.low, misfit.transform.high
@@ -74,11 +68,8 @@ def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
     best_index = int(numpy.argmin(costs))
     distant_mask = numpy.max(abs(points - points[best_index]), axis=1) > 0.25 * numpy.max(high - low)
     distant_index = int(numpy.argmin(numpy.where(distant_mask, costs, numpy.inf)))
-    return (
-        [points[best_index], points[distant_index]]
-        if numpy.isfinite(costs[distant_index]) and distant_mask[distant_index]
-        else [points[best_index]]
-    )
+    has_distant = numpy.isfinite(costs[distant_index]) and distant_mask[distant_index]
+    return [points[best_index], points[distant_index]] if has_distant else [points[best_index]]
 
 
 def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:
@@ -159,17 +150,18 @@ class FittedModel:
     @cached_property
     def estimates(self) -> dict[str, Estimate]:
         """Estimate with 95 % band of each unknown, by name; the value is NaN if unidentifiable."""
-        return {unknown.name: self._make_estimate(index) for index, unknown in enumerate(self.transform.unknowns)}
-
-    def _make_estimate(self, index: int) -> Estimate:
-        """Make the `Estimate` of one unknown from its profile interval."""
-        unknown, information = self.transform.unknowns[index], self.information
-        interval, name = information.intervals[index], unknown.name
-        interval_ends = (interval.low, interval.high)
-        low, high = (_snap_to_range_end(unknown, self.transform.to_values(end.theta)[index]) for end in interval_ends)
-        value = float("nan") if name in information.unidentifiable else self.point[name]
-        band_width_ratio, limiting_names = information.deviations[name], information.limited_by(name)
-        return Estimate(name, unknown.quantity.unit, value, low, high, band_width_ratio, limiting_names)
+        estimates, information = {}, self.information
+        for index, unknown in enumerate(self.transform.unknowns):
+            interval, name = information.intervals[index], unknown.name
+            values = (self.transform.to_values(end.theta)[index] for end in (interval.low, interval.high))
+            low, high = (  # an end of the search range, except for rounding
+                next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))
+                for value in values
+            )
+            value = float("nan") if name in information.unidentifiable else self.point[name]
+            width_ratio, limiting_names = information.deviations[name], information.limited_by(name)
+            estimates[name] = Estimate(name, unknown.quantity.unit, value, low, high, width_ratio, limiting_names)
+        return estimates
 
     def __getitem__(self, name: str) -> Estimate:
         key = name.replace(".", "_")
@@ -228,7 +220,6 @@ class FittedModel:
         return self._split_by_data_set(self.misfit.uncertainty)
 
     def _split_by_data_set(self, values: Numbers) -> tuple[Numbers, ...]:
-        """Split an array over all values (data,) into one array for each data set."""
         return tuple(numpy.split(values, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
 
     @property
@@ -249,8 +240,3 @@ class FittedModel:
     def identifiable(self) -> bool:
         """True if every unknown without a stated distribution is identifiable."""
         return not self.information.unidentifiable
-
-
-def _snap_to_range_end(unknown: Unknown, value: float) -> float:
-    """Replace an end of a band by an end of the search range, if they differ only by rounding."""
-    return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

@@ -89,23 +89,16 @@ class ForwardModel:
         return arrays.where(valid_geometry, xp.concat(result_rows, axis=1), float("nan"))
 
     def _compute_results(self, joints_at_points: _JointsAtPoints, load_factor: float) -> list[Array]:
-        """Compute the model results of each data set: one array (points, values) for each.
-
-        Data sets with the same kind of load share one press.
-        """
+        """Compute the results (points, values) of each data set; those with the same kind of load share one press."""
         results_by_index: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
             indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
-            shared_indices = [
-                index
-                for index in indices
-                if self.data[index].load != "indentation" or not self.data[index].machine.name
-            ]
             if not kind:
                 results_by_index |= {
                     index: _read_joint_number(joints_at_points.joint, self.data[index]) for index in indices
                 }
                 continue
+            shared_indices = [index for index in indices if kind != "indentation" or not self.data[index].machine.name]
             if shared_indices:
                 results_by_index |= self._compute_results_of_one_press(
                     joints_at_points, kind, shared_indices, load_factor
@@ -117,7 +110,6 @@ class ForwardModel:
     def _compute_results_of_one_press(
         self, joints_at_points: _JointsAtPoints, kind: str, indices: list[int], load_factor: float
     ) -> dict[int, Array]:
-        """Compute the results of several data sets with the same kind of load by one press."""
         loads = load_factor * numpy.concatenate([self.data[index].loads for index in indices])
         contact, results_by_index, start = joints_at_points.press(kind, loads), {}, 0
         for index in indices:
@@ -158,12 +150,11 @@ class _JointsAtPoints:
         """Compute the results at indentations that a machine with errors has read."""
         zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
         force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
-        contact = self.press("indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error))
+        depth = load_factor * measured.loads - zero_error
+        contact = self.press("indentation", arrays.clip(depth, 0.0, inf))
         for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 0):
             force_error = self._sum_machine_errors(measured, force, depends_on_force=True)
-            contact = self.press(
-                "indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error - force_error)
-            )
+            contact = self.press("indentation", arrays.clip(depth - force_error, 0.0, inf))
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
                 force = force - (force - contact.force) / (
@@ -174,7 +165,6 @@ class _JointsAtPoints:
     def _measured_quantity_values(
         self, contact: Contact, contact_count: int, measured: Measured, value_range: slice
     ) -> Array:
-        """Return the values of the measured quantity of a data set from the computed contacts."""
         if measured.observable is not None:
             numbers = {name: self.numbers[name] for name in measured.observable.numbers}
             return _add_point_axis(measured.observable.read(contact, **numbers))[:, value_range]
@@ -208,11 +198,6 @@ class _JointsAtPoints:
             for name, error in MACHINE_ERRORS.items()
             if error.slope is not None
         )
-
-
-def _clip_negative_indentation(indentation: Array) -> Array:
-    """Replace negative indentations by 0 mm."""
-    return arrays.clip(indentation, 0.0, inf)
 
 
 def _add_point_axis(values: Array) -> Array:

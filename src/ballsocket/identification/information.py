@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from .unknowns import ParameterTransform, Unknown
+from .unknowns import ParameterTransform
 
 MAX_WIDTH_RATIO = 0.5
 """Largest width of the band of an identifiable unknown over its prior range."""
@@ -176,8 +176,9 @@ class Information:
 
     @cached_property
     def _eigenvalues_and_vectors(self) -> tuple[Numbers, Numbers]:
-        """Eigenvalues and eigenvectors of the Fisher information matrix."""
-        return _eigenvalues_and_vectors(self.matrix)
+        """Eigenvalues (descending) and eigenvectors (columns) of the Fisher information matrix."""
+        values, vectors = numpy.linalg.eigh((self.matrix + self.matrix.T) / 2)
+        return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
     @property
     def eigenvalues(self) -> Numbers:
@@ -206,10 +207,11 @@ class Information:
     @cached_property
     def deviations(self) -> Mapping[str, float]:
         """Width of each 95 % band divided by the width of the prior range, by unknown."""
-        unknowns_and_intervals = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
+        # the prior width is that of the range, or of the 95 % band of a distribution
         return {
-            unknown.name: _band_to_prior_width_ratio(unknown, interval, index)
-            for unknown, interval, index in unknowns_and_intervals
+            unknown.name: float(self._band_vector(index)[index])
+            / (2 * QUANTILE_95 if unknown.has_distribution else sqrt(12))
+            for index, unknown in enumerate(self.transform.unknowns)
         }
 
     @cached_property
@@ -256,7 +258,6 @@ class Information:
 
     @cached_property
     def _identifiable_information(self) -> Numbers:
-        """Fisher information matrix without the unidentifiable directions."""
         values, vectors = self._eigenvalues_and_vectors
         return (vectors[:, : self.rank] * values[: self.rank]) @ vectors[:, : self.rank].T
 
@@ -278,16 +279,11 @@ class Information:
         """Identifiable products of powers of unknowns that are unidentifiable separately."""
         if not self.unidentifiable:
             return ()
-        products = (
-            self._product_from_eigenvector(vector) for vector in self._eigenvalues_and_vectors[1][:, : self.rank].T
-        )
-        return tuple(product for product in products if product is not None)
+        vectors = self._eigenvalues_and_vectors[1][:, : self.rank]
+        return tuple(filter(None, map(self._product_from_eigenvector, vectors.T)))
 
     def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
-        """Convert an eigenvector to a product of powers of unknowns; None if it is not identifiable.
-
-        Its largest power is 1.
-        """
+        """Convert an eigenvector to a product of powers, of which the largest is 1; None if it is not identifiable."""
         unknowns = self.transform.unknowns
         prior_deviations = [unknown.prior_deviation for unknown in unknowns]
         powers = vector / prior_deviations
@@ -310,10 +306,7 @@ class Information:
         return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(band_widths) else None
 
     def _product_band(self, exponents: dict[str, float]) -> Product:
-        """Compute the value and the 95 % band of a product of powers of unknowns.
-
-        The band includes those of the unidentifiable unknowns.
-        """
+        """Compute a product of powers and its 95 % band, which includes those of the unidentifiable unknowns."""
         exponent_vector = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
         direction = exponent_vector * [unknown.prior_deviation for unknown in self.transform.unknowns]
         prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
@@ -335,21 +328,6 @@ class Information:
         """Compute the logarithm of a product of powers of unknowns at a point theta."""
         values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
         return sum(power * log(values[name]) for name, power in exponents.items())
-
-
-def _band_to_prior_width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
-    """Compute the width of the 95 % band of an unknown, divided by the width of its prior.
-
-    The prior width is that of the range, or of the 95 % band of a distribution.
-    """
-    width = float(interval.high.theta[index] - interval.low.theta[index])
-    return width / (2 * QUANTILE_95 if unknown.has_distribution else sqrt(12))
-
-
-def _eigenvalues_and_vectors(matrix: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute the eigenvalues (descending) and eigenvectors (columns) of a symmetric matrix."""
-    values, vectors = numpy.linalg.eigh((matrix + matrix.T) / 2)
-    return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
 
 def _round_exponent(power: float) -> float:

@@ -51,7 +51,6 @@ class Machine:
         errors: Iterable[tuple[str, NumberOrRange]] = (),
         **sizes: NumberOrRange,
     ) -> None:
-        """Store the sizes of all registered errors; raise TypeError for unknown errors."""
         sizes = {**dict(errors), **sizes}
         for key in sizes:
             if key not in MACHINE_ERRORS:

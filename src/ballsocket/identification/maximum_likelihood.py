@@ -128,10 +128,11 @@ def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]
     sets = misfit.forward.data
     ends = numpy.cumsum([len(measured) for measured in sets])
     parts = [slice(end - len(measured), end) for end, measured in zip(ends, sets, strict=True)]
+    prior_information = numpy.diag([float(unknown.has_distribution) for unknown in misfit.transform.unknowns])
     for _ in range(_NOISE_ITERATIONS):
         results, slopes = misfit.slopes(misfit.forward, misfit.transform, best.theta)
         weighted_slopes = slopes / misfit.uncertainty[:, None]
-        covariance = numpy.linalg.pinv(weighted_slopes.T @ weighted_slopes + _prior_information(misfit))
+        covariance = numpy.linalg.pinv(weighted_slopes.T @ weighted_slopes + prior_information)
         leverages = numpy.einsum("ij,jk,ik->i", weighted_slopes, covariance, weighted_slopes)
         uncertainty, freedoms = misfit.uncertainty.copy(), []
         for measured, part in zip(sets, parts, strict=True):
@@ -154,11 +155,6 @@ def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]
         if converged:
             break
     return misfit, best
-
-
-def _prior_information(misfit: Misfit) -> Numbers:
-    """Return the information of the stated distributions about theta: (unknowns, unknowns)."""
-    return numpy.diag([float(unknown.has_distribution) for unknown in misfit.transform.unknowns])
 
 
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
@@ -187,12 +183,10 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
 
 
 def _join_data_sets(arrays: Iterable[Numbers]) -> Numbers:
-    """Join the arrays of all data sets to one array (data,)."""
     return numpy.concatenate(list(arrays))
 
 
 def _check_data_sets(data: Any) -> tuple[Measured, ...]:
-    """Check that all data sets are of type `Measured`, and return them as a tuple."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -203,7 +197,6 @@ def _check_data_sets(data: Any) -> tuple[Measured, ...]:
 
 
 def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Check the numbers of unknowns and values, and the measured areas; ValueError if invalid."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:

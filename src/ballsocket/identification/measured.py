@@ -116,7 +116,6 @@ class Measured:
     """True if no uncertainty was stated: `uncertainty` is then a start of its estimate."""
 
     def __post_init__(self) -> None:
-        """Check all fields of the data set, and convert them to arrays."""
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
@@ -153,28 +152,20 @@ class Measured:
         self._set_field("order", self._check_reading_numbers(values))
 
     def _set_field(self, name: str, value: Any) -> None:
-        """Set a field of this frozen data set."""
         object.__setattr__(self, name, value)
 
     def _message_label(self, quantity: str) -> str:
-        """Format the names of data set and quantity as a label for messages."""
         return f"{self.name}: {quantity}" if self.name else quantity
 
     def _check_reading_numbers(self, values: Numbers) -> Numbers:
-        """Check the sequence numbers of the readings, and return them; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
         reading_numbers = self._broadcast_to_values("order", self.order, values)
-        require(
-            self._message_label("order"),
-            reading_numbers,
-            abs(reading_numbers) < inf,
-            "numbers of readings must be finite",
-        )
+        title, rule = self._message_label("order"), "numbers of readings must be finite"
+        require(title, reading_numbers, abs(reading_numbers) < inf, rule)
         return reading_numbers
 
     def _check_measured_values(self, values: Numbers) -> None:
-        """Check that all measured values are present and allowed; ValueError otherwise."""
         missing_indices = numpy.flatnonzero(numpy.isnan(values))
         if len(missing_indices):
             row_numbers = ", ".join(str(index + 1) for index in missing_indices[:8])
@@ -204,7 +195,6 @@ class Measured:
         return numpy.broadcast_to(number_array, values.shape)
 
     def _check_and_set_load(self, values: Numbers) -> None:
-        """Check the loads of the data set and their uncertainty, and store both."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(
@@ -216,20 +206,12 @@ class Measured:
         self._set_field("load", kind)
         self._set_field(kind, loads)
         load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
-        require(
-            self._message_label("load_uncertainty"),
-            load_sigma,
-            (load_sigma >= 0) & (load_sigma < inf),
-            _NOT_NEGATIVE,
-        )
+        title = self._message_label("load_uncertainty")
+        require(title, load_sigma, (load_sigma >= 0) & (load_sigma < inf), _NOT_NEGATIVE)
         self._set_field("load_uncertainty", load_sigma)
-        self._check_values_at_zero_load(loads, values)
-
-    def _check_values_at_zero_load(self, load: Numbers, values: Numbers) -> None:
-        """Check that measured values at zero load are 0, unless the machine has a zero error."""
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
-            require(self._message_label(self.load), load, (load > 0) | (values == 0), rule)
+            require(self._message_label(kind), loads, (loads > 0) | (values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -253,7 +235,6 @@ class Measured:
 
 
 def _to_float_array(name: str, numbers: Any) -> Numbers:
-    """Convert numbers to a one-dimensional array of floats; ValueError if this is impossible."""
     try:
         number_array = numpy.asarray(numbers)
         float_array = numpy.atleast_1d(

@@ -111,11 +111,9 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
 
 @lru_cache(maxsize=8)
 def _compile_forward_model(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
-    """Compile the results of a forward model and their derivatives with JAX."""
     import jax
 
     def results_of_point(values: Any) -> Any:
-        """Compute the model results (data,) for one set of values of the unknowns."""
         return forward.results_at(values[None, :])[0]
 
     compiled: Callable[[Numbers], tuple[Any, Any]] = jax.jit(
@@ -217,12 +215,9 @@ class Misfit:
             numpy.eye(theta.shape[-1])[has_distribution],
             (*theta.shape[:-1], has_distribution.sum(), len(has_distribution)),
         )
-        return (
-            numpy.concatenate(
-                [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]], axis=-1
-            ),
-            numpy.concatenate([residual_slopes[..., None] * slopes, prior_slopes], axis=-2),
-        )
+        residuals = [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]]
+        all_slopes = [residual_slopes[..., None] * slopes, prior_slopes]
+        return numpy.concatenate(residuals, axis=-1), numpy.concatenate(all_slopes, axis=-2)
 
     def costs(self, theta: Numbers) -> Numbers:
         """Compute half of the sum of squared residuals at each point theta (points, unknowns): (points,).

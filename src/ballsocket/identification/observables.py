@@ -69,7 +69,6 @@ def oscillation(mass: float) -> CustomObservable:
     require("mass", mass, 0 < mass < inf, "a mass (kg) is above 0 and finite")
 
     def read_frequency(contact: Contact) -> Array:
-        """Compute the frequency in Hz of the oscillation for a contact."""
         return (1e3 * contact.stiffness / mass) ** 0.5 / (2 * pi)  # 1e3 from N/mm to N/m
 
     return CustomObservable(FREQUENCY, read_frequency)

@@ -119,13 +119,6 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _select_posterior_samples(fitted, ensembles, chains, times, samples)
-
-
-def _select_posterior_samples(
-    fitted: FittedModel, ensembles: list[Any], chains: Numbers, autocorrelation_times: Numbers, samples: int
-) -> Posterior:
-    """Select equally spaced samples from all chains, and compute the convergence measures."""
     names = fitted.transform.names
     all_samples = chains.reshape(-1, chains.shape[-1])
     selected = all_samples[numpy.linspace(0, len(all_samples) - 1, samples).round().astype(int)]
@@ -133,8 +126,8 @@ def _select_posterior_samples(
         names=names,
         samples=fitted.transform.to_values(selected),
         acceptance=float(numpy.mean([sampler.acceptance_fraction.mean() for sampler in ensembles])),
-        autocorrelation=dict(zip(names, autocorrelation_times.tolist(), strict=True)),
-        effective=dict(zip(names, (len(all_samples) / autocorrelation_times).tolist(), strict=True)),
+        autocorrelation=dict(zip(names, times.tolist(), strict=True)),
+        effective=dict(zip(names, (len(all_samples) / times).tolist(), strict=True)),
         r_hat={name: _r_hat(chains[..., index]) for index, name in enumerate(names)},
     )
 
@@ -164,7 +157,6 @@ def _start_ensemble_sampler(fitted: FittedModel, seed: int) -> Any:
 
 
 def _make_ensemble_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
-    """Create an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
@@ -201,10 +193,7 @@ class _StudentProposal:
 
 
 def _autocorrelation_time(chains: Numbers) -> float:
-    """Compute the integrated autocorrelation time of chains in steps, with Sokal's window.
-
-    The chains are (ensembles, steps, walkers).
-    """
+    """Compute the autocorrelation time in steps of chains (ensembles, steps, walkers), with Sokal's window."""
     steps = chains.shape[1]
     deviations = chains - chains.mean()
     power = abs(numpy.fft.rfft(deviations, 2 * steps, axis=1)) ** 2
@@ -216,10 +205,7 @@ def _autocorrelation_time(chains: Numbers) -> float:
 
 
 def _r_hat(chains: Numbers) -> float:
-    """Compute the convergence measure R-hat of chains (ensembles, steps, walkers), each split into halves.
-
-    Each ensemble is cut into halves.
-    """
+    """Compute the convergence measure R-hat of chains (ensembles, steps, walkers), each split into halves."""
     steps = chains.shape[1] // 2
     halves = numpy.concatenate([chains[:, :steps], chains[:, -steps:]]).reshape(2 * len(chains), -1)
     half_length = halves.shape[1]

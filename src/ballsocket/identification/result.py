@@ -10,10 +10,9 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.display import load_plot
+from ..core.display import finite_or_none, load_plot
 from .experiment import Experiment, experiment
 from .fit import FittedModel
-from .information import Estimate
 from .measured import MEASURED
 from .posterior import Posterior, posterior
 from .sensitivity import Sensitivity, sensitivities
@@ -52,8 +51,7 @@ class IdentificationResult(FittedModel):
         writers = (
             _identifiability_notes,
             _band_notes,
-            _convergence_notes,
-            _range_notes,
+            _search_notes,
             _fit_notes,
             _trend_notes,
             _machine_notes,
@@ -91,12 +89,12 @@ class IdentificationResult(FittedModel):
             "information": {
                 "rank": self.information.rank,
                 "unknowns": len(self.transform.names),
-                "condition": _finite_or_none(self.information.condition),
+                "condition": finite_or_none(self.information.condition),
                 "eigenvalues": self.information.eigenvalues.tolist(),
                 "unidentifiable": list(self.information.unidentifiable),
             },
             "sensitivity": [error.summary() for error in self.sensitivity],
-            "spread": _finite_or_none(self.spread),
+            "spread": finite_or_none(self.spread),
             "widening": self.misfit.widening,
             "degrees_of_freedom": self.freedom,
             "data": [
@@ -114,24 +112,19 @@ class IdentificationResult(FittedModel):
         }
 
     def __repr__(self) -> str:
-        rows = [f"{estimate.name} {_format_estimate(estimate)}" for estimate in self.estimates.values()]
+        rows = []
+        for estimate in self.estimates.values():
+            unit = f" {estimate.unit}" if estimate.unit != "1" else ""
+            band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
+            value = (
+                f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
+            )
+            rows.append(f"{estimate.name} {value}")
         products = [
             f"{product.name} = {product.value:.4g} {product.unit} ({product.low:.4g} to {product.high:.4g})"
             for product in self.information.products
         ]
         return "\n".join([*rows, *products, *self.notes])
-
-
-def _format_estimate(estimate: Estimate) -> str:
-    """Format the value and the 95 % band of an estimate as text, with the unit."""
-    unit = f" {estimate.unit}" if estimate.unit != "1" else ""
-    band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
-    return f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
-
-
-def _finite_or_none(number: float) -> float | None:
-    """Return a finite number unchanged, and None for an infinite one or NaN."""
-    return number if abs(number) < float("inf") else None
 
 
 def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
@@ -176,25 +169,19 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _quantity_title(quantity: str) -> str:
-    """Return the title of a measured quantity in words, for notes."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
 def _join_names(names: Sequence[str], last_word: str = "and") -> str:
-    """Join names by commas and a final word."""
     return f"{', '.join(names[:-1])} {last_word} {names[-1]}" if len(names) > 1 else names[0]
 
 
-def _convergence_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield sentences on a search without convergence, and on other points that fit equally well."""
+def _search_notes(result: IdentificationResult) -> Iterator[str]:
+    """Yield sentences on convergence, other points that fit equally well, and values at an end of their range."""
     if not result.best.converged:
         yield "the search did not converge: the numbers are those of its last step"
     if result.best.rivals and result.identifiable:
         yield "another point fits the data about as well: sample the posterior"
-
-
-def _range_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield sentences on best-fit values at an end of their search range."""
     theta = result.best.theta
     for index, unknown in enumerate(result.transform.unknowns):
         for side, end in ((-1, unknown.low), (1, unknown.high)):
@@ -294,7 +281,6 @@ def _machine_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _validity_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield the contact model's notes on the contacts at the loads of the data."""
     notes: dict[str, None] = {}
     for measured in result.data:
         if measured.load:

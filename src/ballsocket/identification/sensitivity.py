@@ -84,10 +84,7 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
 
 
 def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield machine name and error for each machine error that the fit neglects.
-
-    The errors are in descending order of their effect.
-    """
+    """Yield machine name and error for each error that the fit neglects, in descending order of its effect."""
     machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
     errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
     for name, machine in machines.items():
@@ -97,7 +94,6 @@ def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]
 
 
 def _reads_indentation(measured: Measured) -> bool:
-    """Check if the values or the loads of a data set are indentations."""
     return "indentation" in (measured.quantity, measured.load)
 
 
@@ -105,18 +101,11 @@ def _change_by_machine_error(
     fitted: FittedModel, machine_name: str, error: MachineError, values: Numbers, results: Numbers
 ) -> Numbers:
     """Compute the change of the model results (data,) by a machine error of assumed size."""
-    data = tuple(
-        _add_machine_error(measured, error)
-        if _reads_indentation(measured) and measured.machine.name == machine_name
-        else measured
-        for measured in fitted.data
-    )
-    changed_results = replace(fitted.misfit.forward, data=data).results_at(values)[0]
+    data = list(fitted.data)
+    for index, measured in enumerate(data):
+        if _reads_indentation(measured) and measured.machine.name == machine_name:
+            machine = measured.machine if machine_name else Machine(name=_DEFAULT_NAME)
+            size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}
+            data[index] = replace(measured, machine=replace(machine, **size))
+    changed_results = replace(fitted.misfit.forward, data=tuple(data)).results_at(values)[0]
     return (changed_results - results) / _RELATIVE_STEP
-
-
-def _add_machine_error(measured: Measured, error: MachineError) -> Measured:
-    """Return a copy of a data set whose machine has one more error."""
-    machine = measured.machine if measured.machine.name else Machine(name=_DEFAULT_NAME)
-    size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}
-    return replace(measured, machine=replace(machine, **size))

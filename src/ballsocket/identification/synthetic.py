@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy
@@ -96,16 +97,9 @@ def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple
     """
     widened = fitted.misfit.widening * fitted.misfit.uncertainty
     uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
-    scatter = fitted.misfit.scatter
-    return tuple(
-        replace(
-            measured, values=_add_reading_noise(measured, results, uncertainty * scatter.draw(len(measured), random))
-        )
-        for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
-    )
-
-
-def _add_reading_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
-    """Add random noise to model results, and limit the readings to the range of the machine."""
-    readings = results + noise
-    return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)
+    sets = []
+    for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True):
+        readings = results + uncertainty * fitted.misfit.scatter.draw(len(measured), random)
+        least = -inf if measured.machine.name else 0.0
+        sets.append(replace(measured, values=numpy.clip(readings, least, measured.saturation)))
+    return tuple(sets)

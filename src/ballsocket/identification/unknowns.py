@@ -18,7 +18,6 @@ from ..model_catalogue import catalogue
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from .machine import Machine
 from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
-from .unknown_kinds import ModelNumber
 
 Prior = Any
 """Prior of an unknown as a caller states it: two ends, (0.02, 0.3), or a distribution."""
@@ -115,17 +114,11 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
         raise ValueError(f"an unknown is stated twice: {', '.join(free)}")
     check_names(priors, FREE_NUMBERS, "among the unknowns")
     for name in priors:
-        if name in MODEL_NUMBERS:
-            _check_has_number(MODEL_NUMBERS[name], model)
+        if name in MODEL_NUMBERS and not MODEL_NUMBERS[name].belongs_to(model):
+            models = ", ".join(key for key, known in catalogue.items() if MODEL_NUMBERS[name].belongs_to(known))
+            raise ValueError(f"{name} is not a number of the model {model.name}; models that have it: {models}")
     number_unknowns = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
     return (*number_unknowns, *_collect_machine_errors(machines))
-
-
-def _check_has_number(number: ModelNumber, model: Model) -> None:
-    """Check that a contact model has the parameter that is to be identified; ValueError otherwise."""
-    if not number.belongs_to(model):
-        models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
-        raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
 
 
 def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
@@ -143,7 +136,6 @@ def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
 
 
 def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine: bool = False) -> Unknown:
-    """Make an `Unknown` with prior, search range and scale from its stated prior."""
     prior = _make_prior(name, stated_prior)
     low, high = _search_range(prior, quantity)
     for end in (low, high):
@@ -176,10 +168,7 @@ def _make_prior(name: str, stated_prior: Prior) -> Distribution:
 
 
 def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
-    """Compute the lower and the upper end of the search range of an unknown from its prior.
-
-    They are those of a range, or eight standard deviations about a mean, if allowed.
-    """
+    """Return the ends of the search range: those of a range, or eight deviations about a mean, if allowed."""
     if isinstance(prior, Rectangular):
         return prior.low, prior.high
     if isinstance(prior, LogNormal):

@@ -13,16 +13,10 @@ from .mesh import FilmMesh
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Balance:
-    """Outflow of each cell in mm³/s, and its derivatives.
+    """Outflow of each cell in mm³/s, and its derivatives."""
 
-    Attributes
-    ----------
-    outflow : array (cells,)
-    by_pressure, by_void, by_thickness : sparse matrix (cells, cells)
-        Derivatives by pressure (MPa), void fraction and film thickness (mm).
-    """
-
-    outflow: Numbers
+    outflow: Numbers  # (cells,)
+    # (cells, cells), its derivatives by pressure (MPa), void fraction and film thickness (mm)
     by_pressure: scipy.sparse.csr_matrix
     by_void: scipy.sparse.csr_matrix
     by_thickness: scipy.sparse.csr_matrix
@@ -84,10 +78,10 @@ def balance_cells(
     full = 1 - void[upstream]
     fall = pressure[first] - pressure[second]
     flow = conductance * fall + carried * film * full
-    rows = _FaceRows(mesh.cells, first, second)
-    by_pressure = rows.matrix((first, conductance), (second, -conductance))
-    by_void = rows.matrix((upstream, -carried * film))
-    by_thickness = rows.matrix(
+    by_pressure = _face_matrix(mesh, (first, conductance), (second, -conductance))
+    by_void = _face_matrix(mesh, (upstream, -carried * film))
+    by_thickness = _face_matrix(
+        mesh,
         (first, conductance_by_first * fall + carried * full * film_by_first),
         (second, conductance_by_second * fall + carried * full * film_by_second),
     )
@@ -101,41 +95,26 @@ def balance_cells(
     rim_full = numpy.where(leaving, 1 - void[cell], 1.0)
     rim_fall = pressure[cell] - rim_pressure
     outflow += numpy.bincount(cell, rim_conductance * rim_fall + rim_carried * rim_film * rim_full, mesh.cells)
-    rim = _RimRows(mesh.cells, cell)
+    rim_by_void = numpy.where(leaving, -rim_carried * rim_film, 0.0)
+    rim_by_thickness = 3 * rim_conductance / rim_film * rim_fall + rim_carried * rim_full
     return Balance(
         outflow=outflow,
-        by_pressure=by_pressure + rim.matrix(rim_conductance),
-        by_void=by_void + rim.matrix(numpy.where(leaving, -rim_carried * rim_film, 0.0)),
-        by_thickness=by_thickness + rim.matrix(3 * rim_conductance / rim_film * rim_fall + rim_carried * rim_full),
+        by_pressure=by_pressure + _rim_matrix(mesh, rim_conductance),
+        by_void=by_void + _rim_matrix(mesh, rim_by_void),
+        by_thickness=by_thickness + _rim_matrix(mesh, rim_by_thickness),
     )
 
 
-@dataclass(frozen=True)
-class _FaceRows:
-    """Rows of the two cells of each face in a sparse matrix."""
-
-    cells: int
-    first: Numbers
-    second: Numbers
-
-    def matrix(self, *terms: tuple[Numbers, Numbers]) -> scipy.sparse.csr_matrix:
-        """Add (column, flow from first to second) of each face to its two cells."""
-        rows = numpy.concatenate([side for _ in terms for side in (self.first, self.second)])
-        columns = numpy.concatenate([column for column, _ in terms for _ in range(2)])
-        values = numpy.concatenate([part for _, flow in terms for part in (flow, -flow)])
-        return scipy.sparse.csr_matrix((values, (rows, columns)), (self.cells, self.cells))
+def _face_matrix(mesh: FilmMesh, *terms: tuple[Numbers, Numbers]) -> scipy.sparse.csr_matrix:
+    """Add (column, flow from first to second) of each face to the rows of its two cells."""
+    rows = numpy.concatenate([side for _ in terms for side in (mesh.first, mesh.second)])
+    columns = numpy.concatenate([column for column, _ in terms for _ in range(2)])
+    values = numpy.concatenate([part for _, flow in terms for part in (flow, -flow)])
+    return scipy.sparse.csr_matrix((values, (rows, columns)), (mesh.cells, mesh.cells))
 
 
-@dataclass(frozen=True)
-class _RimRows:
-    """Diagonal entries of the cells at the rim."""
-
-    cells: int
-    cell: Numbers
-
-    def matrix(self, values: Numbers) -> scipy.sparse.csr_matrix:
-        """Make a sparse matrix with `values` at the cells of the rim."""
-        return scipy.sparse.csr_matrix((values, (self.cell, self.cell)), (self.cells, self.cells))
+def _rim_matrix(mesh: FilmMesh, values: Numbers) -> scipy.sparse.csr_matrix:
+    return scipy.sparse.csr_matrix((values, (mesh.rim_cell, mesh.rim_cell)), (mesh.cells, mesh.cells))
 
 
 def add_storage(

@@ -16,8 +16,7 @@ from .mesh import FilmMesh
 CentralShare = Callable[[FilmMesh, Numbers, Numbers], Numbers]
 """Function of mesh, spin and film thickness: share of central differences at each face, 0 to 1."""
 
-_SMOOTH, _FRONT = 0.1, 0.3
-"""Largest relative change of a smooth film across a face, and the least of a front."""
+_SMOOTH, _FRONT = 0.1, 0.3  # largest relative change of a smooth film across a face, and the least of a front
 
 
 def all_central(mesh: FilmMesh, spin: Numbers, thickness: Numbers) -> Numbers:
@@ -37,5 +36,4 @@ def smooth_share(mesh: FilmMesh, spin: Numbers, thickness: Numbers) -> Numbers:
     """
     across = numpy.abs(thickness[mesh.second] - thickness[mesh.first])
     step = across / numpy.minimum(thickness[mesh.second], thickness[mesh.first])
-    share: Numbers = numpy.clip((_FRONT - step) / (_FRONT - _SMOOTH), 0.0, 1.0)
-    return share
+    return numpy.asarray(numpy.clip((_FRONT - step) / (_FRONT - _SMOOTH), 0.0, 1.0))

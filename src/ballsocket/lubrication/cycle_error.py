@@ -20,8 +20,7 @@ _REFRESHED_CELL_ERROR = 0.6
 _SMEARED_SHARE = 0.75
 """Error of a film that changes, relative to its change over a cell and in an instant; measured in a reversing cycle."""
 
-_SMALL_CORE = 0.01
-"""Share of a contact up to which the error of its core does not count."""
+_SMALL_CORE = 0.01  # share of a contact up to which the error of its core does not count
 
 
 def film_errors(

@@ -7,7 +7,7 @@ its film changes over many cycles: `film_core` has its drift.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import acos, pi
 
@@ -16,8 +16,7 @@ import numpy
 from ..core.arrays import Numbers
 from .cycle_error import film_errors, refreshed_mean_error
 from .dry_contact import DryContact
-from .film_core import FilmMotion
-from .inlet import Edge
+from .film_core import CycleInstant, FilmMotion
 from .mesh import FilmMesh
 from .wave import FilmWave
 
@@ -33,91 +32,30 @@ SETTLED_CHANGE = 0.1
 _MARCHED, _MOST_MARCHED = 3, 10
 """Least and largest number of cycles that are followed instant by instant: one before the core's drift."""
 
-_NO_FILM = 1e-30
-"""Film in mm, and area in mm², that count as none."""
-
-_FLOODED = 3.0
-"""Film around the contacts, relative to the largest inlet film of the cycle."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CycleInstant:
-    """Dry contact and motion at one instant of a cycle.
-
-    Attributes
-    ----------
-    pressure : array (cells,)
-        Dry pressure in MPa.
-    axis : array (3,)
-        Unit vector along the load.
-    edge : Edge
-        Rise of the pressure at the edge.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    duration : float
-        Duration of the instant in s.
-    interrupted : bool
-        True if the ball was unloaded before this instant, so that lubricant covers the bore.
-    continuation : array (cells,), optional
-        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
-    """
-
-    pressure: Numbers
-    axis: Numbers
-    edge: Edge
-    spin: Numbers
-    duration: float
-    interrupted: bool = False
-    continuation: Numbers | None = None
-
-    @property
-    def signed_pressure(self) -> Numbers:
-        """Pressure (cells,) in MPa, negative outside where its continuation is known."""
-        return self.pressure if self.continuation is None else self.continuation
+_NO_FILM = 1e-30  # film in mm, and area in mm², that count as none
+_FLOODED = 3.0  # film around the contacts, relative to the largest inlet film of the cycle
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleFilm:
-    """Film over a cycle, after a number of cycles.
+    """Film over a cycle, after a number of cycles."""
 
-    Attributes
-    ----------
-    area : array (cells,)
-        Areas of the cells in mm².
-    thickness : array (instants, cells)
-        Film thickness in mm; NaN outside the contacts.
-    core : array (instants, cells)
-        Mask of the film that fresh lubricant does not reach within a cycle.
-    central, minimum : array (instants,)
-        Film in mm at the load, and the smallest in the contact.
-    error : array (instants,)
-        Estimated relative error of the central and the smallest film: of the wave, of the cells, and of changes that
-        cells and instants smear.
-    refreshed_mean_error : float
-        Estimated relative error of the mean of `refreshed_mean` over the cycle. It contains the cells at the edge.
-    drift : float
-        Angle in rad by which the film turns in a cycle, while the ball returns.
-    cycles : int
-        Number of cycles from a flooded bore.
-    change : float
-        Mean change of the film in the last cycle, relative to the mean film.
-    settled : bool
-        True if the mean film of the core is expected to fall by at most 10 % while the number of cycles doubles.
-    smallest_settled : bool
-        True if the smallest film of the core is. It falls where the film turns about a point of the core.
-    """
-
-    area: Numbers
-    thickness: Numbers
-    core: Numbers
-    central: Numbers
-    minimum: Numbers
+    area: Numbers  # (cells,), areas of the cells in mm²
+    thickness: Numbers  # (instants, cells), film thickness in mm; NaN outside the contacts
+    core: Numbers  # (instants, cells), mask of the film that fresh lubricant does not reach within a cycle
+    central: Numbers  # (instants,), film in mm at the load
+    minimum: Numbers  # (instants,), smallest film in mm in the contact
+    # (instants,), estimated relative error of the central and the smallest film: of the wave, of the cells, and of
+    # changes that cells and instants smear
     error: Numbers
+    # estimated relative error of the mean of `refreshed_mean` over the cycle; it contains the cells at the edge
     refreshed_mean_error: float
-    drift: float
-    cycles: int
-    change: float
+    drift: float  # angle in rad by which the film turns in a cycle, while the ball returns
+    cycles: int  # number of cycles from a flooded bore
+    change: float  # mean change of the film in the last cycle, relative to the mean film
+    # True if the mean film of the core is expected to fall by at most 10 % while the number of cycles doubles
     settled: bool
+    # the same for the smallest film of the core, which falls where the film turns about a point of the core
     smallest_settled: bool
 
     @property
@@ -274,17 +212,9 @@ def _carry_once(
 
 def _waves(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant]) -> list[FilmWave]:
     """Make the wave of each instant, with the film around the contacts of the whole cycle."""
-    contacts = [_contact(mesh, instant) for instant in instants]
-    speeds = [contact.speed(instant.spin) for contact, instant in zip(contacts, instants, strict=True)]
-    films = [
-        float(contact.edge.inlet_film(viscosity, numpy.asarray(speed)))
-        for contact, speed in zip(contacts, speeds, strict=True)
-    ]
-    flood = _FLOODED * max(films)
-    return [
-        FilmWave(contact=contact, viscosity=viscosity, spin=instant.spin, flood=flood)
-        for contact, instant in zip(contacts, instants, strict=True)
-    ]
+    waves = [FilmWave(contact=_contact(mesh, instant), viscosity=viscosity, spin=instant.spin) for instant in instants]
+    flood = _FLOODED * max(wave.inlet_film for wave in waves)
+    return [replace(wave, flood=flood) for wave in waves]
 
 
 def _contact(mesh: FilmMesh, instant: CycleInstant) -> DryContact:
@@ -333,7 +263,6 @@ def _summarise(
     drift: _Drift,
     cycles: int,
 ) -> CycleFilm:
-    """Collect central and smallest films, and the errors, of the last cycle."""
     central = _at_loads(motion, waves, thickness)
     return CycleFilm(
         area=motion.mesh.area,

@@ -28,11 +28,8 @@ if TYPE_CHECKING:
 _SAMPLES = (0.25, 0.75)
 """Positions in a cell of the cup, as fractions of its width, at which the film's pressure is sampled."""
 
-_RINGS_OUTSIDE = 2
-"""Rings of lubricant around the contact."""
-
-_MIN_RINGS = 8
-"""Smallest number of rings in a contact."""
+_RINGS_OUTSIDE = 2  # rings of lubricant around the contact
+_MIN_RINGS = 8  # smallest number of rings in a contact
 
 _CONTINUED_CELL_ERROR = 0.12
 """Relative error of the wave times the number of rings, where the pressure continues beyond the edge; measured."""
@@ -40,44 +37,20 @@ _CONTINUED_CELL_ERROR = 0.12
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DryContact:
-    """Pressure of a dry contact on a mesh, with its edge.
+    """Pressure of a dry contact on a mesh, with its edge."""
 
-    Attributes
-    ----------
-    mesh : FilmMesh
-        Cells of the bore at and around the contact, in the frame of the contact.
-    pressure : array (cells,)
-        Dry pressure in MPa.
-    edge : Edge
-        Rise of the pressure at the edge.
-    axis : array (3,)
-        Unit vector along the load.
-    half_angle : float
-        Half angle of the contact in rad.
-    radius : float
-        Radius of the bore in mm.
-    cut : bool
-        True if the rim of the bore cuts the contact.
-    rings : int
-        Number of rings of cells in the contact; 1 of a contact whose cells are not about its load.
-    region : array (cells,), optional
-        Mask of the cells that count as contact; those under pressure by default.
-    continuation : array (cells,), optional
-        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
-    level : array (cells,), optional
-        Field that is 0 at the edge and positive inside; the continued pressure by default.
-    """
-
-    mesh: FilmMesh
-    pressure: Numbers
-    edge: Edge
-    axis: Numbers
-    half_angle: float
-    radius: float
-    cut: bool = False
-    rings: int = 1
-    region: Numbers | None = None
+    mesh: FilmMesh  # cells of the bore at and around the contact, in the frame of the contact
+    pressure: Numbers  # (cells,), dry pressure in MPa
+    edge: Edge  # rise of the pressure at the edge
+    axis: Numbers  # (3,), unit vector along the load
+    half_angle: float  # half angle of the contact in rad
+    radius: float  # radius of the bore in mm
+    cut: bool = False  # True if the rim of the bore cuts the contact
+    rings: int = 1  # number of rings of cells in the contact; 1 of a contact whose cells are not about its load
+    region: Numbers | None = None  # (cells,), mask of the cells that count as contact; those under pressure by default
+    # (cells,), pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default
     continuation: Numbers | None = None
+    # (cells,), field that is 0 at the edge and positive inside; the continued pressure by default
     level: Numbers | None = None
 
     @property
@@ -88,8 +61,7 @@ class DryContact:
     @property
     def inside(self) -> Numbers:
         """Mask of the cells in contact (cells,)."""
-        mask: Numbers = self.pressure > 0 if self.region is None else self.region
-        return mask
+        return numpy.asarray(self.pressure > 0 if self.region is None else self.region)
 
     @property
     def signed_pressure(self) -> Numbers:
@@ -200,11 +172,9 @@ def _continue_pressure(pressure: Numbers, mirrored: Numbers, outside: Numbers, e
 
 def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: int) -> DryContact:
     """Evaluate a contact of `Sphere` on a mesh about its force, as far as its outline."""
-    axis = numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
-    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
-    reach = float(numpy.arccos(numpy.clip((outline @ axis).min(), -1.0, 1.0)))
+    axis, angles = outline_angles(contact)
     width = half_angle / rings
-    edges = width * numpy.arange(ceil(reach / width) + _RINGS_OUTSIDE + 1)
+    edges = width * numpy.arange(ceil(float(angles.max()) / width) + _RINGS_OUTSIDE + 1)
     mesh = square_mesh(radius, edges, width).in_frame(frame_about(axis))
     return DryContact(
         mesh=mesh,
@@ -216,6 +186,13 @@ def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: 
         cut=bool(contact.edge_loaded),
         rings=rings,
     )
+
+
+def outline_angles(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
+    """Return the unit vector (3,) along the force of a contact, and the angles (n,) in rad from it to the outline."""
+    axis = numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
+    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
+    return axis, numpy.arccos(numpy.clip(outline @ axis, -1.0, 1.0))
 
 
 def square_mesh(radius: float, edges: Numbers, width: float) -> FilmMesh:
@@ -240,23 +217,13 @@ class CupCorrection:
     A closed shell and a ball have the same compliance about every axis through the centre of the bore, so also about
     that of the film's mesh. The rim of a real cup, a chamfer or an interface that slides change the displacements by a
     field that is smooth in the contact. It is computed on the rings about the axis of the cup.
-
-    Attributes
-    ----------
-    operator : AxisymmetricOperator
-        From pressures in MPa on the grid of the cup to the difference of both displacements in mm.
-    grid : Grid
-        Rings about the axis of the cup.
-    to_cup : sparse matrix (cells of the cup, cells of the film)
-        Mean pressures of the cells of the cup.
-    to_film : sparse matrix (cells of the film, cells of the cup)
-        Interpolation of the displacements.
     """
 
+    # from pressures in MPa on the grid of the cup to the difference of both displacements in mm
     operator: AxisymmetricOperator
-    grid: Grid
-    to_cup: Any
-    to_film: Any
+    grid: Grid  # rings about the axis of the cup
+    to_cup: Any  # sparse (cells of the cup, cells of the film), mean pressures of the cells of the cup
+    to_film: Any  # sparse (cells of the film, cells of the cup), interpolation of the displacements
 
     @classmethod
     def of(cls, model: Sphere, joint: Joint, film_grid: Grid, frame: Numbers) -> CupCorrection:
@@ -282,27 +249,17 @@ class CupCorrection:
     def __call__(self, pressure: Numbers) -> Numbers:
         """Compute the difference of the displacements in mm (cells,) under pressures in MPa (cells,)."""
         on_cup = (self.to_cup @ pressure).reshape(1, self.grid.rings, self.grid.meridians)
-        displacement: Numbers = self.to_film @ self.operator(on_cup).ravel()
-        return displacement
+        return numpy.asarray(self.to_film @ self.operator(on_cup).ravel())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticSoftness:
-    """Displacements of bore and ball per pressure, on cells numbered as in `polar_mesh`.
+    """Displacements of bore and ball per pressure, on cells numbered as in `polar_mesh`."""
 
-    Attributes
-    ----------
-    compliance : Compliance
-        Compliance about the axis of the mesh, on a grid with the same number of cells in every ring.
-    mask : array (cells of the grid,)
-        Mask of the cells of the film; the others lie beyond the end of the bore.
-    correction : CupCorrection, optional
-        Further displacements of a cup that is not a closed shell.
-    """
-
+    # compliance about the axis of the mesh, on a grid with the same number of cells in every ring
     compliance: Compliance
-    mask: Numbers
-    correction: CupCorrection | None = None
+    mask: Numbers  # (cells of the grid,), mask of the cells of the film; the others lie beyond the end of the bore
+    correction: CupCorrection | None = None  # further displacements of a cup that is not a closed shell
 
     @classmethod
     def of(cls, surface: Surface, joint: Joint, grid: Grid) -> ElasticSoftness:
@@ -314,7 +271,6 @@ class ElasticSoftness:
 
     @property
     def _shape(self) -> tuple[int, int]:
-        """Numbers of rings and meridians."""
         return self.compliance.grid.rings, self.compliance.grid.meridians
 
     @cached_property

@@ -12,7 +12,7 @@ import numpy
 from ..contact import Contact
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_number, check_vectors, known_name, require
-from ..core.display import load_plot
+from ..core.display import finite_or_none, load_plot
 from ..core.records import Record
 from ..core.validity import Status
 from .dry_contact import DryContact, check_single_contact, dry_contact
@@ -26,14 +26,9 @@ CELL_WIDTH = radians(2.0)
 MAX_ERROR = 0.1
 """Largest estimated error of a valid film."""
 
-_MAX_RATE = 1e6
-"""Largest rotation rate about an axis in rad/s."""
-
-_THINNEST = 1e-6
-"""Film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid."""
-
-_WATER_DENSITY = 1e-9
-"""Density of water in t/mm³, which is about that of joint fluid and oil."""
+_MAX_RATE = 1e6  # largest rotation rate about an axis in rad/s
+_THINNEST = 1e-6  # film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid
+_WATER_DENSITY = 1e-9  # density of water in t/mm³, which is about that of joint fluid and oil
 
 _MAX_REYNOLDS_NUMBER = 1440.0
 """Reynolds number U h/ν of a laminar film.
@@ -146,10 +141,10 @@ class FilmResult(Record):
         return {
             "model": self.contact.model.name,
             "method": self.method,
-            "central_nm": _number(1e6 * self.central),
-            "minimum_nm": _number(1e6 * self.minimum),
-            "lambda": _number(self.ratio),
-            "error": _number(self.error),
+            "central_nm": finite_or_none(1e6 * self.central),
+            "minimum_nm": finite_or_none(1e6 * self.minimum),
+            "lambda": finite_or_none(self.ratio),
+            "error": finite_or_none(self.error),
             "valid": self.valid,
             "status": self.status.name,
             "notes": list(self.notes),
@@ -231,21 +226,15 @@ def film(
     allowed = "a cell is 0.0035 to 0.175 rad wide, which is 0.2 to 10 degrees"
     require("cell_width", width, radians(0.2) <= width <= radians(10.0), allowed)
     dry = dry_contact(contact, width)
-    fields = _without_entrainment(dry)
+    none = numpy.where(dry.inside, 0.0, numpy.nan)  # without entrainment
+    fields = {**_on_dry(dry), "thickness": none, "central": 0.0, "minimum": 0.0, "error": 0.0}
     if dry.speed(rate) > 1e-9 * dry.radius * numpy.linalg.norm(rate):
         fields = METHODS[method](contact, dry, rate, lubricant.viscosity_mpa)
     common = {"status": Status.OK, "displacement": numpy.full(3, numpy.nan), "dry": dry}
     return FilmResult(contact=contact, method=method, lubricant=lubricant, spin=rate, **{**common, **fields})
 
 
-def _without_entrainment(dry: DryContact) -> dict[str, Any]:
-    """Return the film of a ball that does not turn across the load: none."""
-    thickness = numpy.where(dry.inside, 0.0, numpy.nan)
-    return {**_on_dry(dry), "thickness": thickness, "central": 0.0, "minimum": 0.0, "error": 0.0}
-
-
 def _on_dry(dry: DryContact) -> dict[str, Any]:
-    """Return the cells and the pressure of a dry contact."""
     return {"directions": dry.mesh.direction, "areas": dry.mesh.area, "pressure": dry.pressure}
 
 
@@ -285,7 +274,8 @@ def _solve_wave(contact: Contact, dry: DryContact, spin: Numbers, viscosity: flo
     """Carry the inlet film over the dry contact by the kinematic wave."""
     wave = FilmWave(contact=dry, viscosity=viscosity, spin=spin)
     film, steady = wave.solve_steady()
-    central = _central(dry, film)
+    height = dry.mesh.direction @ dry.axis
+    central = float(film[height > height.max() - 1e-9].mean())  # of the cells next to the load
     return {
         **_on_dry(dry),
         "thickness": numpy.where(dry.inside, film, numpy.nan),
@@ -294,12 +284,6 @@ def _solve_wave(contact: Contact, dry: DryContact, spin: Numbers, viscosity: flo
         "error": dry.cell_error / dry.rings + dry.edge.wave_error(viscosity, dry.speed(spin), dry.contact_radius),
         "status": Status.OK if steady else Status.NOT_CONVERGED,
     }
-
-
-def _central(dry: DryContact, film: Numbers) -> float:
-    """Compute the mean film in mm of the cells next to the load."""
-    height = dry.mesh.direction @ dry.axis
-    return float(film[height > height.max() - 1e-9].mean())
 
 
 def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
@@ -315,15 +299,10 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
         "thickness": film,
         "central": float(case.central(film)),
         "minimum": float(case.minimum(film)),
-        "error": case.error,
+        "error": case.settings.error,
         "status": Status.OK if state.converged else Status.NOT_CONVERGED,
         "displacement": state.eccentricity,
     }
-
-
-def _number(value: float) -> float | None:
-    """Return a number, or None if it is not finite."""
-    return float(value) if numpy.isfinite(value) else None
 
 
 METHODS: dict[str, Callable[[Contact, DryContact, Numbers, float], dict[str, Any]]] = {

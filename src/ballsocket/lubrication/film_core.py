@@ -15,70 +15,46 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, pi, radians
-from typing import Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
 from .dry_contact import DryContact, frame_about, square_mesh
-from .inlet import SpringEdge
+from .inlet import Edge, SpringEdge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-_IN_CONTACT = 0.5
-"""Interpolated share of contact from which a point counts as in contact."""
-
-_CELL_WIDTH = radians(1.0)
-"""Width in rad of the cells of the drift, whatever the cells of the bore are."""
-
-_MARGIN_CELLS = 3
-"""Number of rings of these cells around the contact."""
-
-_NO_ROTATION = 1e-9
-"""Net rotation in rad that counts as none."""
+_IN_CONTACT = 0.5  # interpolated share of contact from which a point counts as in contact
+_CELL_WIDTH = radians(1.0)  # width in rad of the cells of the drift, whatever the cells of the bore are
+_MARGIN_CELLS = 3  # number of rings of these cells around the contact
+_NO_ROTATION = 1e-9  # net rotation in rad that counts as none
 
 
-class LoadedInstant(Protocol):
-    """Interface of the pressure and motion of one instant, such as `CycleInstant`."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CycleInstant:
+    """Dry contact and motion at one instant of a cycle."""
 
-    @property
-    def pressure(self) -> Numbers:
-        """Dry pressure in MPa: (cells,)."""
-        ...
-
-    @property
-    def spin(self) -> Numbers:
-        """Rotation rate of the ball in rad/s: (3,)."""
-        ...
-
-    @property
-    def duration(self) -> float:
-        """Duration in s."""
-        ...
-
-    @property
-    def interrupted(self) -> bool:
-        """True if the ball was unloaded before."""
-        ...
+    pressure: Numbers  # (cells,), dry pressure in MPa
+    axis: Numbers  # (3,), unit vector along the load
+    edge: Edge  # rise of the pressure at the edge
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    duration: float  # duration of the instant in s
+    interrupted: bool = False  # True if the ball was unloaded before this instant, so that lubricant covers the bore
+    # (cells,), pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default
+    continuation: Numbers | None = None
 
     @property
     def signed_pressure(self) -> Numbers:
-        """Dry pressure in MPa, negative outside where its continuation is known: (cells,)."""
-        ...
+        """Pressure (cells,) in MPa, negative outside where its continuation is known."""
+        return self.pressure if self.continuation is None else self.continuation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmMotion:
-    """Rotation of the film over a cycle, half of that of the ball.
-
-    Attributes
-    ----------
-    mesh : FilmMesh
-    instants : sequence of LoadedInstant
-    """
+    """Rotation of the film over a cycle, half of that of the ball."""
 
     mesh: FilmMesh
-    instants: Sequence[LoadedInstant]
+    instants: Sequence[CycleInstant]
 
     @cached_property
     def rotations(self) -> Numbers:
@@ -97,8 +73,7 @@ class FilmMotion:
         """Rotation vector (3,) in rad by which the film turns in a cycle."""
         from scipy.spatial.transform import Rotation  # slow to import
 
-        vector: Numbers = Rotation.from_matrix(self.rotations[-1]).as_rotvec()
-        return vector
+        return numpy.asarray(Rotation.from_matrix(self.rotations[-1]).as_rotvec())
 
     @property
     def duration(self) -> float:
@@ -142,7 +117,9 @@ class FilmMotion:
         cells = numpy.arange(self.drift_mesh.cells)
         for rotation, instant in zip(self.rotations, self.instants, strict=True):
             nodes, weights = self.triangles.locate(self.drift_mesh.direction[cells] @ rotation.T)
-            cells = cells[(weights * _edge_level(instant)[nodes]).sum(axis=1) > 0]
+            continued = instant.continuation is not None
+            level = instant.signed_pressure if continued else (instant.pressure > 0) - _IN_CONTACT  # 0 at the edge
+            cells = cells[(weights * level[nodes]).sum(axis=1) > 0]
         mask[cells] = True
         return mask
 
@@ -168,8 +145,7 @@ class FilmMotion:
         nodes, weights = self.triangles.locate(directions)
         gradient = self.mesh.gradient(field, nodes.ravel()).reshape(*nodes.shape, 3)
         steps = self.mesh.radius * (directions[:, None, :] - self.mesh.direction[nodes])
-        values: Numbers = (weights * (field[nodes] + (gradient * steps).sum(axis=2) / 2)).sum(axis=1)
-        return values
+        return numpy.asarray((weights * (field[nodes] + (gradient * steps).sum(axis=2) / 2)).sum(axis=1))
 
     @cached_property
     def _drift_triangles(self) -> Triangles:
@@ -235,13 +211,6 @@ def _with_neighbours(mesh: FilmMesh, mask: Numbers) -> Numbers:
         wider[mesh.second[mask[mesh.first]]] = wider[mesh.first[mask[mesh.second]]] = True
         mask = wider
     return numpy.flatnonzero(mask)
-
-
-def _edge_level(instant: LoadedInstant) -> Numbers:
-    """Return a field (cells,) that is positive in the contact and 0 at its edge."""
-    if instant.signed_pressure is instant.pressure:
-        return (instant.pressure > 0) - _IN_CONTACT
-    return instant.signed_pressure
 
 
 class Triangles:

@@ -14,10 +14,9 @@ from ..core.arrays import Numbers
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
 from ..problem.gaps import LinearGap, select_gap
-from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about
+from .dry_contact import CupCorrection, DryContact, ElasticSoftness, frame_about, outline_angles
 from .inlet import SpringEdge
 from .mesh import FilmMesh, graded_rings, polar_mesh
-from .newton_system import Softness
 from .reynolds import FilmProblem, FilmState, develop_film, solve_steady
 
 if TYPE_CHECKING:
@@ -59,11 +58,8 @@ _ELASTIC = _MeshSettings(
 _CELLS_OF_SIDES, _MAX_MERIDIANS = 9.0, 72
 """Number of cells in a ring times the angle of the sides in rad, and the largest number of cells."""
 
-_LEAST_MARGIN = radians(3.0)
-"""Smallest angle in rad between the contact and the end of the mesh."""
-
-_MAX_OUT_OF_ROUND = radians(5.0)
-"""Largest difference in rad of the angles from the load to the edge of a contact."""
+_LEAST_MARGIN = radians(3.0)  # smallest angle in rad between the contact and the end of the mesh
+_MAX_OUT_OF_ROUND = radians(5.0)  # largest difference in rad of the angles from the load to the edge of a contact
 
 _MAX_EDGE_RINGS, _MIN_RINGS_OF_INLET = 150, 2.0
 """Largest number of finest rings between the edges of all contacts, and the smallest number in an inlet length."""
@@ -71,49 +67,27 @@ _MAX_EDGE_RINGS, _MIN_RINGS_OF_INLET = 150, 2.0
 _THICK, _THINNING = 4.0, 4.0
 """First film over the roughness of the dry gap on the mesh, and the ratio of the viscosities on the way to thinner."""
 
-_THINNING_STEPS = 30
-"""Largest number of Newton steps from one viscosity to the next."""
+_THINNING_STEPS = 30  # largest number of Newton steps from one viscosity to the next
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactFilm:
-    """Reynolds' equation of a contact, with its start.
-
-    Attributes
-    ----------
-    problem : FilmProblem
-    start : FilmState
-        Dry contact with the ball lifted to a film.
-    inside : array (cells,)
-        Mask of the cells within the edge of the dry contact, where it is widest.
-    first_ring : int
-        Number of cells at the load.
-    thickening : float
-        Viscosity at which the start is a good estimate, over that of the lubricant.
-    settings : _MeshSettings
-    """
+    """Reynolds' equation of a contact, with its start."""
 
     problem: FilmProblem
-    start: FilmState
-    inside: Numbers
-    first_ring: int
-    thickening: float
+    start: FilmState  # dry contact with the ball lifted to a film
+    inside: Numbers  # (cells,), mask of the cells within the edge of the dry contact, where it is widest
+    first_ring: int  # number of cells at the load
+    thickening: float  # viscosity at which the start is a good estimate, over that of the lubricant
     settings: _MeshSettings
-
-    @property
-    def error(self) -> float:
-        """Estimated relative error of the films."""
-        return self.settings.error
 
     def central(self, thickness: Numbers) -> Numbers:
         """Compute the mean film in mm at the load from films (..., cells)."""
-        mean: Numbers = thickness[..., : self.first_ring].mean(axis=-1)
-        return mean
+        return numpy.asarray(thickness[..., : self.first_ring].mean(axis=-1))
 
     def minimum(self, thickness: Numbers) -> Numbers:
         """Compute the smallest film in mm within the edge of the dry contact from films (..., cells)."""
-        least: Numbers = thickness[..., self.inside].min(axis=-1)
-        return least
+        return numpy.asarray(thickness[..., self.inside].min(axis=-1))
 
     def solve_steady(self) -> FilmState:
         """Solve for the steady film, from thick films to thin ones.
@@ -132,7 +106,6 @@ class ContactFilm:
         return state
 
     def _thickened(self, ratio: float) -> FilmProblem:
-        """Return the problem with its viscosity times a ratio."""
         return replace(self.problem, viscosity=ratio * self.problem.viscosity)
 
 
@@ -255,27 +228,20 @@ def _edge_bounds(contact: Contact) -> tuple[float, float]:
     """Compute the smallest and the largest angle in rad from the load to the edge of a contact."""
     if not isinstance(contact, OffAxisContact):
         return float(contact.half_angle), float(contact.half_angle)
-    outline = contact.outline / numpy.linalg.norm(contact.outline, axis=1)[:, None]
-    angle = numpy.arccos(numpy.clip(outline @ _load_axis(contact), -1.0, 1.0))
-    return float(angle.min()), float(angle.max())
-
-
-def _load_axis(contact: OffAxisContact) -> Numbers:
-    """Compute the unit vector along the force of a contact."""
-    return numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
+    _, angles = outline_angles(contact)
+    return float(angles.min()), float(angles.max())
 
 
 def _bore_mask(contact: Contact, mesh: FilmMesh) -> Numbers:
     """Return the mask of the cells within the bore (cells,): where the rim cuts the mesh, the film ends."""
     if not isinstance(contact, OffAxisContact):
         return numpy.ones(mesh.cells, dtype=bool)
-    mask: Numbers = mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint)))
-    return mask
+    return numpy.asarray(mesh.direction[:, 2] > numpy.cos(float(contact.model.reach_of(contact.joint))))
 
 
 def _yielding(
     contact: Contact, dry: DryContact, grid: Grid, frame: Numbers, in_bore: Numbers
-) -> tuple[float, Softness | None]:
+) -> tuple[float, ElasticSoftness | None]:
     """Return the compliance of the springs in mm/MPa, and the displacements of elastic bodies."""
     from ..elasticity.off_axis.surfaces import ClosedShell  # slow to import
 
@@ -303,8 +269,7 @@ def _gap(contact: Contact, mesh: FilmMesh) -> Numbers:
     reach = mesh.direction @ displacement
     shape = kind(clearance=clearance, socket_radius=radius)
     angle = numpy.arccos(numpy.clip(reach / length, -1.0, 1.0))
-    gap: Numbers = reach - shape.displacement(angle, length - clearance) + depth
-    return gap
+    return numpy.asarray(reach - shape.displacement(angle, length - clearance) + depth)
 
 
 def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> int:

@@ -9,8 +9,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_number, require
 
-_SEPARATED = 8.0
-"""Film ratio from which asperities do not count: they carry 1e-16 of the pressure."""
+_SEPARATED = 8.0  # film ratio from which asperities do not count: they carry 1e-16 of the pressure
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ p = G s on springs, p = A sqrt(s) in elastic bodies, with the arc s from the edg
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy
 
@@ -27,69 +27,17 @@ edge: 0.79610, 0.79620 and 0.79620 on 243, 485 and 964 points. `tests/lubricatio
 """
 
 
-class Edge(Protocol):
-    """Interface of the edge of a dry contact, which sets the film."""
-
-    @property
-    def prescribed(self) -> bool:
-        """True if the inlet film is prescribed, False if it follows from the pressure within the contact."""
-        ...
-
-    @property
-    def outlet_ratio(self) -> float:
-        """Film at the constriction of the outlet over the film of its streamline."""
-        ...
-
-    @property
-    def leakage(self) -> float:
-        """Relative loss of film on the way across the contact to its thinnest point, which the inlet neglects."""
-        ...
-
-    @property
-    def cell_error(self) -> float:
-        """Relative error of the wave times the number of rings of cells, where the pressure ends at the edge."""
-        ...
-
-    def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
-        """Compute the film in mm at surface speeds U across the edge in mm/s; viscosity in MPa s."""
-        ...
-
-    def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
-        """Compute the length in mm over which the inlet changes the dry pressure."""
-        ...
-
-    def distance(self, pressure: Numbers) -> Numbers:
-        """Estimate the distance from the edge in mm at dry pressures in MPa."""
-        ...
-
-    def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
-        """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge."""
-        ...
-
-    def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
-        """Estimate the relative error of a thin film on a contact of a radius in mm."""
-        ...
-
-
 @dataclass(frozen=True, kw_only=True)
 class SpringEdge:
-    """Edge of a contact on radial springs.
+    """Edge of a contact on radial springs."""
 
-    Attributes
-    ----------
-    slope : float
-        Slope G of the dry pressure at the edge in MPa/mm.
-    modulus : float
-        Foundation modulus K in MPa/mm.
-    """
+    slope: float  # slope G of the dry pressure at the edge in MPa/mm
+    modulus: float  # foundation modulus K in MPa/mm
 
-    slope: float
-    modulus: float
-
-    prescribed: ClassVar[bool] = False
-    outlet_ratio: ClassVar[float] = 1.0
-    leakage: ClassVar[float] = 0.4
-    cell_error: ClassVar[float] = 0.4
+    prescribed: ClassVar[bool] = False  # the inlet film follows from the pressure within the contact
+    outlet_ratio: ClassVar[float] = 1.0  # film at the constriction of the outlet over the film of its streamline
+    leakage: ClassVar[float] = 0.4  # relative loss of film on the way to its thinnest point, which the inlet neglects
+    cell_error: ClassVar[float] = 0.4  # of the wave, times the rings of cells, where the pressure ends at the edge
 
     def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the film in mm at surface speeds U across the edge in mm/s; viscosity in MPa s."""
@@ -116,20 +64,12 @@ class SpringEdge:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticEdge:
-    """Edge of a contact of elastic bodies.
+    """Edge of a contact of elastic bodies."""
 
-    Attributes
-    ----------
-    coefficient : float
-        Coefficient A of the dry pressure at the edge, p = A sqrt(s), in MPa/mm^½.
-    modulus : float
-        Effective modulus E* of both bodies in MPa.
-    """
+    coefficient: float  # coefficient A of the dry pressure at the edge, p = A sqrt(s), in MPa/mm^½
+    modulus: float  # effective modulus E* of both bodies in MPa
 
-    coefficient: float
-    modulus: float
-
-    prescribed: ClassVar[bool] = True
+    prescribed: ClassVar[bool] = True  # for these constants see `SpringEdge`
     outlet_ratio: ClassVar[float] = OUTLET_RATIO
     leakage: ClassVar[float] = 0.1
     cell_error: ClassVar[float] = 0.0
@@ -161,3 +101,7 @@ class ElasticEdge:
     def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
         """Estimate the relative error of a thin film on a contact of a radius in mm: (ℓ/a)^(2/3)."""
         return float((self.inlet_length(viscosity, numpy.asarray(speed)) / radius) ** (2 / 3))
+
+
+Edge = SpringEdge | ElasticEdge
+"""Edge of a dry contact, which sets the film."""

@@ -11,41 +11,25 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..elasticity.off_axis.directions import unit_vectors
 
-_NO_OFFSET = 1e-9
-"""Angle in rad between two normals of a face that counts as none."""
+_NO_OFFSET = 1e-9  # angle in rad between two normals of a face that counts as none
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmMesh:
-    """Cells of a film, faces between two cells, and faces at the rim of the film.
+    """Cells of a film, faces between two cells, and faces at the rim of the film."""
 
-    Attributes
-    ----------
-    area : array (cells,)
-        Areas of the cells in mm².
-    direction : array (cells, 3)
-        Unit vectors from the centre of the cup to the cells; zeros on a plane film.
-    first, second : array of int (faces,)
-        Cells on both sides of each face.
-    width : array (faces,)
-        Lengths of the faces in mm.
-    first_distance, second_distance : array (faces,)
-        Distances from the face to the centres of its two cells in mm.
-    axis : array (faces, 3)
-        Rotation that drives a unit flow through the face: the velocity from first to second is R ω · axis.
-    rim_cell, rim_width, rim_distance, rim_axis : arrays (rim faces, ...)
-        The same of the faces at the rim, whose outward side is the lubricant around the joint.
-    """
-
-    area: Numbers
-    direction: Numbers
-    first: Numbers
-    second: Numbers
-    width: Numbers
-    first_distance: Numbers
-    second_distance: Numbers
+    area: Numbers  # (cells,), areas of the cells in mm²
+    direction: Numbers  # (cells, 3), unit vectors from the centre of the cup to the cells; zeros on a plane film
+    first: Numbers  # (faces,), cell on the first side of each face
+    second: Numbers  # (faces,), cell on its second side
+    width: Numbers  # (faces,), lengths of the faces in mm
+    first_distance: Numbers  # (faces,), distance in mm from the face to the centre of its first cell
+    second_distance: Numbers  # (faces,), the same to its second cell
+    # (faces, 3), rotation that drives a unit flow through the face: the velocity from first to second is R ω · axis
     axis: Numbers
+    # (rim faces, ...), the same of the faces at the rim, whose outward side is the lubricant around the joint
     rim_cell: Numbers
     rim_width: Numbers
     rim_distance: Numbers
@@ -195,7 +179,7 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
     last = slice(starts[-2], starts[-1])
     return FilmMesh(
         area=(radius**2 * -numpy.diff(numpy.cos(ring_edges)) * step)[ring],
-        direction=_directions(theta[ring], phi),
+        direction=numpy.stack(list(unit_vectors(theta[ring], phi)), axis=-1),
         first=first,
         second=second,
         width=width,
@@ -292,14 +276,6 @@ def _tangent_bases(directions: Numbers) -> Numbers:
 def _east(phi: Numbers) -> Numbers:
     """Compute the unit tangents (..., 3) towards growing azimuth."""
     return numpy.stack([-numpy.sin(phi), numpy.cos(phi), numpy.zeros_like(phi)], axis=-1)
-
-
-def _directions(theta: Numbers, phi: Numbers) -> Numbers:
-    """Compute unit vectors (..., 3) at polar and azimuth angles in rad."""
-    return numpy.stack(
-        numpy.broadcast_arrays(numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)),
-        axis=-1,
-    )
 
 
 def _meridian_tangents(theta: Numbers, phi: Numbers) -> Numbers:

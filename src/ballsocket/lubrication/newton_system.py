@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy
 import scipy.sparse
@@ -14,24 +14,11 @@ import scipy.sparse.linalg
 from ..core.arrays import Numbers
 from .balance import Balance
 
-_RESIDUAL = 1e-5
-"""Residual of GMRES relative to the right side; Newton's next step removes it."""
+if TYPE_CHECKING:
+    from .dry_contact import ElasticSoftness
 
-_MAX_KRYLOV, _MAX_RESTARTS = 60, 3
-"""Number of directions of GMRES, and largest number of times that it restarts."""
-
-
-class Softness(Protocol):
-    """Interface of the displacements of elastic surfaces under pressures."""
-
-    @property
-    def diagonal(self) -> Numbers:
-        """Displacement of each cell in mm per pressure on it in MPa (cells,)."""
-        ...
-
-    def __call__(self, pressure: Numbers) -> Numbers:
-        """Compute the displacements in mm (cells,) under pressures in MPa (cells,)."""
-        ...
+_RESIDUAL = 1e-5  # residual of GMRES relative to the right side; Newton's next step removes it
+_MAX_KRYLOV, _MAX_RESTARTS = 60, 3  # number of directions of GMRES, and largest number of times that it restarts
 
 
 @dataclass(frozen=True)
@@ -70,31 +57,15 @@ class CellUnknown:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NewtonSystem:
-    """Linear balance of a Newton step for the unknowns of the cells and the shift of the ball.
-
-    Attributes
-    ----------
-    balance : Balance
-    unknown : CellUnknown
-    compliance : array (cells,)
-        Displacement of the surface per pressure on springs in mm/MPa.
-    softness : Softness or None
-        Further displacements, of elastic bodies.
-    direction : array (cells, 3)
-        Normals of the cells; the film falls by `direction @ shift`.
-    weight : array (3, cells)
-        Force of a unit pressure on each cell in mm².
-    missing_force : array (3,) or None
-        Load less the integral of the pressure in N; None holds the ball where it is.
-    """
+    """Linear balance of a Newton step for the unknowns of the cells and the shift of the ball."""
 
     balance: Balance
     unknown: CellUnknown
-    compliance: Numbers
-    softness: Softness | None
-    direction: Numbers
-    weight: Numbers
-    missing_force: Numbers | None
+    compliance: Numbers  # (cells,), displacement of the surface per pressure on springs in mm/MPa
+    softness: ElasticSoftness | None  # further displacements, of elastic bodies
+    direction: Numbers  # (cells, 3), normals of the cells; the film falls by `direction @ shift`
+    weight: Numbers  # (3, cells), force of a unit pressure on each cell in mm²
+    missing_force: Numbers | None  # (3,), load less the integral of the pressure in N; None holds the ball where it is
 
     def solve(self) -> tuple[Numbers, Numbers]:
         """Solve for the unknown of each cell and the shift of the ball in mm."""
@@ -113,8 +84,7 @@ class NewtonSystem:
         if self.softness is not None:
             film = film + self.softness(pressure)
         balance = self.balance
-        change: Numbers = balance.by_pressure @ pressure + balance.by_thickness @ film + balance.by_void @ void
-        return change
+        return numpy.asarray(balance.by_pressure @ pressure + balance.by_thickness @ film + balance.by_void @ void)
 
     def _factorise(self) -> _SpringsFactor:
         """Factorise the system in which each elastic cell yields under its own pressure alone."""
@@ -157,23 +127,12 @@ class NewtonSystem:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _SpringsFactor:
-    """Sparse factor of the balance of the cells, bordered by the three displacements of the ball.
-
-    Attributes
-    ----------
-    factor : SuperLU
-    scale : array (cells,)
-        Factors of the rows before the factorisation.
-    by_shift : array (cells, 3)
-        Derivative of the outflow by the shift of the ball.
-    load : array (3, cells)
-        Derivative of the force on the ball by the unknowns.
-    """
+    """Sparse factor of the balance of the cells, bordered by the three displacements of the ball."""
 
     factor: scipy.sparse.linalg.SuperLU
-    scale: Numbers
-    by_shift: Numbers
-    load: Numbers
+    scale: Numbers  # (cells,), factors of the rows before the factorisation
+    by_shift: Numbers  # (cells, 3), derivative of the outflow by the shift of the ball
+    load: Numbers  # (3, cells), derivative of the force on the ball by the unknowns
 
     @cached_property
     def _response(self) -> Numbers:
@@ -182,8 +141,7 @@ class _SpringsFactor:
 
     def _solve_cells(self, right_side: Numbers) -> Numbers:
         """Solve for the unknowns at a fixed ball."""
-        solution: Numbers = self.factor.solve((self.scale * right_side.T).T)
-        return solution
+        return numpy.asarray(self.factor.solve((self.scale * right_side.T).T))
 
     def solve(self, right_side: Numbers, load_error: Numbers | None) -> tuple[Numbers, Numbers]:
         """Solve for unknowns and shift; without a load the ball stays where it is."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf, isfinite
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -18,87 +19,44 @@ from ..core.arrays import Numbers
 from .balance import add_storage, balance_cells
 from .carried_film import CentralShare, all_central
 from .mesh import FilmMesh
-from .newton_system import CellUnknown, NewtonSystem, Softness
+from .newton_system import CellUnknown, NewtonSystem
 
-_LARGEST_FALL = 0.6
-"""Largest part of a cell's film that one Newton step may take away."""
+if TYPE_CHECKING:
+    from .dry_contact import ElasticSoftness
 
-_SHARE_UPDATES = 3
-"""Number of Newton steps after which the share of central differences is fixed."""
-
-_GROWTH = 1.8
-"""Growth of the time steps on the way to the steady film."""
-
-_MAX_TIME_STEPS = 40
-"""Number of time steps on the way to the steady film after which it counts as not converged."""
-
-_EASY_ITERATIONS = 10
-"""Number of Newton steps up to which the next time step grows."""
-
-
-_FARTHEST = 100.0
-"""Displacement of the ball, relative to the largest gap, at which an iteration ends without a result."""
-
-_MAX_LOAD_ERROR = 1e-3
-"""Largest error of the balance of the load, relative to the load."""
+_LARGEST_FALL = 0.6  # largest part of a cell's film that one Newton step may take away
+_SHARE_UPDATES = 3  # number of Newton steps after which the share of central differences is fixed
+_GROWTH = 1.8  # growth of the time steps on the way to the steady film
+_MAX_TIME_STEPS = 40  # number of time steps on the way to the steady film after which it counts as not converged
+_EASY_ITERATIONS = 10  # number of Newton steps up to which the next time step grows
+_FARTHEST = 100.0  # displacement of the ball, relative to the largest gap, at which an iteration ends without a result
+_MAX_LOAD_ERROR = 1e-3  # largest error of the balance of the load, relative to the load
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmState:
-    """Pressure, vapour and position of the ball.
+    """Pressure, vapour and position of the ball."""
 
-    Attributes
-    ----------
-    pressure : array (cells,)
-        Pressure above the vapour pressure in MPa.
-    void : array (cells,)
-        Fraction of the film that is vapour, 0 to 1.
-    eccentricity : array (3,)
-        Displacement of the ball from the centre of the cup in mm.
-    converged : bool
-    iterations : int
-    """
-
-    pressure: Numbers
-    void: Numbers
-    eccentricity: Numbers
+    pressure: Numbers  # (cells,), pressure above the vapour pressure in MPa
+    void: Numbers  # (cells,), fraction of the film that is vapour, 0 to 1
+    eccentricity: Numbers  # (3,), displacement of the ball from the centre of the cup in mm
     converged: bool = True
     iterations: int = 0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmProblem:
-    """Film between a ball and a cup whose surface yields in proportion to the pressure.
-
-    Attributes
-    ----------
-    mesh : FilmMesh
-    viscosity : float
-        Viscosity in MPa s.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    gap : array (cells,)
-        Film thickness in mm of the centred ball on the undeformed cup.
-    compliance : array (cells,)
-        Displacement of the surface per pressure in mm/MPa; zeros on a rigid cup.
-    rim_pressure : array (rim faces,)
-        Pressure of the lubricant at the rim in MPa.
-    force : array (3,) or None
-        Load on the ball in N; None holds the ball where it is.
-    softness : Softness, optional
-        Further displacements of the surfaces, of elastic bodies.
-    central_share : CentralShare
-        Share of central differences in the carried film at each face; the rest is the film upstream.
-    """
+    """Film between a ball and a cup whose surface yields in proportion to the pressure."""
 
     mesh: FilmMesh
-    viscosity: float
-    spin: Numbers
-    gap: Numbers
-    compliance: Numbers
-    rim_pressure: Numbers
-    force: Numbers | None = None
-    softness: Softness | None = None
+    viscosity: float  # viscosity in MPa s
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    gap: Numbers  # (cells,), film thickness in mm of the centred ball on the undeformed cup
+    compliance: Numbers  # (cells,), displacement of the surface per pressure in mm/MPa; zeros on a rigid cup
+    rim_pressure: Numbers  # (rim faces,), pressure of the lubricant at the rim in MPa
+    force: Numbers | None = None  # (3,), load on the ball in N; None holds the ball where it is
+    softness: ElasticSoftness | None = None  # further displacements of the surfaces, of elastic bodies
+    # share of central differences in the carried film at each face; the rest is the film upstream
     central_share: CentralShare = all_central
 
     def displacement(self, pressure: Numbers) -> Numbers:
@@ -186,7 +144,6 @@ def advance(
 
 
 def _is_physical(problem: FilmProblem, state: FilmState) -> bool:
-    """Return True if the film is positive in all cells and the pressure carries the load."""
     if not problem.thickness(state).min() > 0:
         return False
     if problem.force is None:

@@ -18,8 +18,7 @@ from .film_problem import ContactFilm, check_reynolds, make_contact_film, shorte
 from .lubricant import Lubricant
 from .reynolds import FilmProblem, FilmState, advance
 
-_TOLERANCE, _MAX_ITERATIONS = 1e-4, 25
-"""Largest change of the last Newton step of a time step, and largest number of Newton steps."""
+_TOLERANCE, _MAX_ITERATIONS = 1e-4, 25  # of a time step: largest change of its last Newton step, and most Newton steps
 
 _ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
     (smooth_share, 1),
@@ -29,49 +28,29 @@ _ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
 )
 """Carried film and number of parts of a time step, in the order of the attempts."""
 
-
 _MAX_EDGE_TRAVEL = 1.0
 """Largest movement of the edge in a time step, in inlet lengths, that implicit Euler resolves to about 3 %."""
 
-_DRY_CELL = numpy.radians(4.0)
-"""Width in rad of the cells of the dry contacts, of which only axis and edge are used."""
+_DRY_CELL = numpy.radians(4.0)  # width in rad of the cells of the dry contacts, of which only axis and edge are used
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadStep:
-    """Load and motion of one step of time.
+    """Load and motion of one step of time."""
 
-    Attributes
-    ----------
-    force : array (3,)
-        Load on the ball in N.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    duration : float
-        Duration in s.
-    """
-
-    force: Numbers
-    spin: Numbers
-    duration: float
+    force: Numbers  # (3,), load on the ball in N
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    duration: float  # duration in s
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TransientFilm:
-    """Films at the end of each step of load and motion.
+    """Films at the end of each step of load and motion."""
 
-    Attributes
-    ----------
-    states : tuple of FilmState
-        Pressure, vapour and position of the ball; a state that is not converged is the last one that was.
-    thickness : array (steps, cells)
-        Film thickness in mm.
-    status : array of Status (steps,)
-        `NOT_CONVERGED` marks steps without a solution: they have the film before them, which is the best so far.
-    """
-
+    # pressure, vapour and position of the ball; a state that is not converged is the last one that was
     states: tuple[FilmState, ...]
-    thickness: Numbers
+    thickness: Numbers  # (steps, cells), film thickness in mm
+    # (steps,), `NOT_CONVERGED` marks steps without a solution: they have the film before them, which is the best so far
     status: Numbers
 
     @property
@@ -293,7 +272,6 @@ def film_over_steps(
 
 
 def _finite(name: str, values: Array) -> Numbers:
-    """Return finite numbers as an array."""
     array = numpy.asarray(check_numeric(name, values), dtype=float)
     require(name, array, numpy.isfinite(array), "a number is finite")
     return array
@@ -303,10 +281,8 @@ def _edge_shifts(model: Model, joint: Joint, loads: Numbers) -> Numbers:
     """Compute the movement (steps,) of the edge in mm from the load before to each load in N; the last is first."""
     forces, numbers = numpy.unique(loads, return_inverse=True)
     angles = numpy.array([float(_press(model, joint, force).half_angle) for force in forces])[numbers]
-    shifts: Numbers = float(joint.socket_radius) * numpy.abs(angles - numpy.roll(angles, 1))
-    return shifts
+    return numpy.asarray(float(joint.socket_radius) * numpy.abs(angles - numpy.roll(angles, 1)))
 
 
 def _press(model: Model, joint: Joint, force: float) -> Contact:
-    """Press one joint with one load in N."""
     return check_single_contact(model.press(joint, force=float(force)))

@@ -20,37 +20,23 @@ import numpy
 from ..core.arrays import Numbers
 from .dry_contact import DryContact
 
-_COURANT = 0.8
-"""Largest part of the film of a cell that may leave it in one step."""
-
-_TINY = 1e-300
-"""Film in mm that keeps a quotient of zeros at zero."""
+_COURANT = 0.8  # largest part of the film of a cell that may leave it in one step
+_TINY = 1e-300  # film in mm that keeps a quotient of zeros at zero
 
 _EDGE_LENGTHS = 3.0
 """Distance from an elastic edge, in inlet lengths, within which the pressure of the film is not the dry one."""
 
-_FLOODED = 4.0
-"""Film around the contact, relative to the inlet film; the flow into the contact does not depend on it."""
+_FLOODED = 4.0  # film around the contact, relative to the inlet film; the flow into the contact does not depend on it
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmWave:
-    """Flow of a thin film over a dry contact.
-
-    Attributes
-    ----------
-    contact : DryContact
-    viscosity : float
-        Viscosity in MPa s.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    flood : float
-        Film around the contact in mm, and largest film within it; by default four times the inlet film.
-    """
+    """Flow of a thin film over a dry contact."""
 
     contact: DryContact
-    viscosity: float
-    spin: Numbers
+    viscosity: float  # viscosity in MPa s
+    spin: Numbers  # (3,), rotation rate of the ball in rad/s
+    # film around the contact in mm, and largest film within it; by default four times the inlet film
     flood: float = 0.0
 
     @cached_property
@@ -294,8 +280,7 @@ def limited_slope(twice_mean: Numbers, centred: Numbers) -> Numbers:
     It is their harmonic mean, and 0 where their signs differ.
     """
     product = (twice_mean - centred) * centred
-    slope: Numbers = 2 * numpy.maximum(product, 0.0) / (twice_mean + _TINY)
-    return slope
+    return numpy.asarray(2 * numpy.maximum(product, 0.0) / (twice_mean + _TINY))
 
 
 def godunov_flow(

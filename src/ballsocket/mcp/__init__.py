@@ -39,11 +39,9 @@ def make_server(folder: Path, longest: float, commands: Commands, program: Seque
     calls = ToolCalls(folder, longest, commands, program)
 
     async def list_tools(context: Any, request: Any) -> types.ListToolsResult:
-        """Return the tools with their schemas."""
         return types.ListToolsResult(tools=[_tool(name, commands) for name in TOOLS])
 
     async def call_tool(context: Any, request: types.CallToolRequestParams) -> types.CallToolResult:
-        """Call a tool."""
         return _tool_result(await calls.call(request.name, request.arguments or {}))
 
     return Server(
@@ -61,7 +59,6 @@ async def serve(folder: Path, longest: float, commands: Commands, program: Seque
 
 
 def _tool(name: str, commands: Commands) -> types.Tool:
-    """Return a tool in the types of the SDK."""
     import mcp_types as types
 
     from .tools import TOOLS, schema
@@ -72,7 +69,6 @@ def _tool(name: str, commands: Commands) -> types.Tool:
 
 
 def _tool_result(result: CallResult) -> types.CallToolResult:
-    """Return the result of a call in the types of the SDK."""
     import mcp_types as types
 
     texts = [result.refusal] if result.refusal else []

@@ -22,13 +22,14 @@ from typer.models import ArgumentInfo
 
 from ..core.checks import check_names, known_name, needs, shown
 from ..core.executors.processes import available_cores
-from ..core.input_files import AllowedFolders, resolve_path, restriction_variables
+from ..core.input_files import resolve_inside, resolve_path, restriction_variables
 from ..core.storage.atomic_files import cache_folder, write_text
 from ..files.toml import MAX_FILE_SIZE, read_toml
 from .tools import TOOLS, Commands, Tool, option, parameters
 
 _MAX_CHARACTERS = 300  # of a text
 _MAX_VALUES = 50  # of a list
+MAX_ANSWER = 2_000_000  # bytes
 
 
 def command_line(name: str, arguments: Mapping[str, Any], folder: Path, commands: Commands) -> list[str]:
@@ -67,19 +68,13 @@ def command_line(name: str, arguments: Mapping[str, Any], folder: Path, commands
             options += [f"--{parameter.replace('_', '-')}={text}" for text in texts]
     if tool.file:
         path = _file(tool, arguments, folder)
-        operands.append(_operand(path.relative_to(folder).as_posix()))
+        operands.append(_checked_operand(path.relative_to(folder).as_posix(), folder))
         options += [f"{tool.writes}={path.stem}-pack"] if tool.writes else []
     return [tool.command, *operands, *tool.fixed, *options, "--json"]
 
 
 def _texts(name: str, argument: Any) -> Iterator[str]:
-    """Yield the values of an argument as text.
-
-    Raises
-    ------
-    ValueError
-        A value is neither text nor a finite number, or too long, or there are too many.
-    """
+    """Yield the values of an argument as text: each is text or a finite number."""
     values = argument if isinstance(argument, list) else [argument]
     if len(values) > _MAX_VALUES:
         raise ValueError(f"{name} has {len(values)} values: at most {_MAX_VALUES}")
@@ -95,15 +90,10 @@ def _texts(name: str, argument: Any) -> Iterator[str]:
 
 
 def _checked_operand(name: str, folder: Path) -> str:
-    """Check that a name stays inside the folder, and return it as an operand."""
+    """Check that a name stays inside the folder, and return it as an operand, which does not begin like an option."""
     if Path(name).is_absolute():
         raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
-    AllowedFolders((resolve_path(folder),)).resolve(folder / name, name)
-    return _operand(name)
-
-
-def _operand(name: str) -> str:
-    """Prefix a file name that begins like an option with the folder."""
+    resolve_inside((resolve_path(folder),), folder / name, name)
     return f"./{name}" if name.startswith("-") else name
 
 
@@ -123,7 +113,6 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
 
 
 def _existing_file(name: Any, folder: Path) -> Path:
-    """Return the path of a file in the folder."""
     if not isinstance(name, str):
         raise ValueError(f"file = {shown(name)} must be text")
     path = folder / _checked_operand(next(_texts("file", name)), folder)
@@ -133,15 +122,6 @@ def _existing_file(name: Any, folder: Path) -> Path:
 
 
 def _toml(content: Mapping[str, Any]) -> str:
-    """Write an object as TOML.
-
-    Raises
-    ------
-    ValueError
-        A value that TOML does not have.
-    ImportError
-        The writer of TOML is not installed.
-    """
     needs("mcp", "tomli_w")
     import tomli_w
 
@@ -164,10 +144,6 @@ def _stored_content(content: Any, folder: Path) -> Path:
     return path if path.is_file() else write_text(path, raw.decode("utf-8"))
 
 
-MAX_ANSWER = 2_000_000
-"""Largest size of an answer in bytes."""
-
-
 @dataclass(frozen=True)
 class CallResult:
     """Result of a call: an answer, a refusal, or both if the answer is incomplete."""
@@ -177,16 +153,9 @@ class CallResult:
 
 
 async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallResult:
-    """Run a command in a separate Python process, and return its result.
+    """Run a command in a separate Python process that works in a folder for at most `longest` s; return its result.
 
-    Parameters
-    ----------
-    arguments : sequence of str
-        Arguments of Python: those of the program, the name of the command and its arguments.
-    folder : Path
-        Working folder of the process.
-    longest : float
-        Time limit in seconds.
+    `arguments` are those of Python: of the program, the name of the command and its arguments.
     """
     with _lifeline() as stdin:
         process = await asyncio.create_subprocess_exec(
@@ -224,7 +193,6 @@ def _lifeline() -> Iterator[int]:
 
 
 def _kill(process: asyncio.subprocess.Process) -> None:
-    """Kill a process and its children."""
     with suppress(OSError):
         if hasattr(os, "killpg"):
             os.killpg(process.pid, signal.SIGKILL)
@@ -233,7 +201,6 @@ def _kill(process: asyncio.subprocess.Process) -> None:
 
 
 def _call_result(status: int | None, out: bytes, err: str) -> CallResult:
-    """Return the result of a process from its exit status and its output."""
     messages = [line.removeprefix("ballsocket: ") for line in err.splitlines() if line.startswith("ballsocket: ")]
     refusal = "" if status == 0 else "; ".join(messages) or "its process died; it may have had too little memory"
     if len(out) > MAX_ANSWER:
@@ -243,24 +210,12 @@ def _call_result(status: int | None, out: bytes, err: str) -> CallResult:
 
 @dataclass(frozen=True)
 class ToolCalls:
-    """Calls of tools; at most one runs per core.
+    """Calls of tools; at most one runs per core."""
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the files to read and write.
-    longest : float
-        Time limit of a call in seconds, without the time in the queue.
-    commands : mapping
-        Functions of the commands by name.
-    program : sequence of str
-        Arguments of Python that run a command, before its name.
-    """
-
-    folder: Path
-    longest: float
+    folder: Path  # of the files to read and write
+    longest: float  # s, time limit of a call without its time in the queue
     commands: Commands
-    program: Sequence[str]
+    program: Sequence[str]  # arguments of Python that run a command, before its name
     _slots: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(available_cores()))
 
     async def call(self, name: str, arguments: Mapping[str, Any]) -> CallResult:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
 from types import MappingProxyType, NoneType, UnionType
@@ -17,46 +18,16 @@ from ..files.schema_keys import json_schema
 from ..model_catalogue import off_axis
 from ..problem.dimensions import DIAMETERS
 
-
-def _joint() -> type[Table]:
-    """Return the tables of joint files."""
-    from ..files.joint_file import JointFileTable
-
-    return JointFileTable
-
-
-def _hip() -> type[Table]:
-    """Return the tables of hip files."""
-    from ..hip.schema import HipTable
-
-    return HipTable
-
-
-def _study() -> type[Table]:
-    """Return the tables of study files."""
-    from ..studies.file import StudyTable
-
-    return StudyTable
-
-
-def _identify() -> type[Table]:
-    """Return the tables of identification files."""
-    from ..identification.file import IdentifyTable
-
-    return IdentifyTable
-
-
-def _evidence() -> type[Table]:
-    """Return the tables of question files."""
-    from ..evidence.question import QuestionTable
-
-    return QuestionTable
-
-
-FILE_TABLES: Mapping[str, Callable[[], type[Table]]] = MappingProxyType(
-    {"joint": _joint, "hip": _hip, "study": _study, "identify": _identify, "evidence": _evidence}
+FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "joint": ("files.joint_file", "JointFileTable"),
+        "hip": ("hip.schema", "HipTable"),
+        "study": ("studies.file", "StudyTable"),
+        "identify": ("identification.file", "IdentifyTable"),
+        "evidence": ("evidence.question", "QuestionTable"),
+    }
 )
-"""Functions that return the tables of a kind of input file, by the names of their commands."""
+"""Module and class of the tables of each kind of input file, by the name of its command."""
 
 
 def file_table(kind: str) -> type[Table]:
@@ -67,7 +38,9 @@ def file_table(kind: str) -> type[Table]:
     ValueError
         A kind that is not known; the message suggests the nearest one.
     """
-    return FILE_TABLES[known_name("kind of file", kind, FILE_TABLES)]()
+    module, name = FILE_TABLES[known_name("kind of file", kind, FILE_TABLES)]
+    tables: type[Table] = getattr(import_module(f"ballsocket.{module}"), name)
+    return tables
 
 
 Commands = Mapping[str, Callable[..., None]]
@@ -76,36 +49,16 @@ Commands = Mapping[str, Callable[..., None]]
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """A command as assistants call it.
-
-    Attributes
-    ----------
-    command : str
-        Name of the command.
-    description : str
-        Purpose of the tool in a sentence or two.
-    fixed : tuple of str
-        Arguments of every call.
-    hidden : tuple of str
-        Parameters that are not offered, in addition to those for files to write.
-    required : tuple of str
-        Parameters that a call must have.
-    file : str
-        Subject of the TOML file that the tool reads; empty if it reads none.
-    writes : str
-        Option for the folder that the tool writes; empty if it writes nothing.
-    forbidden : tuple of str
-        Top-level keys that the file must not have.
-    """
+    """A command as assistants call it."""
 
     command: str
-    description: str
-    fixed: tuple[str, ...] = ()
-    hidden: tuple[str, ...] = ()
-    required: tuple[str, ...] = ()
-    file: str = ""
-    writes: str = ""
-    forbidden: tuple[str, ...] = ()
+    description: str  # purpose in a sentence or two
+    fixed: tuple[str, ...] = ()  # arguments of every call
+    hidden: tuple[str, ...] = ()  # parameters that are not offered, in addition to those for files to write
+    required: tuple[str, ...] = ()  # parameters that a call must have
+    file: str = ""  # subject of the TOML file that the tool reads; empty if it reads none
+    writes: str = ""  # option for the folder that the tool writes; empty if it writes nothing
+    forbidden: tuple[str, ...] = ()  # top-level keys that the file must not have
 
 
 _DIRECTION = ("tilt", "direction", "ring_width")
@@ -189,11 +142,8 @@ _CONTENT = "Content of that file, in place of its name: text in TOML, or an obje
 def parameters(tool: Tool, commands: Commands) -> Mapping[str, Parameter]:
     """Return the parameters of a tool's command that are offered, by name."""
     declared = signature(commands[tool.command], eval_str=True).parameters
-    return {name: parameter for name, parameter in declared.items() if _is_offered(tool, name, parameter)}
-
-
-def _is_offered(tool: Tool, name: str, parameter: Parameter) -> bool:
-    return name not in (*OMITTED, *tool.hidden) and Path not in _types(parameter)
+    offered = {name: declared[name] for name in declared if name not in (*OMITTED, *tool.hidden)}
+    return {name: parameter for name, parameter in offered.items() if Path not in _types(parameter)}
 
 
 def schema(tool: Tool, commands: Commands) -> dict[str, Any]:
@@ -201,28 +151,19 @@ def schema(tool: Tool, commands: Commands) -> dict[str, Any]:
     properties = {name: _property(name, parameter) for name, parameter in parameters(tool, commands).items()}
     definitions: dict[str, Any] = {}
     if tool.file:
-        content, definitions = _content_schema(tool)
+        file = json_schema(file_table(tool.command))
+        keys = {key: part for key, part in file["properties"].items() if key not in tool.forbidden}
+        content = {"description": _CONTENT, "anyOf": [{"type": "string"}, _object(keys, file["required"])]}
         named = {"type": "string", "description": _FILE.format(tool.file)}
-        properties = {"file": named, "content": content, **properties}
-    return {
-        "type": "object",
-        "properties": properties,
-        "required": list(tool.required),
-        "additionalProperties": False,
-        **({"$defs": definitions} if definitions else {}),
-    }
+        properties, definitions = {"file": named, "content": content, **properties}, {"$defs": file["$defs"]}
+    return {**_object(properties, list(tool.required)), **definitions}
 
 
-def _content_schema(tool: Tool) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the schema of the content of a tool's file, and the definitions that it refers to."""
-    file = json_schema(file_table(tool.command))
-    keys = {key: part for key, part in file["properties"].items() if key not in tool.forbidden}
-    table = {"type": "object", "properties": keys, "required": file["required"], "additionalProperties": False}
-    return {"description": _CONTENT, "anyOf": [{"type": "string"}, table]}, file["$defs"]
+def _object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
 def _property(name: str, parameter: Parameter) -> dict[str, Any]:
-    """Return the JSON Schema of one argument."""
     types = _types(parameter)
     kind = next((kind for kind in _SCHEMAS if any(issubclass(type_, kind) for type_ in types)), str)
     description = {"description": f"{_quantity_text(name)}{option(parameter).help or ''}"}
@@ -255,7 +196,6 @@ def option(parameter: Parameter) -> Any:
 
 
 def _types(parameter: Parameter) -> tuple[type, ...]:
-    """Return every type in the annotation of a parameter."""
     return tuple(_flatten(get_args(parameter.annotation)[0]))
 
 

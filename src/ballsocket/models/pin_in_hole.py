@@ -125,9 +125,7 @@ class LineContact(Outcome):
 
         `angle` in rad broadcasts against the contact's shape.
         """
-        return self._mask_failed(
-            lambda: self.line_load / self._numpy_joint.socket_radius * self._scaled_pressure(angle)
-        )
+        return self._mask_failed(lambda: self.line_load / self.joint.socket_radius * self._scaled_pressure(angle))
 
     def _scaled_pressure(self, angle: Array) -> Array:
         """Compute the scaled pressure p R2/Q at a polar angle, with the line load Q."""

@@ -12,14 +12,8 @@ from ..contact import Contact, Model
 from ..core.arrays import Numbers
 from ..core.validity import OutsideDomainError
 from ..model_catalogue import catalogue, reference, with_gap
-from ..problem import Joint, Material
-from ..problem.presets import STEEL
-
-RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
-"""Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
-
-THICKNESS = (3.0, 15.0)
-"""Smallest and largest liner thickness in mm."""
+from ..problem import Joint
+from .cases import RANGES, THICKNESS, joint
 
 FORCES = numpy.array([500.0, 1000.0, 2000.0, 3000.0, 4000.0])
 """Loads in N."""
@@ -95,7 +89,8 @@ def edge_joints() -> Joint:
         grid.ravel() for grid in numpy.meshgrid(radii, clearances, (0.3, 0.4, 0.49), (0.0, 0.5, 1.0), indexing="ij")
     )
     thinnest, thickest = (numpy.clip(outer - R1 - c, *THICKNESS) for outer in RANGES["outer_radius"])
-    return _joints(R1, c, thinnest + fraction * (thickest - thinnest), poisson)
+    thickness = thinnest + fraction * (thickest - thinnest)
+    return joint(head_radius=R1, clearance=c, liner_thickness=thickness, poisson=poisson)
 
 
 def paper_joints(count: int = 128) -> Joint:
@@ -107,21 +102,10 @@ def paper_joints(count: int = 128) -> Joint:
 
     low, high = zip(*RANGES.values(), strict=True)
     points = scale(Sobol(len(RANGES), scramble=False).random(count), low, high)
-    R1, outer, clearance, poisson = points.T
-    thickness = outer - R1 - clearance
+    thickness = points[:, 1] - points[:, 0] - points[:, 2]
     allowed = (thickness >= THICKNESS[0]) & (thickness <= THICKNESS[1])
-    return _joints(R1[allowed], clearance[allowed], thickness[allowed], poisson[allowed])
-
-
-def _joints(R1: Numbers, clearance: Numbers, thickness: Numbers, poisson: Numbers) -> Joint:
-    """Create joints of steel on 1 GPa."""
-    return Joint(
-        ball_radius=R1,
-        clearance=clearance,
-        liner_thickness=thickness,
-        liner=Material(young=1000.0, poisson=poisson),
-        ball=STEEL,
-    )
+    R1, _, clearance, poisson = points[allowed].T
+    return joint(head_radius=R1, clearance=clearance, liner_thickness=thickness[allowed], poisson=poisson)
 
 
 def accuracies(
@@ -157,7 +141,6 @@ def accuracies(
 
 
 def _concatenate(first: Joint, second: Joint) -> Joint:
-    """Concatenate two families of joints, both of arrays."""
     pairs = zip(first.numbers(), second.numbers(), strict=True)
     shapes = [numpy.ones(len(joint.ball_radius)) for joint in (first, second)]
     return first.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])

@@ -18,22 +18,21 @@ from ..models.table_3 import table_3
 from ..problem import Joint, Material
 from ..problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
 from ..studies.calibration import Calibration, as_polynomial, calibrate
-from .accuracy import RANGES, THICKNESS
+
+RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
+"""Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
+
+THICKNESS = (3.0, 15.0)
+"""Smallest and largest liner thickness in mm."""
 
 RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
 """Ratios R2/L over which Table 3 is refitted."""
 
 
 def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
-    """Create joints from R2/L in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
+    """Create the joints of Figure 2 (right) and Table 3 from R2/L: outer radius 24 mm, clearance 0.1 mm."""
     socket = 24.0 * ratios / (1 + ratios)
-    return Joint(
-        ball_radius=socket - 0.1,
-        clearance=0.1,
-        liner_thickness=24.0 - socket,
-        liner=Material(young=1000.0, poisson=poisson),
-        ball=STEEL,
-    )
+    return joint(head_radius=socket - 0.1, liner_thickness=24.0 - socket, poisson=poisson)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,7 +97,6 @@ def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
 
 
 def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:
-    """Convert three numbers to floats."""
     first, second, third = (float(number) for number in numbers)
     return first, second, third
 
@@ -128,12 +126,12 @@ def hip(poisson: Numbers | float = 0.4) -> Joint:
 
 def joint(
     *,
-    head_radius: Numbers | float = 16.0,
-    clearance: Numbers | float = 0.1,
-    liner_thickness: Numbers | float = 6.0,
-    poisson: Numbers | float = 0.4,
+    head_radius: Array = 16.0,
+    clearance: Array = 0.1,
+    liner_thickness: Array = 6.0,
+    poisson: Array = 0.4,
 ) -> Joint:
-    """Create a joint of Figure 5; the defaults are the common joint of its series."""
+    """Create a joint of steel on 1 GPa; the defaults are the common joint of the series of Figure 5."""
     return Joint(
         ball_radius=head_radius,
         clearance=clearance,
@@ -158,11 +156,6 @@ def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
     yield from zip(symbols, series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
-def by_ratio(ratio: Numbers, poisson: Numbers | float) -> Joint:
-    """Create the joints of Figure 2 (right) and Table 3 from R2/L; their outer radius is 24 mm."""
-    return paper_joint(poisson, ratio)
-
-
 def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numbers, Numbers, Joint]:
     """Return head radii and liner thicknesses in mm over the range of Table 1, and their joints with c 0.1 mm."""
     radius = numpy.linspace(*RANGES["ball_radius"], heads)[:, None] + numpy.zeros(liners)
@@ -170,11 +163,6 @@ def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numb
     thickness = thinnest + (thickest - thinnest) * numpy.linspace(0.0, 1.0, liners)
     radius, thickness = radius.ravel(), thickness.ravel()
     return radius, thickness, joint(head_radius=radius, liner_thickness=thickness, poisson=poisson)
-
-
-def with_clearance(joints: Joint, clearance: float) -> Joint:
-    """Replace the radial clearance (mm) of joints."""
-    return replace(joints, clearance=clearance)
 
 
 def scaled_modulus(contact_pressure: Numbers, indentation: Numbers, socket_radius: Numbers) -> Numbers:
@@ -194,13 +182,8 @@ def calculix() -> Numbers:
 
 def joints_of_calculix(table: Numbers) -> Joint:
     """Create the joints of rows of the CalculiX table, as arrays."""
-    return Joint(
-        ball_radius=table["ball_radius"],
-        clearance=table["clearance"],
-        liner_thickness=table["liner_thickness"],
-        liner=Material(young=1000.0, poisson=table["poisson"]),
-        ball=STEEL,
-    )
+    names = ("clearance", "liner_thickness", "poisson")
+    return joint(head_radius=table["ball_radius"], **{name: table[name] for name in names})
 
 
 def calculix_joints() -> tuple[Joint, Numbers]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy
 
-from ..contact import Contact, Model
+from ..contact import Model
 from ..core.arrays import Numbers, to_numpy
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT
 from ..models.foundation import HessForsbach
@@ -79,20 +79,13 @@ class Figure:
     def joined(cls, parts: Iterable[Figure]) -> Figure:
         """Join several figures into one: panels with the same title get the lines of all, in the order of the parts."""
         figures = list(parts)
+        panels: dict[str, Panel] = {}
+        for panel in (panel for figure in figures for panel in figure.panels):
+            known = panels.get(panel.title)
+            panels[panel.title] = replace(known, lines=[*known.lines, *panel.lines]) if known else panel
         return replace(
-            figures[0],
-            panels=list(_merged(panel for figure in figures for panel in figure.panels)),
-            maps=[entry for figure in figures for entry in figure.maps],
+            figures[0], panels=list(panels.values()), maps=[entry for figure in figures for entry in figure.maps]
         )
-
-
-def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
-    """Merge panels with the same title."""
-    groups: dict[str, list[Panel]] = {}
-    for panel in panels:
-        groups.setdefault(panel.title, []).append(panel)
-    for group in groups.values():
-        yield replace(group[0], lines=[line for panel in group for line in panel.lines])
 
 
 Models = Mapping[str, Model]
@@ -103,7 +96,6 @@ FIT = "Eq. (18), Table 3"
 
 
 def _curve(model: str, case: str, x: Any, y: Any) -> FigureLine:
-    """Create a curve from arrays."""
     return FigureLine(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
 
 
@@ -142,7 +134,7 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
     """Compute the lines of each panel, by title and axis label."""
     hip = cases.hip(poisson)
     wide = cases.joint(head_radius=18.0 - _CLEARANCES, clearance=_CLEARANCES, liner_thickness=6.75, poisson=poisson)
-    family = cases.by_ratio(_RATIOS, poisson)
+    family = cases.paper_joint(poisson, _RATIOS)
     by_force, by_clearance, by_ratio = [], [], []
     for name, model in models.items():
         by_force.append(_curve(name, case, _FORCES, _scaled_modulus(model, hip, _FORCES)))
@@ -271,32 +263,22 @@ def figure_6(name: str, model: Model, points: int = 25) -> Figure:
     )
 
 
-def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
-    """Compute the map of the deviation of a model from a reference in peak pressure."""
+def figure_6_deviations(quantity: str, name: str, model: Model, reference: Model, points: int = 25) -> Figure:
+    """Compute the map of the deviation of a model from a reference in "max_pressure" or "area"."""
+    plural, title, symbol = _DEVIATIONS[quantity]
+    grid = _CurveGrid(points)
+    value, truth = (getattr(solver.press(grid.joint, force=cases.LOAD), quantity) for solver in (model, reference))
+    deviation = grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1))
     return Figure(
-        title="Figure 6, pressures of every model",
-        caption="How far the peak pressure of each model lies from the exact one, in %; white is within 1 %.",
+        title=f"Figure 6, {plural} of every model",
+        caption=f"How far the {title} of each model lies from the exact one, in %; white is within 1 %.",
         columns=3,
-        maps=[_deviation(name, "p0", _CurveGrid(points), (model, reference), lambda contact: contact.max_pressure)],
+        maps=[replace(deviation, about_zero=True)],
     )
 
 
-def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
-    """Compute the map of the deviation of a model from a reference in contact area."""
-    return Figure(
-        title="Figure 6, areas of every model",
-        caption="How far the contact area of each model lies from the exact one, in %; white is within 1 %.",
-        columns=3,
-        maps=[_deviation(name, "area", _CurveGrid(points), (model, reference), lambda contact: contact.area)],
-    )
-
-
-def _deviation(
-    name: str, symbol: str, grid: _CurveGrid, pair: tuple[Model, Model], quantity: Callable[[Contact], Numbers]
-) -> Map:
-    """Compute the map of the relative deviation of the first model from the second, in percent."""
-    value, truth = (quantity(model.press(grid.joint, force=cases.LOAD)) for model in pair)
-    return replace(grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1)), about_zero=True)
+_DEVIATIONS = {"max_pressure": ("pressures", "peak pressure", "p0"), "area": ("areas", "contact area", "area")}
+"""Plural, title and symbol of the quantities of the maps of deviations."""
 
 
 class _CurveGrid:

@@ -72,7 +72,6 @@ def full_plan() -> Plan:
 def _ledgers(
     reference: Model, claims: tuple[Claim, ...], elsewhere: tuple[Claim, ...]
 ) -> dict[str, Mapping[str, Piece]]:
-    """Return the parts of the claims: those of the paper and those of other authors."""
     return {
         part: {row.identifier: Summary(partial(_judge, row.name, reference)) for row in table}
         for part, table in (("claims", claims), ("elsewhere", elsewhere))
@@ -80,7 +79,7 @@ def _ledgers(
 
 
 def _judge(name: str, reference: Model) -> Finding:
-    """Judge a claim by its name, in any process."""
+    """Judge a claim by its name: its functions cannot be sent to another process."""
     return claim(name)(reference)
 
 
@@ -121,13 +120,12 @@ def _parts(
         },
         "figure_6": {"": Summary(partial(curves.figure_6, "hess-forsbach", models["hess-forsbach"]))},
         "figure_6_exact": {"": Summary(partial(curves.figure_6, "exact", models["exact"], _COARSE))},
-        "figure_6_pressures": {
-            name: Summary(partial(curves.figure_6_pressures, name, model, models["exact"], _COARSE))
-            for name, model in fields.items()
-        },
-        "figure_6_areas": {
-            name: Summary(partial(curves.figure_6_areas, name, model, models["exact"], _COARSE))
-            for name, model in fields.items()
+        **{
+            f"figure_6_{part}": {
+                name: Summary(partial(curves.figure_6_deviations, quantity, name, model, models["exact"], _COARSE))
+                for name, model in fields.items()
+            }
+            for part, quantity in (("pressures", "max_pressure"), ("areas", "area"))
         },
     }
 
@@ -137,10 +135,8 @@ _COARSE = 13
 
 
 def _column(name: str, model: Model, poisson: float) -> dict[str, Any]:
-    """Compute a column of Table 3 and the name of its reference."""
     return {"reference": name, **refit_column(poisson, model).summary()}
 
 
 def _accuracy() -> list[dict[str, Any]]:
-    """Compute the accuracy of the models of the catalogue."""
     return [row.summary() for row in accuracies()]

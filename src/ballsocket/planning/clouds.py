@@ -18,14 +18,10 @@ from .meshes import LENGTH_UNITS, check_extent, length_of, read_mesh
 
 _MESH_SUFFIXES = (".stl", ".obj", ".ply")
 _CLOUD_SUFFIXES = (".xyz", ".csv", ".txt", ".asc", ".pts")
-_MAX_BYTES = 100_000_000
-"""Largest size of a file of points."""
-
+_MAX_BYTES = 100_000_000  # largest size of a file of points
 _COMMENTS = ("#", "//", "%", "!")
 _AXES = ("x", "y", "z")
-_HEAD_LINES = 100
-"""Number of lines in which heads, separators and the first points are searched."""
-
+_HEAD_LINES = 100  # number of lines in which heads, separators and the first points are searched
 _MICRON = {"µm": "um", "μm": "um", "micron": "um"}
 
 
@@ -100,11 +96,14 @@ def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
         first = next((number for number, line in enumerate(lines) if line), None)
         if first is None:
             raise ValueError("it has no points")
-        if lines[first].isdigit():  # number of points, as .pts files have it
-            lines[first] = ""
+        n_stated = lines[first] if lines[first].isdigit() else ""  # number of points, as .pts files have it
+        lines[first] = lines[first].removeprefix(n_stated)
         tables = list(split_text("\n".join(lines[: first + _HEAD_LINES])))
         table = find_cells(path.name, _without_heads(tables) or tables, _AXES)
-        return _read_points(lines, table, _find_columns(table, units))
+        points, notes = _read_points(lines, table, _find_columns(table, units))
+        if n_stated and int(n_stated) != len(points):
+            raise ValueError(f"its first line states {n_stated} points, and it has {len(points)}: save it again")
+        return points, notes
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
 

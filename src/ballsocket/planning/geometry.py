@@ -8,12 +8,8 @@ import numpy
 
 from ..core.arrays import Numbers
 
-_TUKEY = 4.685
-"""Residual over the scale beyond which a point has no weight (Tukey's biweight)."""
-
-_NORMAL_MAD = 1.4826
-"""Standard deviation over the median absolute deviation of normal scatter."""
-
+_TUKEY = 4.685  # residual over the scale beyond which a point has no weight (Tukey's biweight)
+_NORMAL_MAD = 1.4826  # standard deviation over the median absolute deviation of normal scatter
 _ITERATIONS = 20
 _SEED, _TRIPLES = 20260102, 300
 

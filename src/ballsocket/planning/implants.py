@@ -26,53 +26,31 @@ RADII = (7.0, 40.0)
 """Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""
 
 _RADII_TEXT = f"radius {RADII[0]:g} to {RADII[1]:g} mm"
-
 _MAX_OUTER_RADIUS = 60.0  # mm
 _SEED = 20260101
 _SAMPLE = 1200
 _BATCH, _MAX_BATCHES = 4000, 15
-_CANDIDATES = 60
-"""Number of spheres through four corners from which the best is chosen."""
-
+_CANDIDATES = 60  # number of spheres through four corners from which the best is chosen
 _FINALISTS = 4
 _START_TOLERANCE, _MAX_TOLERANCE = 0.004, 0.02
 """Distance from a sphere over its radius, up to which a facet belongs to it: at first, and at most."""
 
-_MIN_RESOLUTION = 3e-4
-"""Smallest distance from the fitted sphere over its radius, up to which a facet belongs to it."""
-
+_MIN_RESOLUTION = 3e-4  # smallest distance from the fitted sphere over its radius, up to which a facet belongs to it
 _SIGMAS = 4.0
-_MIN_ALIGNMENT = 0.9
-"""Least cosine between the normal of a facet and the radial direction at its corners."""
-
-_MIN_COVERAGE = 0.06
-"""Least share of the full sphere that facets must cover."""
-
-_MAX_ROUGHNESS = 0.015
-"""Largest standard deviation of a bearing from its sphere, over the radius."""
-
-_MIN_OPENING = 0.005
-"""Distance of the centroid of a spherical surface from its centre over the radius, below which it is complete."""
+_MIN_ALIGNMENT = 0.9  # least cosine between the normal of a facet and the radial direction at its corners
+_MIN_COVERAGE = 0.06  # least share of the full sphere that facets must cover
+_MAX_ROUGHNESS = 0.015  # largest standard deviation of a bearing from its sphere, over the radius
+_MIN_OPENING = 0.005  # distance of a sphere's centroid from its centre over the radius, below which it is complete
 
 
-_FLAT_FACETS = 0.02
-"""Depth in mm of facets below the sphere through their corners from which a note is given."""
-
-_TANGENT_BAND = radians(20.0)
-"""Width of the band at the rim in which a cylinder may continue the sphere."""
-
-_MIN_TANGENT = radians(0.4)
-"""Smallest polar angle in rad of a cylinder that is left out."""
-
-_MIN_GAIN = 25.0
-"""Least decrease of the sum of squares over its mean per facet that is evidence for a cylinder."""
-
-_UNEVEN_RIM = radians(3.0)
-"""Deviation of the rim from a plane from which the rim has a lip."""
+_FLAT_FACETS = 0.02  # depth in mm of facets below the sphere through their corners from which a note is given
+_TANGENT_BAND = radians(20.0)  # width of the band at the rim in which a cylinder may continue the sphere
+_MIN_TANGENT = radians(0.4)  # smallest polar angle in rad of a cylinder that is left out
+_MIN_GAIN = 25.0  # least decrease of the sum of squares over its mean per facet that is evidence for a cylinder
+_UNEVEN_RIM = radians(3.0)  # deviation of the rim from a plane from which the rim has a lip
 
 
-_MIN_OUTWARDS = 0.35
-"""Least cosine between the normal of an outer surface and the direction from the centre of the bore."""
+_MIN_OUTWARDS = 0.35  # least cosine between the normal of an outer surface and the direction from the bore's centre
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -18,25 +18,16 @@ from ..core.input_files import open_input
 from ..files.cells import decode_text
 from ..problem.cup import Side
 
-_MAX_FILE_SIZE = 10_000_000
-"""Largest size of a landmark file in bytes."""
-
+_MAX_FILE_SIZE = 10_000_000  # largest size of a landmark file in bytes
 _MAX_POINTS = 10_000
 _MAX_COORDINATE = 1e5  # mm
-
-_SIGNS = MappingProxyType({"RAS": (1.0, 1.0, 1.0), "LPS": (-1.0, -1.0, 1.0)})
-"""Factors of the coordinates that give RAS, by the name of the coordinate system."""
-
-_NUMBERED_SYSTEMS = MappingProxyType({"0": "RAS", "1": "LPS"})
-"""Coordinate systems by their numbers in older files."""
-
+_SIGNS = MappingProxyType({"RAS": (1.0, 1.0, 1.0), "LPS": (-1.0, -1.0, 1.0)})  # factors to RAS
+_NUMBERED_SYSTEMS = MappingProxyType({"0": "RAS", "1": "LPS"})  # coordinate systems by their numbers in older files
 _LENGTH_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "µm": 0.001})
-
 _SIDES = MappingProxyType({"right": ("right", "r"), "left": ("left", "l")})
 _ASIS = ("asis", "sias", "anteriorsuperioriliacspine")
 _TUBERCLE = ("pubictubercle", "tubercle", "pt")
 _SYMPHYSIS = ("pubicsymphysis", "symphysis", "symphysispubis", "ps")
-
 _RIMS = ("rim", "cuprim", "linerrim", "acetabularrim", "acetabulumrim")
 
 
@@ -117,9 +108,8 @@ def _is_rim(name: str) -> bool:
 def _rim_side(name: str) -> str | None:
     """Return the side in the squeezed name of a point on the rim: before it, or as its last word."""
     for side, words in _SIDES.items():
-        if name.startswith(tuple(word + rim for word in words for rim in _RIMS)):
-            return side
-        if name.rstrip("0123456789").endswith(side):
+        before = name.startswith(tuple(word + rim for word in words for rim in _RIMS))
+        if before or name.rstrip("0123456789").endswith(side):
             return side
     return None
 
@@ -256,7 +246,6 @@ def _read_fcsv(text: str, coordinates: str | None) -> Iterator[tuple[str, Number
 
 
 def _read_markups(text: str, coordinates: str | None) -> Iterator[tuple[str, Numbers]]:
-    """Yield names and points of a .mrk.json file."""
     try:
         content = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:

@@ -16,25 +16,16 @@ from ..core.checks import shown
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
 
-_MAX_FILE_SIZE = 200_000_000
-"""Largest size of an STL file in bytes."""
-
+_MAX_FILE_SIZE = 200_000_000  # largest size of an STL file in bytes
 _STL_SUFFIXES, _MESHIO_SUFFIXES = ("", ".stl"), (".obj", ".ply")
-
-_BINARY_HEADER, _BINARY_FACET = 84, 50
-"""Bytes of the header and of a facet of a binary STL file."""
-
-_MAX_LINE = 1000
-"""Largest length of a line of an ASCII STL file in bytes; the first facet begins within as many bytes."""
+_BINARY_HEADER, _BINARY_FACET = 84, 50  # bytes of the header and of a facet of a binary STL file
+_MAX_LINE = 1000  # largest length of a line of an ASCII STL file in bytes; the first facet begins within as many bytes
 
 LENGTH_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4})
 """Length in mm of each unit of a file."""
 
-_SIZES = (12.0, 200.0)
-"""Allowed largest extent of a liner or head in mm."""
-
-_MAX_OPEN_AREA = 0.2
-"""Sum of the area vectors over the total area, below which the volume of a mesh has a sign in spite of holes."""
+_SIZES = (12.0, 200.0)  # allowed largest extent of a liner or head in mm
+_MAX_OPEN_AREA = 0.2  # sum of area vectors over total area below which a mesh with holes has a signed volume
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +107,6 @@ def read_mesh(path: str | Path, *, units: str = "mm") -> Mesh:
 
 
 def _read_stl(path: Path) -> tuple[Numbers, bytes]:
-    """Return the triangles (n, 3, 3) of an STL file, and its header."""
     with open_input(path) as stream:
         size = stream.seek(0, 2)
         stream.seek(0)

@@ -17,18 +17,11 @@ from .landmarks import Landmarks, missing_landmarks, read_side
 _ASIS_DISTANCES = (100.0, 400.0)
 """Allowed distance in mm of the two anterior superior iliac spines; adults have about 200 to 280."""
 
-_HEIGHTS = (30.0, 250.0)
-"""Allowed distance in mm of the pubis from the line through both spines."""
-
-_MIN_SIDE_DISTANCE = 20.0
-"""Distance in mm from the middle of the pelvis from which the side of a cup is clear."""
-
+_HEIGHTS = (30.0, 250.0)  # allowed distance in mm of the pubis from the line through both spines
+_MIN_SIDE_DISTANCE = 20.0  # distance in mm from the middle of the pelvis from which the side of a cup is clear
 _MIN_RIM_POINTS = 3
-_MIN_RIM_SPREAD = 0.15
-"""Least width of the points of a rim over their length; below it they lie on a line."""
-
-_MAX_TILT = radians(60.0)
-"""Largest angle of the vertical from the pelvic plane."""
+_MIN_RIM_SPREAD = 0.15  # least width of the points of a rim over their length; below it they lie on a line
+_MAX_TILT = radians(60.0)  # largest angle of the vertical from the pelvic plane
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -70,11 +63,9 @@ class PelvicFrame:
     @property
     def obliquity(self) -> float | None:
         """Angle in rad of the line of both spines from the horizontal, positive if the right side is higher."""
-        return (
-            None
-            if self.vertical is None
-            else atan2(float(self.vertical[0]), hypot(float(self.vertical[1]), float(self.vertical[2])))
-        )
+        if self.vertical is None:
+            return None
+        return atan2(float(self.vertical[0]), hypot(float(self.vertical[1]), float(self.vertical[2])))
 
     @property
     def body_axes(self) -> Numbers:
@@ -122,7 +113,13 @@ def pelvic_frame(landmarks: Landmarks, *, vertical: Any = None, pelvic_tilt: flo
     _check_distance("the pubis is {} from the line through both spines", height, _HEIGHTS)
     z = up / height
     axes = numpy.array([x, numpy.cross(z, x), z])
-    _check_sides(axes)
+    if axes[0, 0] < 0:
+        raise ValueError(
+            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in "
+            "LPS coordinates where it states RAS"
+        )
+    if axes[2, 2] < 0:
+        raise ValueError("the pubis lies above the spines: their names are exchanged, or the pelvis is upside down")
     frame = {"origin": origin, "axes": axes, "asis_distance": distance, "height": height, "tubercle_offset": offset}
     return PelvicFrame(**frame, vertical=_vertical(axes, vertical, pelvic_tilt))
 
@@ -156,19 +153,7 @@ def _check_distance(text: str, distance: float, allowed: tuple[float, float]) ->
         raise ValueError(f"{shown}: {allowed[0]:g} to {allowed[1]:g} mm are allowed (points on a line, or not in mm?)")
 
 
-def _check_sides(axes: Numbers) -> None:
-    """Raise ValueError for a frame that is mirrored or turned in the coordinates of the scanner."""
-    if axes[0, 0] < 0:
-        raise ValueError(
-            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in "
-            "LPS coordinates where it states RAS"
-        )
-    if axes[2, 2] < 0:
-        raise ValueError("the pubis lies above the spines: their names are exchanged, or the pelvis is upside down")
-
-
 def _vertical(axes: Numbers, vertical: Any, pelvic_tilt: float | None) -> Numbers | None:
-    """Return the direction upwards in the pelvic frame."""
     if vertical is not None and pelvic_tilt is not None:
         raise ValueError("either vertical or pelvic_tilt is needed, got both")
     if pelvic_tilt is not None:

@@ -23,16 +23,11 @@ CLEARANCE_REFUSAL = (
 )
 """Sentence on the difference of the radii of two files."""
 
-_MAX_DIFFERENCE = 1.0
-"""Largest difference in mm of the radii of a bore and its head; neighbouring sizes of heads differ by 2 mm."""
-
-_ROUGH_RIM = 1.0
-"""Root mean square distance in mm of rim points from their plane from which a note is given."""
-
+_MAX_DIFFERENCE = 1.0  # largest difference in mm of the radii of bore and head; sizes of heads differ by 2 mm
+_ROUGH_RIM = 1.0  # root mean square distance in mm of rim points from their plane from which a note is given
 _UNCERTAIN_AXIS = radians(2.0)
 _UNEVEN_TUBERCLES = 10.0  # mm
 _ARCS = (radians(40.0), radians(340.0))
-
 _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
 
@@ -82,7 +77,7 @@ class HipPlan:
         notes = [note for fit in (self.liner, self.head) if fit is not None for note in fit.notes]
         if self.liner is not None and self.liner.wall_thickness is None:
             notes.append(f"{self.liner.name}: the outer surface is no sphere around the bore: no wall thickness")
-        notes += [*self._orientation_notes()]
+        notes += self._orientation_notes()
         if self.worn is not None:
             notes += self.worn.notes
         if self.liner is not None and self.head is not None:
@@ -90,7 +85,6 @@ class HipPlan:
         return tuple(notes)
 
     def _orientation_notes(self) -> list[str]:
-        """Return sentences on landmarks, rim points and tilt."""
         frame, orientation, notes = self.frame, self.orientation, []
         if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
             notes.append(
@@ -287,27 +281,10 @@ def _fit_summary(fit: ImplantFit) -> dict[str, Any]:
 
 
 def _worn_summary(worn: WornBore) -> dict[str, Any]:
-    """Return the wear of a bore for JSON."""
-    return {
-        "file": worn.name,
-        "points": worn.points,
-        "volume": worn.volume,
-        "volume_error": worn.volume_error,
-        "depth": worn.depth,
-        "depth_error": worn.depth_error,
-        "deepest": worn.deepest.tolist(),
-        "radius": worn.radius,
-        "radius_error": worn.radius_error,
-        "centre": worn.centre.tolist(),
-        "pole": worn.pole.tolist(),
-        "noise": worn.noise,
-        "form": worn.form,
-        "unworn": worn.unworn,
-        "reach_deg": degrees(worn.reach),
-        "cover": worn.cover,
-        "ambiguous": worn.ambiguous,
-        "hidden_shift": worn.hidden_shift,
-    }
+    numbers = ("points", "volume", "volume_error", "depth", "depth_error", "radius", "radius_error", "noise", "form")
+    values = {name: getattr(worn, name) for name in (*numbers, "unworn", "cover", "ambiguous", "hidden_shift")}
+    directions = {name: getattr(worn, name).tolist() for name in ("centre", "pole", "deepest")}
+    return {"file": worn.name, **values, **directions, "reach_deg": degrees(worn.reach)}
 
 
 def _degrees(angle: float | None) -> float | None:

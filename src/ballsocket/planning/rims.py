@@ -16,38 +16,20 @@ _RIM_SECTORS = 120
 RIM_TOLERANCE = radians(1.0)
 """Distance of points from the plane of a rim over the radius, up to which they belong to it."""
 
-_MIN_SECTORS = 0.5
-"""Least share of the sectors around the axis in which a rim must have points."""
-
-_SECTOR_OFFSET = 0.37
-"""Start of the sectors over their width, so that the corners of a regular mesh do not lie between two sectors."""
-
-_MIN_LIP = 0.1
-"""Least share of the rim that a lip has."""
-
-_MAX_TILT = radians(35.0)
-"""Largest angle between the axis of a liner and the planes of its rim."""
+_MIN_SECTORS = 0.5  # least share of the sectors around the axis in which a rim must have points
+_SECTOR_OFFSET = 0.37  # start of the sectors over their width: corners of a regular mesh are not between two sectors
+_MIN_LIP = 0.1  # least share of the rim that a lip has
+_MAX_TILT = radians(35.0)  # largest angle between the axis of a liner and the planes of its rim
 
 DISTINCT_AXES = radians(1.0)
 """Angle from which two planes of a rim give different axes."""
 
-_MIN_EVIDENCE = 0.1
-"""Relative difference of the moments of the outer surface about two axes, from which one of them is the right one."""
-
-_SPHERE_MOMENTS = 0.02
-"""Moments of the normals of a faceted sphere, over its area and radius."""
-
-_MIN_LOWER = 0.33
-"""Least share of the rim from which the lower one of two parallel planes is the main one."""
-
-_PLANE_PASSES = 4
-"""Number of times that the ends of a bore are divided between the two planes of its rim."""
-
-_SAME_AXIS = radians(3.0)
-"""Angle from the axis of the outer surface up to which the main plane of the rim determines the axis more exactly."""
-
-_MIN_END = 0.75
-"""Least share of the end of an outer surface that lies in a plane, if the plane gives the axis."""
+_MIN_EVIDENCE = 0.1  # relative difference of the outer surface's moments about two axes from which one is right
+_SPHERE_MOMENTS = 0.02  # moments of the normals of a faceted sphere, over its area and radius
+_MIN_LOWER = 0.33  # least share of the rim from which the lower one of two parallel planes is the main one
+_PLANE_PASSES = 4  # number of times that the ends of a bore are divided between the two planes of its rim
+_SAME_AXIS = radians(3.0)  # angle to the outer surface up to which the plane of the rim is the more exact axis
+_MIN_END = 0.75  # least share of the end of an outer surface that lies in a plane, if the plane gives the axis
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -179,8 +161,8 @@ def _outer_end(corners: Numbers, dome: Numbers) -> Numbers | None:
 
 def _turned_axis(moments: Numbers, start: Numbers) -> Numbers:
     """Find the axis with the smallest sum of the absolute moments (n, 3) about it, by reweighted least squares."""
-    axis, floor = start, 1e-9 * float(numpy.linalg.norm(moments, axis=1).max())
-    sizes = numpy.linalg.norm(moments, axis=1)
+    axis, sizes = start, numpy.linalg.norm(moments, axis=1)
+    floor = 1e-9 * float(sizes.max())
     for _ in range(60):
         weights = 1.0 / numpy.maximum(abs(moments @ axis), floor + 1e-6 * sizes)
         vector = numpy.linalg.eigh((weights[:, None] * moments).T @ moments)[1][:, 0]

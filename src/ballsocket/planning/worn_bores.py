@@ -20,73 +20,32 @@ from .implants import RADII
 
 _SEED = 20260103
 _MIN_POINTS = 200
-_THINNING = radians(3.0)
-"""Distance of the points from which the first sphere is found: dense parts count as much as sparse ones."""
-
-_STARTS, _FINALISTS, _STEPS, _LAST_STEPS = 300, 8, 2, 20
-"""Spheres through four points, best of them, and steps of the trimmed fit for all and for the best."""
-
-_TRIMMED = 0.4
-"""Share of the points whose residuals the trimmed fit minimises."""
-
-_TRIMMED_SIGMA = 0.524
-"""Largest residual in the trimmed share over the standard deviation, if no point is worn."""
-
+_THINNING = radians(3.0)  # distance of the points for the first sphere: dense parts count as much as sparse ones
+_STARTS, _FINALISTS, _STEPS, _LAST_STEPS = 300, 8, 2, 20  # spheres, best of them, and steps of the trimmed fit for both
+_TRIMMED = 0.4  # share of the points whose residuals the trimmed fit minimises
+_TRIMMED_SIGMA = 0.524  # largest residual in the trimmed share over the standard deviation, if no point is worn
 _NEIGHBOURS = 12
-_SMOOTHING = radians(5.0)
-"""Radius of the neighbourhood in which deviations are smoothed, and margin around worn points."""
-
+_SMOOTHING = radians(5.0)  # radius of the neighbourhood in which deviations are smoothed, and margin around worn points
 _MAX_NEIGHBOURS = 60
 _WORN_SIGMAS = 3.0
-_RESOLUTION = 2e-4
-"""Smallest deviation in mm that is seen as wear."""
-
+_RESOLUTION = 2e-4  # smallest deviation in mm that is seen as wear
 _PASSES = 12
-_PATCH = radians(10.0)
-"""Size of the patches in which errors of form may be the same, and radius of the patch of the deepest wear."""
-
-_MAX_GAP = radians(15.0)
-"""Longest distance of neighbouring points; a wider gap is not covered."""
-
-_SMOOTHED_AWAY = 1e-3
-"""Largest relative error of the paraboloid at the deepest wear of a head."""
-
+_PATCH = radians(10.0)  # size of the patches of one error of form, and radius of the patch of the deepest wear
+_MAX_GAP = radians(15.0)  # longest distance of neighbouring points; a wider gap is not covered
+_SMOOTHED_AWAY = 1e-3  # largest relative error of the paraboloid at the deepest wear of a head
 _MIN_REACH = radians(25.0)
-_MIN_UNWORN = 0.1
-"""Least share of the covered surface that is not worn."""
-
-_MIN_FLATNESS = 0.02
-"""Smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°."""
-
-_MAX_FORM = 0.005
-"""Largest scatter of the unworn part over its radius."""
-
-_MAX_INSIDE = 0.02
-"""Largest share of points clearly inside the sphere of the unworn part."""
-
-_SMOOTHED_EDGE = 0.03
-"""Largest error in mm of smoothed depths at the edge of deep wear between sparse points."""
-
-_MAX_DEPTH = 0.3
-"""Largest depth of wear over the radius."""
-
-_SPHERICAL_WEAR = 0.04
-"""Share of worn points from which they may be a sphere that was taken for worn by mistake."""
-
-_MAX_EDGE = 0.25
-"""Share of points outside the sphere, at the edge of the points, up to which they may be the only unworn ones."""
-
+_MIN_UNWORN = 0.1  # least share of the covered surface that is not worn
+_MIN_FLATNESS = 0.02  # smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°
+_MAX_FORM = 0.005  # largest scatter of the unworn part over its radius
+_MAX_INSIDE = 0.02  # largest share of points clearly inside the sphere of the unworn part
+_SMOOTHED_EDGE = 0.03  # largest error in mm of smoothed depths at the edge of deep wear between sparse points
+_MAX_DEPTH = 0.3  # largest depth of wear over the radius
+_SPHERICAL_WEAR = 0.04  # share of worn points from which they may be a sphere that was taken for worn by mistake
+_MAX_EDGE = 0.25  # share of points outside the sphere, at their edge, which may be the only unworn ones
 _MIN_SPHERE_POINTS = 30
-
-_FORM_FACTOR = 3.0
-"""Largest error of a radius or depth over the error of form, where wear below the noise is taken for unworn."""
-
-_SIGMAS = 2.0
-"""Standard errors in a printed error: 95 %."""
-
-_OUT_OF_ROUND = 2e-3
-"""Error of the volume over the covered area, in mm, of an original bore that is out of round by 1 µm."""
-
+_FORM_FACTOR = 3.0  # largest error over the error of form, where wear below the noise is taken for unworn
+_SIGMAS = 2.0  # standard errors in a printed error: 95 %
+_OUT_OF_ROUND = 2e-3  # error of the volume over the area, in mm, of a bore that is out of round by 1 µm
 _GOOD_COVER = 0.9
 
 
@@ -240,18 +199,15 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
     if len(bores) == 1:
         larger = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
         return unworn if larger else _add_hidden_shift(unworn, points, local, spheres[0])
-    volume_error, depth_error = (
-        max(
-            abs(getattr(bores[0], field) - getattr(bores[1], field)) + getattr(bores[1], f"{field}_error"),
-            getattr(bores[0], f"{field}_error"),
-        )
-        for field in ("volume", "depth")
-    )
-    return replace(bores[0], volume_error=volume_error, depth_error=depth_error, ambiguous=True)
+    errors = {}
+    for quantity in ("volume", "depth"):
+        difference = abs(getattr(bores[0], quantity) - getattr(bores[1], quantity))
+        own, other = (getattr(bore, f"{quantity}_error") for bore in bores)
+        errors[f"{quantity}_error"] = max(difference + other, own)
+    return replace(bores[0], **errors, ambiguous=True)
 
 
 def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
-    """Measure the wear from a sphere of the unworn part."""
     points, name = cloud.points, cloud.name
     radial, distance = _polar(points, sphere.centre)
     depth = distance - sphere.radius
@@ -340,15 +296,7 @@ def _thin(radial: Numbers) -> Numbers:
 
 @dataclass(frozen=True, eq=False)
 class _Neighbourhoods:
-    """Nearest points of each point, and the weights of a plane fitted to them.
-
-    Attributes
-    ----------
-    index : array (n, k)
-        Neighbours with the point itself.
-    weights : array (n, k)
-        Weights of the neighbours in the smoothed value at the point.
-    """
+    """Nearest points of each point (n, k), itself included, and their weights in the smoothed value there (n, k)."""
 
     index: Numbers
     weights: Numbers
@@ -538,10 +486,7 @@ def _vertex_areas(radial: Numbers, pole: Numbers) -> Numbers:
 
 
 def _deepest(radial: Numbers, depth: Numbers, smoothed: Numbers) -> tuple[Numbers, float, Numbers]:
-    """Return direction and depth of the deepest wear, and the weights (n,) of the points in this depth.
-
-    A paraboloid through the points within 10° of the deepest smoothed point is largest there.
-    """
+    """Find direction, depth and weights (n,) of the deepest wear, by a paraboloid within 10° of the deepest point."""
     top = radial[smoothed.argmax()]
     first = _unit(numpy.cross(top, numpy.eye(3)[abs(top).argmin()]))
     x, y = radial @ first, radial @ numpy.cross(top, first)

@@ -87,9 +87,6 @@ def cup_axes(inclination: Array, anteversion: Array, side: Side) -> tuple[Any, A
     return x, y, z
 
 
-_MAX_PELVIC_TILT = pi / 2
-
-
 class UnsetAngle(float):
     """Default angle in rad of a cup, which nobody set.
 
@@ -101,9 +98,6 @@ _UNSET_ANGLE, _UNSET_ARC = UnsetAngle(0.0), UnsetAngle(pi)
 
 HOLDING_ARC = radians(240.0)
 """Assumed arc of cover in rad of a socket that holds a preloaded ball."""
-
-_ENUMERATIONS = {"interface": Interface, "side": Side}
-"""Type of each attribute that is an enumeration."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +157,7 @@ class Cup:
         for name, quantity in CUP.items():
             if not is_plain_number(quantity.check(getattr(self, name))):
                 raise TypeError(f"{name} must be one number, got {shown(getattr(self, name))}")
-        for name, kind in _ENUMERATIONS.items():
+        for name, kind in (("interface", Interface), ("side", Side)):
             if not isinstance(getattr(self, name), kind):
                 choices = " or ".join(map(str, kind))
                 raise TypeError(f"{name} must be {choices}, got {shown(getattr(self, name))}")
@@ -210,7 +204,7 @@ class Cup:
         (45.0, 15.0)
         """
         chosen = _definition(definition)
-        if not -_MAX_PELVIC_TILT <= pelvic_tilt <= _MAX_PELVIC_TILT:
+        if not -pi / 2 <= pelvic_tilt <= pi / 2:
             raise ValueError(
                 f"pelvic_tilt = {pelvic_tilt:g} is not allowed: a pelvic tilt (rad) is between -pi/2 and pi/2"
             )
@@ -244,9 +238,7 @@ class Cup:
         chosen = _definition(definition)
         if chosen is AngleDefinition.RADIOGRAPHIC:
             return float(self.inclination), float(self.anteversion)
-        return _angles_of(
-            _opening_of(float(self.inclination), float(self.anteversion), AngleDefinition.RADIOGRAPHIC), chosen
-        )
+        return _angles_of(self._axis, chosen)
 
     def __str__(self) -> str:
         angles = ("arc_of_cover", "inclination", "anteversion")
@@ -273,11 +265,14 @@ class Cup:
         return not (isinstance(self.inclination, UnsetAngle) and isinstance(self.anteversion, UnsetAngle))
 
     @property
+    def _axis(self) -> Direction:
+        """Unit vector out of the opening: lateral, to the front, downwards."""
+        return _opening_of(float(self.inclination), float(self.anteversion), AngleDefinition.RADIOGRAPHIC)
+
+    @property
     def opening(self) -> Direction:
         """Unit vector along the axis of the cup, out of its opening, in the body frame."""
-        lateral, front, down = _opening_of(
-            float(self.inclination), float(self.anteversion), AngleDefinition.RADIOGRAPHIC
-        )
+        lateral, front, down = self._axis
         return (lateral if self.side is Side.RIGHT else -lateral), front, -down
 
     @property
@@ -357,7 +352,6 @@ class Cup:
 
 
 def _definition(value: AngleDefinition | str) -> AngleDefinition:
-    """Return a definition of the angles by its word; raise ValueError for another one."""
     try:
         return AngleDefinition(value)
     except ValueError as error:

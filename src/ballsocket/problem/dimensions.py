@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 from math import floor, log10
 from types import MappingProxyType
@@ -20,9 +20,6 @@ DIAMETERS = MappingProxyType(
 
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
-
-_MAX_INTERFERENCE = 0.1
-"""Largest interference over the radius of the ball."""
 
 _ROUNDING = 1e-9
 """Relative difference of two lengths below which they agree."""
@@ -42,8 +39,8 @@ _BASES = (
 )
 """Lengths that determine a joint: two radial ones and one of the wall, or both of the wall and the clearance."""
 
-STORED_AND_OUTER = ("ball_radius", "socket_radius", "clearance", "liner_thickness", "outer_radius")
-"""Lengths without diameters and interference, in the order of messages."""
+_STAYING_ORDER = ("ball_radius", "clearance", "socket_radius", *_WALLS)
+"""Lengths without diameters and interference, in the order in which they stay where another one is given."""
 
 
 def canonical(name: str) -> str:
@@ -157,7 +154,7 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
             allowed = "it must leave a liner between socket and backing"
             require(name, {**held, **numbers}[name], stored["liner_thickness"] > 0, allowed)
     if "interference" in numbers:
-        good = numbers["interference"] <= _MAX_INTERFERENCE * stored["ball_radius"]
+        good = numbers["interference"] <= 0.1 * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
     checked = {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
@@ -180,7 +177,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     old = {canonical(name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:
-        kept = [[old[name] for name in STORED_AND_OUTER if name in basis - new] for basis in choices]
+        kept = [[old[name] for name in _STAYING_ORDER if name in basis - new] for basis in choices]
         shared = set.intersection(*map(set, kept))
         ways = " or ".join(
             " and ".join(f"{name}{_value_text(given[name])}" for name in names if name not in shared) for names in kept
@@ -196,7 +193,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
             "liner_thickness or outer_radius"
         )
     (basis,) = choices
-    return {old[name]: given[old[name]] for name in STORED_AND_OUTER if name in basis - new and name in old}
+    return {old[name]: given[old[name]] for name in _STAYING_ORDER if name in basis - new and name in old}
 
 
 def check_given(names: Iterable[str]) -> tuple[str, ...]:
@@ -227,19 +224,13 @@ def fit_beside(varied: Iterable[str], stated: Iterable[str]) -> list[str]:
     return fitting
 
 
-def give(name: str, given: Iterable[str]) -> tuple[str, ...]:
+def give(name: str, given: Sequence[str]) -> tuple[str, ...]:
     """Return the names of the lengths that determine a joint once one more is given.
 
-    It takes the place of its diameter or radius, of the other length of the wall, or of one of three radial lengths: of
-    the socket's radius, or else of the clearance.
+    The others stay as far as they fit: the ball's radius first, then the clearance, the socket's radius and the wall.
     """
-    new = canonical(name)
-    others = {canonical(other): other for other in given}
-    others.pop(new, None)
-    for rivals in (_WALLS, _RADIAL_LENGTHS):
-        if new in rivals and {*rivals} <= {new, *others}:
-            del others[next(name for name in ("socket_radius", "clearance", *_WALLS) if name in rivals and name != new)]
-    return (*others.values(), name)
+    fitting = fit_beside((name,), sorted(given, key=lambda other: _STAYING_ORDER.index(canonical(other))))
+    return (*(other for other in given if other in fitting), name)
 
 
 def _value_text(value: Array) -> str:

@@ -65,6 +65,8 @@ class LinearGap:
 class CircularGap:
     """Surface displacement under a circular ball, u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5).
 
+    The transforms are those of `LinearGap`.
+
     Parameters
     ----------
     clearance, socket_radius : float
@@ -89,15 +91,12 @@ class CircularGap:
         return u
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[u](t) of the displacement in mm."""
         return _abel_transform(t, lambda w: self._gap_derivatives(w, d)[:2])
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the derivative dA[u]/dt of the Abel transform in mm/rad."""
         return _abel_transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[∂u/∂d](t), the change of A[u] per unit of the indentation d."""
         return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
 
     def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
@@ -237,9 +236,6 @@ _NODES, _WEIGHTS = (numpy.array(values) for values in gauss_legendre(24))
 _SINES = numpy.sin(pi / 2 * _NODES)
 """sin θ at the nodes of a quadrature over [0, π/2]."""
 
-_ANGLE_WEIGHTS = pi / 2 * _WEIGHTS
-"""Weights of that quadrature."""
-
 Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""
 
@@ -255,7 +251,7 @@ def _evaluate_at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, t
 
 def _sine_weighted_mean(values: Numbers) -> Numbers:
     """Compute the mean of values over θ in [0, π/2] with the weight sin θ."""
-    return numpy.tensordot(_ANGLE_WEIGHTS * _SINES, values, axes=1)
+    return numpy.tensordot(pi / 2 * _WEIGHTS * _SINES, values, axes=1)
 
 
 def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:

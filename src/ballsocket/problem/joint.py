@@ -14,15 +14,7 @@ from ..core.checks import check_names, require, shown
 from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
 from ..core.quantities import JOINT
-from .dimensions import (
-    LENGTHS,
-    STORED_LENGTHS,
-    Dimensions,
-    Lengths,
-    check_given,
-    lost_lengths,
-    resolve_lengths,
-)
+from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, check_given, lost_lengths, resolve_lengths
 from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
 
@@ -128,7 +120,6 @@ class Joint(OneLine, Dimensions):
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
     def _named_thicknesses(self) -> list[tuple[str, Array]]:
-        """List names and thicknesses in mm of the liner and the layers behind it."""
         layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
         return [("liner_thickness", self.liner_thickness), *layers]
 
@@ -214,19 +205,15 @@ class Joint(OneLine, Dimensions):
         radius, clearance, thickness, young, poisson, *remaining = numbers
         behind = remaining if self.ball is None else remaining[2:]
         layers = zip(self.backing, behind[::3], behind[1::3], behind[2::3], strict=True)
-        return make_unchecked(
-            Joint,
-            ball_radius=radius,
-            clearance=clearance,
-            liner_thickness=thickness,
-            liner=self.liner.with_numbers(young, poisson),
-            ball=self.ball.with_numbers(*remaining[:2]) if self.ball is not None else None,
-            backing=tuple(layer.with_numbers(*layer_numbers) for layer, *layer_numbers in layers),
-            support=self.support,
-            name=self.name,
-            source=self.source,
-            given=self.given,
-        )
+        parts: dict[str, Any] = {
+            "ball_radius": radius,
+            "clearance": clearance,
+            "liner_thickness": thickness,
+            "liner": self.liner.with_numbers(young, poisson),
+            "ball": self.ball.with_numbers(*remaining[:2]) if self.ball is not None else None,
+            "backing": tuple(layer.with_numbers(*layer_numbers) for layer, *layer_numbers in layers),
+        }
+        return make_unchecked(Joint, **{**vars(self), **parts})
 
     def replace(self, **changes: Any) -> Joint:
         """Return a copy of the joint with other lengths, materials, layers or another name.
@@ -301,9 +288,9 @@ class Joint(OneLine, Dimensions):
     @property
     def dimensions(self) -> str:
         """Text of ball radius, clearance or interference, and liner thickness, with units."""
-        name, fit = self.fit
-        lengths = f"R1 {short_text(self.ball_radius)} mm, {name} {short_text(fit)} mm"
-        return f"{lengths}, {_thickness_text(self.liner_thickness)}"
+        (name, fit), thickness = self.fit, short_text(self.liner_thickness)
+        liner = "massive socket" if thickness == "inf" else f"liner {thickness} mm"
+        return f"R1 {short_text(self.ball_radius)} mm, {name} {short_text(fit)} mm, {liner}"
 
     def _repr_html_(self) -> str:
         lengths = ("ball_radius", "socket_radius", self.fit[0], "liner_thickness")
@@ -318,14 +305,13 @@ class Joint(OneLine, Dimensions):
         head = f"{self.name}: " if self.name else ""
         behind = "".join(f" on {layer}" for layer in self.backing)
         free = ", free outside" if self.support is Support.FREE else ""
-        outside = next(
-            (f", {JOINT[name].title} {short_text(getattr(self, name))} mm" for name in _OUTSIDES & {*self.given}), ""
+        outside = "".join(
+            f", {JOINT[name].title} {short_text(getattr(self, name))} mm"
+            for name in ("outer_radius", "outer_diameter")
+            if name in self.given
         )
         return f"{head}{self.dimensions} of {self.liner}{behind}{free}{outside}; ball {ball}"
 
-
-_OUTSIDES = frozenset({"outer_radius", "outer_diameter"})
-"""Lengths of the outside, named in the text of a joint that was made from one."""
 
 _VARIED = ", varied"
 """End of the name of a changed joint."""
@@ -349,9 +335,3 @@ def _check_backing(backing: Any) -> tuple[Layer, ...]:
         if not isinstance(layer, Layer):
             raise TypeError(f"backing[{number}] must be a Layer, got {shown(layer)}")
     return tuple(backing)
-
-
-def _thickness_text(value: Array) -> str:
-    """Format the thickness of a liner; "massive socket" if it is infinite."""
-    text = short_text(value)
-    return "massive socket" if text == "inf" else f"liner {text} mm"

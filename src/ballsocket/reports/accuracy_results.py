@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from rich.table import Table
 from rich.text import Text
 
 from ..contact.describe import number_text
@@ -16,7 +13,8 @@ from ..core.quantities import CONTACT, QUANTITIES
 from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
 from ..studies.calibration import Calibration
-from .terminal import console, print_columns, print_folded
+from .style import single_axes
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,16 +68,13 @@ def place(error: Row) -> str:
     return f"{joint}, {at['force']:g} {CONTACT['force'].unit}"
 
 
-def table(rows: Iterable[Row]) -> str:
-    """Write CSV with one row for each model and quantity; errors as shares, lengths in mm, forces in N."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow((*_COLUMNS, "ball_radius", "clearance", "liner_thickness", "poisson", "force"))
+def table(rows: Iterable[Row]) -> Iterator[Sequence[Any]]:
+    """Yield heads, and a row for each model and quantity; errors as shares, lengths in mm, forces in N."""
+    yield (*_COLUMNS, "ball_radius", "clearance", "liner_thickness", "poisson", "force")
     for row in rows:
         for name, error in row["errors"].items():
             errors = (error[statistic] for statistic in ("median", "percentile_95", "worst"))
-            writer.writerow((row["model"], name, *errors, row["answered"], row["valid"], *_numbers(error).values()))
-    return text.getvalue()
+            yield (row["model"], name, *errors, row["answered"], row["valid"], *_numbers(error).values())
 
 
 _COLUMNS = ("model", "quantity", "median", "percentile_95", "worst", "answered", "valid")
@@ -87,28 +82,18 @@ _COLUMNS = ("model", "quantity", "median", "percentile_95", "worst", "answered",
 
 def _numbers(error: Row) -> dict[str, float]:
     """Return the lengths (mm), Poisson's ratio and force (N) of a worst error by name."""
-    return dict(_joint_numbers(error["worst_at"]))
-
-
-def _joint_numbers(at: Row) -> Iterator[tuple[str, float]]:
-    """Yield name and value of the numbers of a worst joint."""
-    joint = at["joint"]
-    for name in ("ball_radius", "clearance", "liner_thickness"):
-        yield name, joint[name]
-    yield "poisson", joint["liner"]["poisson"]
-    yield "force", at["force"]
+    at = error["worst_at"]
+    lengths = {name: at["joint"][name] for name in ("ball_radius", "clearance", "liner_thickness")}
+    return {**lengths, "poisson": at["joint"]["liner"]["poisson"], "force": at["force"]}
 
 
 def heat_map(rows: Sequence[Mapping[str, Any]]) -> Figure:
     """Draw the errors of every model by quantity; the colour is the 95th percentile."""
     from matplotlib.colors import LogNorm
 
-    from .notebook_figure import NotebookFigure
-
     errors = [[row["errors"][name] for name in HEADS] for row in rows]
     high = numpy.array([[100 * error["percentile_95"] for error in line] for line in errors])
-    figure = NotebookFigure(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = single_axes(8.6, 0.42 * len(rows) + 1.3)
     norm = LogNorm(*_HEAT_ENDS)
     image = axes.imshow(high, cmap="YlOrRd", norm=norm, aspect="auto")
     for i, line in enumerate(errors):
@@ -132,7 +117,7 @@ _DARK = 0.72  # of the colours
 
 def print_calibration(fit: Calibration) -> None:
     """Print a fitted modulus with its residual and the error of the closed form that uses it."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, str(fit.joint), "bold")
     low, high = float(fit.force.min()), float(fit.force.max())
     constants = ", ".join(f"{number:.6g}" for number in fit.modulus.constants)
@@ -152,10 +137,8 @@ def print_calibration(fit: Calibration) -> None:
 
 def print_table_3(columns: Sequence[TableColumn]) -> None:
     """Print Table 3 of the paper beside the same fit to the exact solution."""
-    terminal = console()
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in ("", *(f"ν {column.poisson:g}" for column in columns)):
-        table.add_column(head, justify="right" if head else "left", no_wrap=True)
+    terminal = Terminal()
+    table = text_table(["", *(f"ν {column.poisson:g}" for column in columns)], left=("",))
     for i, name in enumerate(("C1", "C2", "C3")):
         table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))
         table.add_row(f"{name}, exact", *(f"{column.ours[i]:.2f}" for column in columns))
@@ -177,31 +160,23 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
 
 def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
     """Print the result of ballsocket at each step of a deck beside that of CalculiX, with the deviation."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    heads = list(_rival_heads())
-    for head, _ in heads:
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_row(*(Text(unit, style="dim") for _, unit in heads))
+    heads = [(CONTACT["indentation"].symbol, CONTACT["indentation"].written.text)]
+    for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
+        symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
+        heads += [(symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart)]
+    table = text_table([head for head, _ in heads], [[Text(unit, style="dim") for _, unit in heads]])
     columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
     angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
     for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
         forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
         pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
         table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
-    print_columns(console(), table)
-
-
-def _rival_heads() -> Iterator[tuple[str, str]]:
-    """Yield symbols and units of the columns of `print_rival`."""
-    yield CONTACT["indentation"].symbol, CONTACT["indentation"].written.text
-    for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
-        symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
-        yield from ((symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart))
+    print_columns(Terminal(), table)
 
 
 def print_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> None:
     """Print the force components (N) of a tilted contact beside those of CalculiX."""
-    terminal, size = console(), float(numpy.linalg.norm(rival))
+    terminal, size = Terminal(), float(numpy.linalg.norm(rival))
     for name, mine, its in zip(("towards the rim", "across", "towards the dome"), ours, rival, strict=True):
         off = 100 * (mine - its) / size
         terminal.print(f"  {name:<18} {mine:>12.6g} N, ccx {its:>12.6g} N, {off:+.2f} % of the load")

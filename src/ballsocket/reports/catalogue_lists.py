@@ -15,7 +15,7 @@ from ..core.sources import Source
 from ..core.validity import Range
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
-from .terminal import console, print_folded
+from .terminal import Terminal, print_folded
 
 if TYPE_CHECKING:
     from ..hip.wear_laws import WearFactor
@@ -68,14 +68,11 @@ _NARROW = 72  # columns: lists are paragraphs below
 
 def print_models(models: Iterable[ModelInfo]) -> None:
     """Print the catalogue of models with validity and sources."""
-    rows = [(model.name, model.title, _validity_text(model), _sources(model)) for model in models]
+    rows = []
+    for model in models:
+        promised = [] if model.promise is None else [f"{model.promise}:"]
+        rows.append((model.name, model.title, "\n".join([*promised, *map(str, model.validity)]), _sources(model)))
     _print_rows(("model", "title", "valid for", "source"), rows, gap=1)
-
-
-def _validity_text(model: ModelInfo) -> str:
-    """Describe the promised accuracy of a model and its range of validity."""
-    promised = [] if model.promise is None else [f"{model.promise}:"]
-    return "\n".join([*promised, *map(str, model.validity)])
 
 
 def print_presets() -> None:
@@ -83,12 +80,12 @@ def print_presets() -> None:
     for title, presets in (("materials", materials), ("joints", joints)):
         rows = [(name, _preset_numbers(preset), preset.source) for name, preset in presets.items()]
         _print_rows((title, "numbers", "source"), rows, gap=0)
-        console().print()
+        Terminal().print()
 
 
 def print_model(model: ModelInfo) -> None:
     """Print one model: title, promised accuracy, range of validity with reasons, sources."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, f"{model.name}: {model.title}", "bold")
     promise = "" if model.promise is None else f"{model.promise} of the elastic answer, "
     print_folded(terminal, f"{promise}valid for", "")
@@ -102,7 +99,7 @@ def print_model(model: ModelInfo) -> None:
 
 def print_preset(name: str) -> None:
     """Print one material or joint with all its numbers, and the wear factor of a material that has one."""
-    terminal = console()
+    terminal = Terminal()
     preset: Material | Joint = materials[name] if name in materials else joints[name]
     print_folded(terminal, name, "bold")
     rows, factor = [*_titled_numbers(preset), ("source", preset.source)], _wear_factor(preset)
@@ -114,7 +111,6 @@ def print_preset(name: str) -> None:
 
 
 def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
-    """Return the numbers of a material or joint as pairs of title and text."""
     if isinstance(preset, Material):
         return [
             ("name", preset.name),
@@ -125,7 +121,6 @@ def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
 
 
 def _quantities(preset: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
-    """Return quantities of a material or joint as pairs of title and value with unit."""
     return [
         (quantity.title, f"{float(getattr(preset, name)):g} {quantity.written.text}".strip())
         for name, quantity in named.items()
@@ -141,7 +136,6 @@ def _sources(model: ModelInfo) -> str:
 
 
 def _preset_numbers(preset: Material | Joint) -> str:
-    """Describe the numbers of a material or joint in one line."""
     text = str(preset).removeprefix(preset.name)
     if isinstance(preset, Joint):
         return text.removeprefix(": ")
@@ -151,7 +145,7 @@ def _preset_numbers(preset: Material | Joint) -> str:
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
     """Print a table with `gap` empty lines between rows; in a narrow terminal a paragraph for each row."""
-    terminal = console()
+    terminal = Terminal()
     if terminal.width < _NARROW:
         for name, *texts in rows:
             terminal.print(Text(name, style="bold"))

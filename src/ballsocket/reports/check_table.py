@@ -249,7 +249,6 @@ def checks_html(rows: Sequence[Check], write: Writer) -> str:
 
 
 def _cells(row: Check, write: Writer) -> dict[str, Any]:
-    """Return the texts of one row of the table."""
     quantity, ratio = QUANTITIES[row.quantity], row.ratio
     return {
         "title": row.title,

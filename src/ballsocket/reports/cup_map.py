@@ -118,7 +118,6 @@ def from_page(right: Numbers, up: Numbers, reach: float) -> Numbers:
 
 
 def _draw_marks(axes: Axes, contact: OffAxisContact, units: Units) -> None:
-    """Mark the direction of the load and the location of the largest pressure."""
     if contact.force > 0:
         load = on_page(contact.force_vector / contact.force)
         axes.plot(*load, "x", color="white", markersize=8, markeredgewidth=3.6)

@@ -39,10 +39,6 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     units : Units
         Units of every number.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -67,7 +63,6 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
 
 
 def _title(contact: OffAxisContact) -> str:
-    """Describe the joint, and the load with its angle to the cup's axis."""
     tilt = f"{degrees(contact.tilt):.3g}° from the cup's axis"
     return f"{contact.joint.dimensions}; {plain_number(contact.force)} N at {tilt}"
 
@@ -148,7 +143,6 @@ def _corner(radius: float, angle: float) -> Numbers:
 
 
 def _draw_ball(axes: Axes, contact: OffAxisContact) -> None:
-    """Draw the displaced ball."""
     from matplotlib.patches import Circle
 
     middle = float(contact.displacement @ lateral(contact)), float(contact.displacement[2])
@@ -234,7 +228,9 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
         load = contact.force_vector / contact.force @ to_body
         arrow = {"tip_length": 0.2, "tip_radius": 0.05, "shaft_radius": 0.015, "scale": 0.9 * radius}
         plotter.add_mesh(pyvista.Arrow(start=(0.0, 0.0, 0.0), direction=load, **arrow), color=VERMILLION)
-    _set_camera(plotter, contact, radius)
+    out, sideways = _FROM
+    eye = -out * to_body[2] - sideways * to_body[0]  # outside the opening, beside the axis and opposite to the load
+    plotter.camera_position = [tuple(6.2 * radius * eye), (0.0, 0.0, 0.0), tuple(to_body[0])]
     return plotter
 
 
@@ -257,7 +253,6 @@ def save_view(contact: OffAxisContact, path: Path) -> None:
 
 
 def _add_bore(plotter: Any, contact: OffAxisContact, to_body: Numbers) -> None:
-    """Add the bore coloured by its pressure, with a colour bar."""
     reach = float(contact.model.reach_of(contact.joint))
     directions = _directions(numpy.linspace(0.0, reach, _RINGS))
     bore = _surface(float(contact.joint.socket_radius) * directions, to_body)
@@ -304,11 +299,3 @@ def _surface(points: Numbers, to_body: Numbers) -> Any:
 
     x, y, z = numpy.moveaxis(points @ to_body, -1, 0)
     return pyvista.StructuredGrid(x, y, z)
-
-
-def _set_camera(plotter: Any, contact: OffAxisContact, radius: float) -> None:
-    """Set the camera outside the opening, beside the axis and opposite to the load."""
-    x, _, z = numpy.array(contact.model.cup.frame)
-    out, sideways = _FROM
-    eye = -out * z - sideways * x
-    plotter.camera_position = [tuple(6.2 * radius * eye), (0.0, 0.0, 0.0), tuple(x)]

@@ -56,14 +56,9 @@ Rows = list[tuple[str, ...]]
 
 
 def evidence_page(record: Record, digest: str = "") -> str:
-    """Return the page of a pack as HTML.
+    """Return the page of a pack as HTML, from the record of `evidence.pack.gather_evidence`.
 
-    Parameters
-    ----------
-    record : mapping
-        See `evidence.pack.gather_evidence`.
-    digest : str
-        Digest of the pack, see `evidence.folder.digest`; omitted if empty.
+    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty.
     """
     with default_style():
         context = {
@@ -94,7 +89,6 @@ def conclusions(record: Record) -> list[str]:
 
 
 def _inputs(record: Record) -> dict[str, Any]:
-    """Return the tables of the model risk and of the inputs."""
     risk = record["risk"]
     return {
         "risk": [
@@ -114,7 +108,6 @@ def _inputs(record: Record) -> dict[str, Any]:
 
 
 def _matrix(record: Record) -> dict[str, Any]:
-    """Return limits and worst cases, the figures of the joint and of the matrix, and all cases."""
     worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
     return {
         "held": held_text(record["held"]),
@@ -123,7 +116,7 @@ def _matrix(record: Record) -> dict[str, Any]:
             for limit in record["limits"]
         ],
         "worst": [*worst, *_final_wear(record)],
-        "matrix_figures": [] if record["drawn"] is None else [_joint_picture(record), *_matrix_pictures(record)],
+        "matrix_figures": [] if record["drawn"] is None else _pictures(record),
         "cases": _cases(record["matrix"]),
     }
 
@@ -139,36 +132,22 @@ def _final_wear(record: Record) -> Rows:
     return [(f"worn volume after {number(last['cycles'])} cycles", f"{number(last['volume'])} mm³{band}", case)]
 
 
-def _joint_picture(record: Record) -> dict[str, str]:
-    """Return the picture of the joint with the largest pressure."""
+def _pictures(record: Record) -> list[dict[str, str]]:
+    """Return pictures of the joint with the largest pressure, and of each mapped result over the matrix."""
     aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
     caption = f"The joint with the largest pressure.{aside}"
-    return {"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}
-
-
-def _matrix_pictures(record: Record) -> list[dict[str, str]]:
-    """Return a picture of each mapped result over the matrix; none for a single case."""
+    pictures = [{"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}]
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
-    return [
-        {
-            "address": svg_address(figures.matrix_figure(record, name)),
-            "title": NAMES[name].title,
-            "caption": _map_caption(record, name),
-        }
-        for name in names
-    ]
-
-
-def _map_caption(record: Record, name: str) -> str:
-    """Describe the figure of a result over the matrix."""
-    limited = any(limit["name"] == name for limit in record["limits"])
-    crosses = " × marks cases that break the limit." if limited else ""
-    title = NAMES[name].title
-    return f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
+    limited = {limit["name"] for limit in record["limits"]}
+    for name in names:
+        title, crosses = NAMES[name].title, " × marks cases that break the limit." if name in limited else ""
+        caption = f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
+        address = svg_address(figures.matrix_figure(record, name))
+        pictures.append({"address": address, "title": title, "caption": caption})
+    return pictures
 
 
 def _cases(rows: list[Record]) -> dict[str, Any]:
-    """Return heads and rows of all cases with their results."""
     inputs, results = list(rows[0]["case"]), list(rows[0]["numbers"])
     return {
         "heads": [*(column_head(key) for key in (*inputs, *results)), "valid"],
@@ -184,7 +163,6 @@ def _cases(rows: list[Record]) -> dict[str, Any]:
 
 
 def _verification(record: Record) -> dict[str, Any]:
-    """Return the checks of the code, and every worst case by every method."""
     deviating = any(piece["deviation"] for piece in record["calculation"])
     return {
         "checks": [
@@ -235,7 +213,6 @@ def _grouped_notes(methods: Iterable[Record]) -> list[str]:
 
 
 def _validation(record: Record) -> dict[str, Any]:
-    """Return published results beside those of ballsocket, with their applicability to the question."""
     return {
         "claims": [
             (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from math import inf, prod, radians
+from math import inf, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -17,7 +17,7 @@ from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup
 from ..studies.parameters import LOADS, PARAMETERS
 from .section_plots import joint_section
-from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, numbered
+from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, numbered, single_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,7 +119,6 @@ def joint_figure(record: Record) -> Figure:
 
 
 def _joint(summary: Record) -> Joint:
-    """Create a joint from its summary."""
     ball, layers = summary["ball"], [dict(layer) for layer in summary["backing"]]
     return Joint(
         ball_radius=summary["ball_radius"],
@@ -138,22 +137,17 @@ def matrix_figure(record: Record, name: str = "max_pressure") -> Figure:
     rows, key = record["matrix"], NAMES[name].key
     down, across = _sides(rows)
     table = {tuple(row["case"].values()): row for row in rows}
-    names = list(rows[0]["case"])
-    cases = [
-        [_case(names, down, across, row, column) for column in _combinations(across)] for row in _combinations(down)
-    ]
-    values = numpy.array([[_number(table[case]["numbers"].get(key)) for case in line] for line in cases])
-    figure, axes = _single_axes(min(11.0, 3.4 + 0.62 * values.shape[1]), min(9.0, 2.2 + 0.34 * values.shape[0]))
+    axis_names = [name for name, _ in (*down, *across)]
+    order = [axis_names.index(name) for name in rows[0]["case"]]
+    combined = [[(*row, *column) for column in _combinations(across)] for row in _combinations(down)]
+    cases = [[tuple(case[index] for index in order) for case in line] for line in combined]
+    values = numpy.array([[table[case]["numbers"].get(key) for case in line] for line in cases], dtype=float)
+    figure, axes = single_axes(min(11.0, 3.4 + 0.62 * values.shape[1]), min(9.0, 2.2 + 0.34 * values.shape[0]))
     drawn = axes.imshow(values, cmap="cividis", aspect="auto")
     figure.colorbar(drawn, label=_UNITS.get(name) or NAMES[name].head(NAMES[name].written), pad=0.02)
     _tick(axes, down, across)
     _mark(axes, values, record, name, cases)
     return figure
-
-
-def _number(value: Any) -> float:
-    """Convert a value of the record to a number; NaN for None."""
-    return numpy.nan if value is None else float(value)
 
 
 _UNITS = {"edge_distance": "[mm]", "wear_rate": "[mm³/10⁶]"}
@@ -164,23 +158,11 @@ def _sides(rows: Sequence[Record]) -> tuple[list[Axis], list[Axis]]:
     """Distribute the axes of the matrix over two sides of about the same length."""
     axes = [(key, list(dict.fromkeys(row["case"][key] for row in rows))) for key in rows[0]["case"]]
     splits = [(axes[:split], axes[split:]) for split in range(len(axes) + 1)]
-    return min(splits, key=lambda pair: abs(2 * _count(pair[0]) - _count(pair[1])))
-
-
-def _count(axes: Sequence[Axis]) -> int:
-    """Count the combinations of the values of axes."""
-    return prod(len(values) for _, values in axes)
+    return min(splits, key=lambda pair: abs(2 * len(_combinations(pair[0])) - len(_combinations(pair[1]))))
 
 
 def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
-    """List the combinations of the values of axes."""
     return list(product(*(values for _, values in axes)))
-
-
-def _case(names: list[str], down: Sequence[Axis], across: Sequence[Axis], row: Any, column: Any) -> tuple[float, ...]:
-    """Return the case of a row and a column, in the order of the names."""
-    values = dict(zip([key for key, _ in (*down, *across)], (*row, *column), strict=True))
-    return tuple(values[name] for name in names)
 
 
 def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
@@ -193,11 +175,13 @@ def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
         step = max(1, len(texts) // 40)
         rotation: Any = {"rotation": 90} if side is across and max(map(len, texts), default=0) > 9 else {}
         set_ticks(range(0, len(texts), step), texts[::step], fontsize=8, **rotation)
-        set_label(" | ".join(_head(key) for key, _ in side))
+        set_label(" | ".join(f"{_KEYS[key].title}{_KEYS[key].written.text_in_brackets}" for key, _ in side))
 
 
 def _mark(axes: Axes, values: Numbers, record: Record, name: str, cases: Any) -> None:
     """Write numbers in the cells, frame the worst case, and cross cells that break a limit."""
+    from matplotlib.patches import Rectangle
+
     low, high = _allowed(record, name)
     middle = 0.5 * (numpy.nanmin(values) + numpy.nanmax(values))
     worst = tuple(record["worst"][name]["case"].values()) if name in record["worst"] else None
@@ -209,14 +193,7 @@ def _mark(axes: Axes, values: Numbers, record: Record, name: str, cases: Any) ->
             axes.plot(column + 0.38, row - 0.3, marker="x", markersize=6, color=ink, linewidth=0.8)
         if cases[row][column] == worst:
             frame: Any = {"fill": False, "edgecolor": VERMILLION, "linewidth": 2.2}
-            axes.add_patch(_rectangle(column - 0.47, row - 0.47, 0.94, 0.94, **frame))
-
-
-def _rectangle(*sizes: float, **style: Any) -> Any:
-    """Create a rectangle from x, y, width and height."""
-    from matplotlib.patches import Rectangle
-
-    return Rectangle((sizes[0], sizes[1]), *sizes[2:], **style)
+            axes.add_patch(Rectangle((column - 0.47, row - 0.47), 0.94, 0.94, **frame))
 
 
 def _allowed(record: Record, name: str) -> tuple[float, float]:
@@ -230,7 +207,7 @@ def methods_figure(record: Record) -> Figure:
     """Draw the deviation of every other method by result at each worst case, with the required accuracy."""
     pieces = [piece for piece in record["calculation"] if piece["methods"][0]["numbers"]]
     keys = list(dict.fromkeys(key for piece in pieces for key in piece["deviation"]))
-    figure, axes = _single_axes(7.2, 1.4 + 0.5 * len(keys))
+    figure, axes = single_axes(7.2, 1.4 + 0.5 * len(keys))
     pairs = [(method, piece["methods"][0]) for piece in pieces for method in piece["methods"][1:]]
     pairs = [(method, first) for method, first in pairs if method["valid"] and method["aligned"] == first["aligned"]]
     names = list(dict.fromkeys(method["name"] for method, _ in pairs))
@@ -247,7 +224,6 @@ def methods_figure(record: Record) -> Figure:
 
 
 def _dots(axes: Axes, keys: Sequence[str], names: Sequence[str], method: Record, first: Record) -> None:
-    """Draw the deviations of one method as dots."""
     index = names.index(method["name"])
     common = [key for key in keys if key in method["numbers"] and first["numbers"].get(key)]
     off = [100 * (method["numbers"][key] / first["numbers"][key] - 1) for key in common]
@@ -257,7 +233,6 @@ def _dots(axes: Axes, keys: Sequence[str], names: Sequence[str], method: Record,
 
 
 def _legend(axes: Axes) -> None:
-    """Add a legend with each name once."""
     handles, labels = axes.get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
     if once:
@@ -266,11 +241,9 @@ def _legend(axes: Axes) -> None:
 
 def bands_figure(record: Record) -> Figure:
     """Draw the band of each result from the tolerances beside the Sobol indices of the tolerances."""
-    from .notebook_figure import NotebookFigure
-
     uncertainty = record["uncertainty"]
     names, keys = list(next(iter(uncertainty["sobol"].values()))), list(uncertainty["bands"])
-    figure = NotebookFigure(figsize=(9.6, 1.5 + 0.34 * max(len(names), len(keys))), layout="constrained")
+    figure = new_figure(9.6, 1.5 + 0.34 * max(len(names), len(keys)))
     band_axes, sobol_axes = figure.subplots(1, 2)
     reach = 0.0
     for row, key in enumerate(keys):
@@ -304,7 +277,7 @@ def bands_figure(record: Record) -> Figure:
 def wear_figure(record: Record) -> Figure:
     """Draw the worn volume over the cycles of the worst case, with the band of patients who differ."""
     wear = record["wear"]
-    figure, axes = _single_axes(5.6, 3.2)
+    figure, axes = single_axes(5.6, 3.2)
     cycles = [0.0, *(1e-6 * row["cycles"] for row in wear["history"])]
     axes.plot(cycles, [0.0, *(row["volume"] for row in wear["history"])], color=INK, marker="o", markersize=4)
     bands = [band for band in wear.get("bands", ()) if band["volume"]["low"] is not None]
@@ -314,17 +287,3 @@ def wear_figure(record: Record) -> Figure:
         axes.fill_between(through, low, high, color=BLUE, alpha=0.25, linewidth=0)
     finish(axes, "cycles [million]", "worn volume [mm³]" + (", band of 95 %" if bands else ""))
     return figure
-
-
-def _single_axes(width: float, height: float) -> tuple[Figure, Axes]:
-    """Create a figure with one pair of axes; sizes in inches."""
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(width, height), layout="constrained")
-    return figure, figure.subplots()
-
-
-def _head(key: str) -> str:
-    """Return the title of a number with its unit in brackets."""
-    quantity = _KEYS[key]
-    return f"{quantity.title}{quantity.written.text_in_brackets}"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +15,7 @@ from ..core.display import Plot, register_plot
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = ("png", "svg", "pdf")
+FORMATS = (".png", ".svg", ".pdf")
 """Endings of the files that `save` writes."""
 
 
@@ -25,11 +27,9 @@ def check_format(path: Path) -> None:
     ValueError
         Another ending, or a folder that does not exist.
     """
-    from ..core.storage.atomic_files import check_parent_folder
+    from ..core.storage.atomic_files import check_ending
 
-    if path.suffix.lower().lstrip(".") not in FORMATS:
-        raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
-    check_parent_folder(path)
+    check_ending("figure", path, *FORMATS)
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -71,64 +71,27 @@ def default_style() -> Iterator[None]:
         yield
 
 
-STUDY_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
-"""Plots that `ballsocket.studies` offers."""
+_PLOTS = {
+    "band_figure": ("study_plots", "band_figure"),
+    "contacts": ("press_plots", "plot"),
+    "cycle_film": ("film_results", "cycle_film_figure"),
+    "design_map": ("study_plots", "design_map"),
+    "film": ("film_results", "film_figure"),
+    "front_figure": ("study_plots", "front_figure"),
+    "identification": ("identify_results", "fit_figure"),
+    "sensitivity_figure": ("study_plots", "sensitivity_figure"),
+    "wear": ("hip_comparison", "wear_figure"),
+}
+"""Module and function of each registered plot by its name."""
 
 
 def register_plots() -> None:
     """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
-    register_plot("contacts", _load_contact_plot)
-    register_plot("cycle_film", _load_cycle_film_figure)
-    register_plot("film", _load_film_figure)
-    register_plot("identification", _load_fit_figure)
-    register_plot("wear", _load_wear_figure)
-    for name in STUDY_PLOTS:
-        register_plot(name, _study_plot_loader(name))
+    for name, (module, function) in _PLOTS.items():
+        register_plot(name, partial(_load_plot, module, function))
 
 
-def _load_contact_plot() -> Plot:
-    """Import and return the plot of contacts."""
-    from .press_plots import plot
-
+def _load_plot(module: str, function: str) -> Plot:
+    """Import a module of this room, and return one of its functions."""
+    plot: Plot = getattr(import_module(f"{__package__}.{module}"), function)
     return plot
-
-
-def _load_cycle_film_figure() -> Plot:
-    """Import and return the figure of a film over a cycle."""
-    from .film_results import cycle_film_figure
-
-    return cycle_film_figure
-
-
-def _load_film_figure() -> Plot:
-    """Import and return the figure of lubricating films."""
-    from .film_results import film_figure
-
-    return film_figure
-
-
-def _load_fit_figure() -> Plot:
-    """Import and return the plot of identifications."""
-    from .identify_results import fit_figure
-
-    return fit_figure
-
-
-def _load_wear_figure() -> Plot:
-    """Import and return the plot of wear simulations."""
-    from .hip_comparison import wear_figure
-
-    return wear_figure
-
-
-def _study_plot_loader(name: str) -> Callable[[], Plot]:
-    """Make a function that imports a plot of studies by its name."""
-
-    def load() -> Plot:
-        """Import and return the plot."""
-        from . import study_plots
-
-        plot: Plot = getattr(study_plots, name)
-        return plot
-
-    return load

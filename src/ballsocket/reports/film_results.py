@@ -7,8 +7,6 @@ from math import degrees, inf, pi, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from rich.table import Table
-from rich.text import Text
 
 from ..core.arrays import Numbers
 from ..core.display import plain_number
@@ -16,8 +14,8 @@ from ..hip.film import Film
 from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
 from .cup_map import on_page
-from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION
-from .terminal import console, print_columns, print_folded, print_joint
+from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, new_figure
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -44,19 +42,8 @@ _CORE_LEVEL = 0.5
 
 
 def film_figure(film: FilmResult) -> Figure:
-    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load.
-
-    Parameters
-    ----------
-    film : FilmResult
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
+    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load."""
+    figure = new_figure(10.4, 4.6)
     map_axes, section_axes = figure.subplots(1, 2)
     colours = _draw_map(map_axes, film)
     figure.colorbar(colours, ax=map_axes, label="film thickness h [nm]", shrink=0.85)
@@ -66,7 +53,6 @@ def film_figure(film: FilmResult) -> Figure:
 
 
 def _title(film: FilmResult) -> str:
-    """Describe the film in one line."""
     central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
     return (
         f"{film.contact.model.name}, {plain_number(film.contact.force)} N, {numpy.linalg.norm(film.spin):g} rad/s, "
@@ -140,17 +126,13 @@ def _draw_section(axes: Axes, film: FilmResult) -> None:
 
 def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
     """Print films of several models as a table, with their notes."""
-    terminal = console(units)
+    terminal = Terminal(units)
     print_joint(terminal, films[0].contact.joint)
     first = films[0]
     rate, viscosity = float(numpy.linalg.norm(first.spin)), 1e3 * first.lubricant.viscosity
     print_folded(terminal, f"film at {rate:g} rad/s, {first.speed:.3g} mm/s, viscosity {viscosity:g} mPa s", "bold")
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
-    for head in ("model", "method", "central [nm]", "minimum [nm]", "λ", "error [%]", "valid"):
-        table.add_column(Text(head), justify="left" if head in ("model", "method") else "right", no_wrap=True)
-    for film in films:
-        table.add_row(*_cells(film))
-    print_columns(terminal, table)
+    heads = ("model", "method", "central [nm]", "minimum [nm]", "λ", "error [%]", "valid")
+    print_columns(terminal, text_table(heads, map(_cells, films), left=heads[:2], gap=1))
     print_folded(terminal, "λ minimum film over the combined roughness of both surfaces", "dim")
     for film in films:
         for note in film.notes:
@@ -158,7 +140,6 @@ def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
 
 
 def _cells(film: FilmResult) -> list[str]:
-    """Return the cells of a row."""
     return [
         film.contact.model.name,
         film.method,
@@ -171,19 +152,8 @@ def _cells(film: FilmResult) -> list[str]:
 
 
 def cycle_film_figure(film: Film) -> Figure:
-    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact.
-
-    Parameters
-    ----------
-    film : Film
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(10.4, 7.2 if film.carried else 3.8), layout="constrained")
+    """Draw the film and λ over the cycle, and maps of the film at its least, middle and largest contact."""
+    figure = new_figure(10.4, 7.2 if film.carried else 3.8)
     if film.carried is None:
         _draw_course(figure.subplots(), film)
         return figure
@@ -238,10 +208,10 @@ def _draw_cycle_maps(axes: Any, film: Film, carried: CarriedFilm) -> Any:
     for one, index in zip(axes, instants, strict=False):
         cells = inside[index]
         values = _NANOMETRES * thickness[index]
-        colours = one.tricontourf(*_patch(right, up, cells), values[cells], levels=levels, cmap="viridis", extend="max")
+        colours = one.tricontourf(right[cells], up[cells], values[cells], levels=levels, cmap="viridis", extend="max")
         if core[index].any():
             mask = core[index][cells].astype(float)
-            one.tricontour(*_patch(right, up, cells), mask, levels=[_CORE_LEVEL], colors=[VERMILLION])
+            one.tricontour(right[cells], up[cells], mask, levels=[_CORE_LEVEL], colors=[VERMILLION])
         rim = numpy.linspace(0.0, 2 * numpy.pi, 181)
         reach = float(numpy.hypot(right, up).max())
         one.plot(reach * numpy.cos(rim), reach * numpy.sin(rim), color="0.5", linewidth=0.8)
@@ -250,8 +220,3 @@ def _draw_cycle_maps(axes: Any, film: Film, carried: CarriedFilm) -> Any:
         one.set_axis_off()
     axes[0].text(0.5, -0.05, "red: core without fresh lubricant", transform=axes[0].transAxes, ha="center", fontsize=8)
     return colours
-
-
-def _patch(right: Numbers, up: Numbers, cells: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the places of cells on the page."""
-    return right[cells], up[cells]

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.display import plain_number
-from ..core.storage.atomic_files import check_parent_folder, write_text
+from ..core.storage.atomic_files import write_csv
 from ..hip.bands import Bands
 from ..hip.history import History
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .hip_tables import print_notes, table_with_units
-from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
-from .terminal import console, print_columns, print_folded, print_joint
+from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
+from .terminal import Terminal, print_columns, print_folded, print_joint
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -41,15 +41,7 @@ _HEADS = {
 
 @dataclass(frozen=True, kw_only=True)
 class HipRun:
-    """Simulation of one hip with its name and its bands, if any.
-
-    Attributes
-    ----------
-    name : str
-        Name of the hip in tables and figures, such as that of its file.
-    history : History
-    bands : Bands, optional
-    """
+    """Simulation of one hip with its bands, if any, and its name in tables and figures, such as that of its file."""
 
     name: str
     history: History
@@ -71,9 +63,7 @@ def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
 
 def comparison_figure(runs: Sequence[HipRun], units: Units = Units.SI) -> Figure:
     """Draw worn volume and penetration over the cycles, with a line and a band for each hip."""
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(9.2, 4.2), layout="constrained")
+    figure = new_figure(9.2, 4.2)
     panels = figure.subplots(1, len(_PANELS), squeeze=False)[0]
     for axes, (result, label) in zip(panels, _PANELS.items(), strict=True):
         written, factor = units.axis(label)
@@ -89,7 +79,6 @@ def comparison_figure(runs: Sequence[HipRun], units: Units = Units.SI) -> Figure
 
 
 def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str, factor: float) -> None:
-    """Draw one result of a hip over the cycles, with its band."""
     reports = run.history.reports
     cycles = [0.0, *(report.cycles / 1e6 for report in reports)]
     values = [0.0, *(factor * float(getattr(report, result)) for report in reports)]
@@ -102,7 +91,7 @@ def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str, fact
 
 def print_comparison(runs: Sequence[HipRun], units: Units = Units.SI) -> None:
     """Print the wear of several hips, one below the other at each report, and the notes of each."""
-    terminal = console(units)
+    terminal = Terminal(units)
     for run in runs:
         print_joint(terminal, run.history.use.joint, f"; {run.history.use.cycle.name}", f"{run.name}: ")
     print_columns(terminal, _table(runs))
@@ -116,7 +105,6 @@ def print_comparison(runs: Sequence[HipRun], units: Units = Units.SI) -> None:
 
 
 def _table(runs: Sequence[HipRun]) -> Any:
-    """Make the table of all hips at each report, with the ends of their bands."""
     banded = any(run.bands is not None for run in runs)
     heads = {**_HEADS, "volume 95 %": "mm³", "penetration 95 %": "mm"} if banded else _HEADS
     table = table_with_units(heads, left=("cycles, hip",))
@@ -128,7 +116,6 @@ def _table(runs: Sequence[HipRun]) -> Any:
 
 
 def _rows_at(run: HipRun, cycles: float, banded: bool) -> Iterator[tuple[str, ...]]:
-    """Yield the row of a hip at a number of cycles, if it has a report there."""
     for index, report in enumerate(run.history.reports):
         if report.cycles != cycles:
             continue
@@ -139,7 +126,6 @@ def _rows_at(run: HipRun, cycles: float, banded: bool) -> Iterator[tuple[str, ..
 
 
 def _band_text(bands: Bands | None, result: str, report: int) -> str:
-    """Write the band of a result at a report."""
     if bands is None:
         return "-"
     low, high = bands.band(result)
@@ -157,7 +143,7 @@ def _notes_with_names(runs: Sequence[HipRun]) -> dict[str, list[str]]:
 
 def print_wear_fit(fit: WearFit) -> None:
     """Print a fitted wear coefficient with its band, its value for each kind of rate, and the measured wear."""
-    terminal, use = console(), fit.simulation
+    terminal, use = Terminal(), fit.simulation
     print_folded(terminal, f"{use.joint}; {use.cycle.name}: coefficient of the wear law {fit.law_name!r}", "bold")
     band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
     table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
@@ -177,7 +163,6 @@ def print_wear_fit(fit: WearFit) -> None:
 
 
 def _measured_table(fit: WearFit) -> Any:
-    """Make the table of measured and simulated wear."""
     several = ["station"] if len(fit.specimens) > 1 else []
     heads = dict.fromkeys(["measured", "value", "fit", "unit", *several], "")
     table = table_with_units(heads, left=("measured", "unit", "station"))
@@ -202,10 +187,8 @@ def wear_fit_figure(fit: WearFit, cycles: float = 0.0) -> Figure:
 
     `cycles` is the number of cycles of the prediction, where it goes further than the data.
     """
-    from .notebook_figure import NotebookFigure
-
     quantities, runs = list(dict.fromkeys(measured.quantity for measured in fit.data)), fit.predict(cycles)
-    figure = NotebookFigure(figsize=(6.4 * len(quantities), 4.6), layout="constrained")
+    figure = new_figure(6.4 * len(quantities), 4.6)
     for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
         _draw_fit(axes, fit, runs, quantity)
         axes.set_xlim(left=0)
@@ -244,19 +227,6 @@ def _draw_fit(axes: Axes, fit: WearFit, runs: Sequence[History], quantity: str) 
             label = None
 
 
-def check_table(path: Path) -> None:
-    """Check that a path ends in .csv and that its folder exists.
-
-    Raises
-    ------
-    ValueError
-        Another ending, or a folder that does not exist.
-    """
-    if path.suffix.lower() != ".csv":
-        raise ValueError(f"table {str(path)!r} must end in .csv")
-    check_parent_folder(path)
-
-
 def write_table(path: Path, runs: Sequence[HipRun]) -> Path:
     """Write a CSV file with a row for each hip and report, and return its path; heads have units.
 
@@ -265,19 +235,12 @@ def write_table(path: Path, runs: Sequence[HipRun]) -> Path:
     OSError
         The file cannot be written.
     """
-    import csv
-    from io import StringIO
-
     rows: list[dict[str, Any]] = []
     for run in runs:
         bands = run.bands.table() if run.bands is not None else [{}] * len(run.history.reports)
         rows += [{"hip": run.name, **row, **band} for row, band in zip(run.history.table(), bands, strict=True)]
     heads = list(dict.fromkeys(head for row in rows for head in row))
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows([[_cell(row.get(head, "")) for head in heads] for row in rows])
-    return write_text(path, text.getvalue())
+    return write_csv(path, [heads, *([_cell(row.get(head, "")) for head in heads] for row in rows)])
 
 
 def _cell(value: Any) -> str:

@@ -14,7 +14,8 @@ from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
 from ..hip.variability import INFLUENCED_RESULTS
-from .style import BLUE, ORANGE, finish
+from .study_plots import draw_indices
+from .style import BLUE, finish, new_figure, single_axes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,21 +25,8 @@ if TYPE_CHECKING:
     from ..hip.hip_setup import HipSetup
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
-_SIZE = (6.4, 4.2)
 _HEADROOM = 1.2
 """Height of the axes relative to the largest value, which leaves room for a legend."""
-
-
-def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Figure, Any]:
-    """Create a figure with one pair of axes, polar or with a grid; the size is in inches."""
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=size, layout="constrained")
-    axes = figure.add_subplot(projection="polar" if polar else None)
-    if not polar:
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color="0.9", linewidth=0.6)
-    return figure, axes
 
 
 def wear_map(history: History, report: Report | None = None) -> Figure:
@@ -63,13 +51,12 @@ def ball_map(history: History) -> Figure:
     grid = history.use.ball_grid
     x, y, z = ball_directions(grid)
     upper, radius = z > 0, float(history.use.joint.ball_radius)
-    figure, axes = _figure((5.6, 4.8))
+    figure, axes = single_axes(5.6, 4.8)
     depth = 1e3 * history.last.ball_wear[upper]
     shown = axes.tricontourf(radius * x[upper], radius * y[upper], depth, levels=20, cmap="cividis")
     figure.colorbar(shown, ax=axes, label="worn depth [µm]", shrink=0.8)
     axes.set_aspect("equal")
-    axes.set_xlabel("to the side [mm]")
-    axes.set_ylabel("to the front [mm]")
+    finish(axes, "to the side [mm]", "to the front [mm]")
     title = f"{history.last.ball_volume:.4g} mm³ of the ball after {history.last.cycles / 1e6:g} million cycles"
     axes.set_title(title, fontsize=10)
     return figure
@@ -77,7 +64,8 @@ def ball_map(history: History) -> Figure:
 
 def _map(use: HipSetup, field: Numbers, label: str, title: str) -> Figure:
     """Draw a field (rings, meridians) over the bore, with a cross in the direction of the largest load."""
-    figure, axes = _figure((5.6, 4.8), polar=True)
+    figure = new_figure(5.6, 4.8)
+    axes: Any = figure.add_subplot(projection="polar")
     azimuth = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
     pole = numpy.full_like(field[:1], field[0].mean())
     values = numpy.maximum(numpy.vstack([pole, field, field[-1:]]), 0.0)  # rounding leaves less than nothing
@@ -102,7 +90,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
 
     The band holds the patients who differ if `bands` is given, and the numerical error otherwise.
     """
-    figure, axes = _figure()
+    figure, axes = single_axes()
     count = numpy.array([0.0, *(report.cycles / 1e6 for report in history.reports)])
     penetration = numpy.array([0.0, *(report.penetration for report in history.reports)])
     error = history.error.depth * penetration
@@ -124,8 +112,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
             part = [0.0, *(float(numpy.linalg.norm(getattr(report, name))) for report in history.reports)]
             axes.plot(count, part, dash, color=colour, label=label)
     axes.plot(count, [0.0, *(report.depth for report in history.reports)], "-.", color="0.4", label="deepest wear")
-    axes.set_xlabel("million cycles")
-    axes.set_ylabel("mm")
+    finish(axes, "million cycles", "mm")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False)
     return figure
@@ -134,7 +121,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
 def track_map(history: History) -> Figure:
     """Draw the sliding tracks (mm) of points of the ball on the socket in one cycle, seen along the cup's axis."""
     use = history.use
-    figure, axes = _figure((5.2, 4.8))
+    figure, axes = single_axes(5.2, 4.8)
     frame = numpy.array(use.placed.frame)
     rotations = numpy.einsum("ij,njk,lk->nil", frame, use.side_cycle.rotations, frame)
     for track in tracks(rotations, _points(use.reach), float(use.joint.ball_radius)):
@@ -143,8 +130,7 @@ def track_map(history: History) -> Figure:
     size = float(use.joint.socket_radius) * numpy.sin(min(use.reach, pi / 2))
     axes.plot(size * numpy.cos(rim), size * numpy.sin(rim), color="0.4")
     axes.set_aspect("equal")
-    axes.set_xlabel("towards the nearest rim [mm]")
-    axes.set_ylabel("across [mm]")
+    finish(axes, "towards the nearest rim [mm]", "across [mm]")
     return figure
 
 
@@ -158,7 +144,7 @@ def _points(reach: float) -> Numbers:
 
 def film_figure(use: HipSetup, film: Film) -> Figure:
     """Draw the film by the wave, its comparison and the friction moment over the first cycle."""
-    figure, axes = _figure()
+    figure, axes = single_axes()
     curves = {
         "refreshed part, mean": (film.refreshed_mean, "-", _INK),
         "core, mean": (film.core_mean, "-.", _THIRD),
@@ -168,7 +154,7 @@ def film_figure(use: HipSetup, film: Film) -> Figure:
     for label, (values, line, colour) in curves.items():
         if values is not None and numpy.isfinite(values).any():
             axes.plot(*_course(use, 1e6 * values), line, color=colour, label=label)
-    axes.set_ylabel("film [nm]")
+    finish(axes, "", "film [nm]")
     moment_axes = axes.twinx()
     moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), color=_SECOND, linewidth=1.0)
     moment_axes.set_ylabel("moment of friction [N m]", color=_SECOND)
@@ -181,7 +167,7 @@ def film_figure(use: HipSetup, film: Film) -> Figure:
 def edge_figure(history: History) -> Figure:
     """Draw the distance (mm) from the contact's edge to the rim over the cycle, unworn and at the end."""
     use, last = history.use, history.last
-    figure, axes = _figure()
+    figure, axes = single_axes()
     axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
     label = f"after {last.cycles / 1e6:g} million cycles"
     axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=label)
@@ -189,7 +175,7 @@ def edge_figure(history: History) -> Figure:
     if worst is not None:
         phase = 100 * use.cycle.phases[use.loaded[worst]]
         axes.plot(phase, last.edge_distance[worst], "o", color=_SECOND, ms=5)
-    axes.set_ylabel("contact's edge to the rim [mm]")
+    finish(axes, "", "contact's edge to the rim [mm]")
     axes.set_ylim(-0.2, _HEADROOM * axes.dataLim.ymax or 1.0)  # a line at 0 is seen
     _over_the_cycle(axes, use)
     return figure
@@ -225,51 +211,28 @@ def _over_the_cycle(axes: Any, use: HipSetup) -> None:
 
 def share_figure(bands: Bands) -> Figure:
     """Draw first and total Sobol indices of the inputs that differ between patients, with 95 % intervals."""
-    from .notebook_figure import NotebookFigure
-
-    names, indices = list(bands.variability.distributions), bands.indices or {}
-    figure = NotebookFigure(figsize=(3.0 * len(INFLUENCED_RESULTS) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
-    rows = numpy.arange(len(names))
-    panels = figure.subplots(1, len(INFLUENCED_RESULTS), squeeze=False, sharey=True).ravel()
-    for number, (axes, result) in enumerate(zip(panels, INFLUENCED_RESULTS, strict=True)):
-        for order, offset, colour in zip(("first", "total"), (-0.17, 0.17), (BLUE, ORANGE), strict=True):
-            value, low, high = (indices[f"{order}_order{end}"][number] for end in ("", "_low", "_high"))
-            off = numpy.nan_to_num(numpy.clip([value - low, high - value], 0.0, None))
-            axes.barh(rows + offset, value, 0.32, xerr=off, color=colour, edgecolor="white", label=f"{order} order")
-        axes.set_yticks(rows, [name.replace("_", " ") for name in names])
-        axes.set_xlim(0.0, 1.05)
-        finish(axes, "share of the variance", "")
-        axes.set_title(result, fontsize=10)
-    figure.axes[0].invert_yaxis()
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
-    return figure
+    indices = bands.indices or {}
+    panels = {
+        result: {
+            order: [indices[f"{order}{end}"][number] for end in ("", "_low", "_high")]
+            for order in ("first_order", "total_order")
+        }
+        for number, result in enumerate(INFLUENCED_RESULTS)
+    }
+    return draw_indices(panels, [name.replace("_", " ") for name in bands.variability.distributions])
 
 
 def course_figure(phase: Numbers, courses: Mapping[str, Numbers], title: str) -> Figure:
     """Draw quantities over a cycle, in panels below each other.
 
-    Parameters
-    ----------
-    phase : array (instants,)
-        Phases in % of the cycle.
-    courses : mapping of str to array (instants,)
-        Values by the label of their axis; NaN where there is none.
-    title : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    `phase` (instants,) is in %; `courses` has values (instants,) by the label of their axis, NaN where there is none.
     """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(6.4, 1.6 * len(courses) + 0.9), layout="constrained")
+    figure = new_figure(6.4, 1.6 * len(courses) + 0.9)
     panels = figure.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (label, values) in zip(panels, courses.items(), strict=True):
         axes.plot(phase, values, color=BLUE)
-        axes.set_ylabel(label)
+        finish(axes, "", label)
         axes.set_ylim(bottom=0)
-        axes.grid(color="0.9", linewidth=0.6)
-        axes.spines[["top", "right"]].set_visible(False)
     panels[-1].set_xlabel("% of the cycle")
     figure.suptitle(title, fontsize=10, parse_math=False)
     return figure

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,6 @@ from ..hip.bands import Bands
 from ..hip.film import WAVE_NOTE
 from ..hip.hamrock_dowson import CONFORMITY_NOTE
 from ..hip.history import History
-from ..hip.rim import ClosestApproach
 from . import hip_plots
 from .figure_files import figure_bytes
 from .hip_tables import (
@@ -25,8 +23,10 @@ from .hip_tables import (
     contact_rows,
     radiograph_line,
     rim_lines,
+    wear_rows,
+    wear_units,
 )
-from .pages import check_page_path, letterhead, picture, render_page, write_page
+from .pages import letterhead, picture, render_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,64 +59,24 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
 )
 """Title, figure and caption of each section with a figure, by its id."""
 
-_BALL_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
-    {"ball": ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")}
-)
-"""Sections of a hip whose ball wears."""
-
-_CREEP_HEAD = "creep [mm]"
-_WEAR_HEADS = (
-    "million cycles",
-    "volume [mm³]",
-    "depth [mm]",
-    "penetration [mm]",
-    "pmax [MPa]",
-    _CREEP_HEAD,
-    "to the rim [mm]",
-)
-
-
-def write_hip_report(
-    history: History, path: Path, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
-) -> Path:
-    """Write the page of a wear simulation and return its path.
-
-    Parameters
-    ----------
-    history : History
-        Results of the simulation.
-    path : Path
-        File to write, which ends in .html or .pdf.
-    bands : Bands, optional
-        Bands of patients who differ, for two more sections.
-    name : str
-        Name of the hip in the title.
-    details : ReportDetails
-        Head of the page.
-
-    Raises
-    ------
-    ValueError
-        Another ending, a folder that does not exist, or a logo that cannot be shown.
-    ImportError
-        A .pdf without the extra `pdf`.
-    OSError
-        The page cannot be written, or the logo cannot be read.
-    """
-    check_page_path(path)
-    write_page(hip_report(history, bands, name, details), path)
-    return path
-
 
 def hip_report(
     history: History, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
 ) -> str:
-    """Return the page of a wear simulation as HTML; see `write_hip_report`."""
+    """Return the page of a wear simulation as HTML; bands of patients who differ have two more sections.
+
+    Raises
+    ------
+    ValueError, OSError
+        As `pages.logo_address`, for the logo of the head.
+    """
     sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
     if history.use.unworn_checks:
         sections["contact"] = ("Validity of the contact", None)
     if len(history.use.loaded):
-        figures = _FIGURES if history.use.ball_wear is None else _FIGURES | _BALL_FIGURES
+        figures = dict(_FIGURES)
+        if history.use.ball_wear is not None:
+            figures["ball"] = ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")
         for section, (title, draw, caption) in figures.items():
             sections[section] = (title, picture(figure_bytes(draw(history)), title, caption))
         if history.film is not None:
@@ -133,14 +93,16 @@ def hip_report(
         notes=history.notes,
         first_cycle=_first_cycle(history),
         rim=_rim_approach(history),
-        wear={"heads": _wear_heads(history), "rows": _wear_rows(history)},
+        wear={
+            "heads": ["million cycles", *(f"{head} [{unit}]" for head, unit in list(wear_units(history).items())[1:])],
+            "rows": [(*cells, f"{rim:.3g}") for *cells, rim in wear_rows(history)],
+        },
         contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
         bands=None if bands is None else _band_table(bands),
     )
 
 
 def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
-    """Return the sections about patients who differ."""
     caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
     caption += (
         "."
@@ -162,7 +124,6 @@ def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str |
 
 
 def _band_table(bands: Bands) -> Mapping[str, Any]:
-    """Return the table of the bands with its sentences."""
     tail = (1 - bands.level) / 2
     return {
         "summary": band_summary(bands),
@@ -174,30 +135,11 @@ def _band_table(bands: Bands) -> Mapping[str, Any]:
 
 
 def _summary(history: History) -> str:
-    """Describe the result of the simulation in one sentence."""
     use, last = history.use, history.last
     return (
         f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
         f"after {last.cycles / 1e6:g} million cycles."
     )
-
-
-def _wear_heads(history: History) -> list[str]:
-    """Return the heads of the table of reports, without creep if the hip has no law of creep."""
-    return [head for head in _WEAR_HEADS if history.use.creep is not None or head != _CREEP_HEAD]
-
-
-def _wear_rows(history: History) -> list[tuple[str, ...]]:
-    """Return the wear at each report: the cells below `_wear_heads`."""
-    return [
-        (
-            f"{report.cycles / 1e6:g}",
-            *(f"{number:.4g}" for number in (report.volume, report.depth, report.penetration, report.max_pressure)),
-            *(() if history.use.creep is None else (f"{report.creep_depth:.4g}",)),
-            f"{report.edge_distance.min(initial=float('inf')):.3g}",
-        )
-        for report in history.reports
-    ]
 
 
 def _first_cycle(history: History) -> str:
@@ -215,18 +157,12 @@ def _first_cycle(history: History) -> str:
 def _rim_approach(history: History) -> str:
     """Describe the least distance to the rim with instant and location, new and at the end, and the radiograph."""
     nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
-    sentences = (
-        f"{stage} the contact {_distance_words(worst)} at {worst.location}"
-        for stage, worst in nearest.items()
-        if worst is not None
-    )
+    sentences = []
+    for stage, worst in nearest.items():
+        if worst is not None:
+            near = f"comes within {worst.distance:.3g} mm of the rim"
+            words = near if worst.distance > 0 else f"reaches the rim ({worst.kind})"
+            sentences.append(f"{stage} the contact {words} at {worst.location}")
     distances = "; ".join(sentences)
     line = radiograph_line(history)
     return f"{distances}. {line[:1].upper()}{line[1:]}" if distances else "nothing is pressed"
-
-
-def _distance_words(worst: ClosestApproach) -> str:
-    """Describe the distance to the rim, or the kind of contact there."""
-    if worst.distance > 0:
-        return f"comes within {worst.distance:.3g} mm of the rim"
-    return f"reaches the rim ({worst.kind})"

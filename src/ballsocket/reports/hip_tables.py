@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf, isnan
+from typing import Any
 
 import numpy
 from rich.table import Table
@@ -19,7 +20,7 @@ from ..hip.film import Film
 from ..hip.history import History
 from ..hip.variability import INFLUENCED_RESULTS
 from ..lubrication.friction import Stribeck
-from .terminal import Terminal, console, print_columns, print_folded, print_joint
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 _WEAR_UNITS = {
@@ -69,7 +70,6 @@ def _utilisation_words(history: History) -> str:
 
 
 def _utilisation_text(check: ContactCheck) -> str:
-    """Write a utilisation with its error bar, if it is an estimate."""
     bar = bar_text(check.utilisation_bar, lambda ratio: f"{ratio:.3g}")
     return "not known" if check.utilisation is None else f"{check.utilisation:.3g}{f' ({bar})' if bar else ''}"
 
@@ -135,7 +135,6 @@ def band_rows(bands: Bands, quantiles: Sequence[float]) -> Iterator[tuple[str, .
 
 
 def _range_text(numbers: Iterable[float]) -> str:
-    """Write numbers with "to" between them."""
     return " to ".join(f"{number:.3g}" for number in numbers)
 
 
@@ -179,7 +178,7 @@ def sobol_lines(bands: Bands) -> Iterator[str]:
 
 def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None:
     """Print the name of a hip, if any, the first cycle, the wear at each report, contacts, film, accuracy and notes."""
-    terminal, use, first = console(units), history.use, history.use.first
+    terminal, use, first = Terminal(units), history.use, history.use.first
     print_joint(terminal, use.joint, start=f"{name}: " if name else "")
     remark = f" ({use.cycle.remark})" if use.cycle.remark else ""
     print_folded(
@@ -197,8 +196,10 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
         ball_wear = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
         print_folded(terminal, f"the ball: {ball_wear} after {last.cycles / 1e6:g} million cycles", "")
     print_folded(terminal, contact_line(history), "")
-    if len(history.use.unworn_checks) > 1:
-        print_columns(terminal, _contact_table(history))
+    if len(use.unworn_checks) > 1:
+        rows, count = list(contact_rows(history)), len(use.unworn_checks)
+        shown = (*rows[:count], *rows[-count:])  # unworn and at the end
+        print_columns(terminal, text_table(CONTACT_HEADS, shown, left=CONTACT_HEADS[1:3], folded=("at",)))
     if history.film is not None:
         _print_film(terminal, history.film)
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
@@ -208,7 +209,7 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
 
 def print_bands(bands: Bands, units: Units = Units.SI) -> None:
     """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
-    terminal = console(units)
+    terminal = Terminal(units)
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
     table = table_with_units(band_units(bands))
     tail = (1 - bands.level) / 2
@@ -222,11 +223,7 @@ def print_bands(bands: Bands, units: Units = Units.SI) -> None:
 
 def table_with_units(heads: Mapping[str, str], left: Sequence[str] = ()) -> Table:
     """Make an empty table from heads and their units; columns in `left` are aligned to the left."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in heads:
-        table.add_column(head, justify="left" if head in left else "right", no_wrap=True)
-    table.add_row(*heads.values(), style="dim")
-    return table
+    return text_table(heads, [[Text(unit, style="dim") for unit in heads.values()]], left)
 
 
 def radiograph_line(history: History) -> str:
@@ -240,60 +237,50 @@ def radiograph_line(history: History) -> str:
 
 def print_notes(notes: Iterable[str], units: Units = Units.SI) -> None:
     """Print notes, each on its own line."""
-    terminal = console(units)
+    terminal = Terminal(units)
     for note in notes:
         print_folded(terminal, note, "dim")
 
 
-def _contact_table(history: History) -> Table:
-    """Lay out the worst contact of each activity, unworn and at the end."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in CONTACT_HEADS:
-        table.add_column(head, justify="left" if head in CONTACT_HEADS[1:3] else "right", no_wrap=head != "at")
-    rows = list(contact_rows(history))
-    count = len(history.use.unworn_checks)
-    for row in (*rows[:count], *rows[-count:]):
-        table.add_row(*row)
+def _wear_table(history: History) -> Table:
+    cycles_per_year = history.use.cycle.per_year
+    table = table_with_units({**({} if cycles_per_year is None else {"time": "years"}), **wear_units(history)})
+    for report, (*cells, rim) in zip(history.reports, wear_rows(history), strict=True):
+        time = () if cycles_per_year is None else (f"{report.cycles / cycles_per_year:.4g}",)
+        table.add_row(*time, *cells, f"{rim:.4g}")
     return table
 
 
-def _wear_table(history: History) -> Table:
-    """Lay out the wear at each report."""
-    cycles_per_year = history.use.cycle.per_year
-    heads = dict(_WEAR_UNITS) if cycles_per_year is None else {"time": "years", **_WEAR_UNITS}
-    if history.use.creep is None:
-        del heads["creep"]
-    table = table_with_units(heads)
+def wear_units(history: History) -> dict[str, str]:
+    """Return the heads of the wear table with their units, without creep for a liner that does not creep."""
+    return {head: unit for head, unit in _WEAR_UNITS.items() if history.use.creep is not None or head != "creep"}
+
+
+def wear_rows(history: History) -> Iterator[tuple[Any, ...]]:
+    """Yield cycles and wear of each report as texts, with the creep of a liner that creeps, and the edge distance."""
     for report in history.reports:
         creep = () if history.use.creep is None else (report.creep_depth,)
-        rim = report.edge_distance.min(initial=float("inf"))
-        numbers = (report.volume, report.depth, report.penetration, report.max_pressure, *creep, rim)
-        time = () if cycles_per_year is None else (f"{report.cycles / cycles_per_year:.4g}",)
-        table.add_row(*time, f"{report.cycles / 1e6:.6g}", *(f"{number:.4g}" for number in numbers))
-    return table
+        numbers = (report.volume, report.depth, report.penetration, report.max_pressure, *creep)
+        rim = report.edge_distance.min(initial=inf)
+        yield (f"{report.cycles / 1e6:g}", *(f"{number:.4g}" for number in numbers), rim)
 
 
 def _print_film(terminal: Terminal, film: Film) -> None:
     """Print the film over the cycle with thicknesses in nm, its regime and friction, and its lubricant."""
     if len(film.phases):
-        print_columns(terminal, _film_table(film))
+        heads = ("film over the cycle", "least", "mean", "largest")
+        rows = [
+            (name, *(f"{number:.3g}" for number in (known.min(), known.mean(), known.max())))
+            for name, values in _film_rows(film)
+            if len(known := values[numpy.isfinite(values)])
+        ]
+        print_columns(terminal, text_table(heads, rows, left=heads[:1], gap=1))
     for line in _film_lines(film):
         print_folded(terminal, line, "")
     lubricant = film.lubricant
     ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
     viscosity = f"viscosity {1e3 * lubricant.viscosity:g} mPa s"
     print_folded(terminal, f"assumed for the film: {viscosity}, roughness Ra {ball} (ball) and {cup} (cup)", "dim")
-
-
-def _film_table(film: Film) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
-    for head in ("film over the cycle", "least", "mean", "largest"):
-        table.add_column(head, justify="left" if head.startswith("film") else "right", no_wrap=True)
-    for name, values in _film_rows(film):
-        known = values[numpy.isfinite(values)]
-        if len(known):
-            table.add_row(Text(name), *(f"{number:.3g}" for number in (known.min(), known.mean(), known.max())))
-    return table
 
 
 def _film_rows(film: Film) -> Iterator[tuple[str, Numbers]]:
@@ -309,7 +296,6 @@ def _film_rows(film: Film) -> Iterator[tuple[str, Numbers]]:
 
 
 def _film_lines(film: Film) -> Iterator[str]:
-    """Yield the regime and the validity of a film, and its friction."""
     summary = film.summary()
     if not summary:
         yield "no film: nothing is pressed"

@@ -14,8 +14,8 @@ from ..identification.measured import MEASURED, Measured
 from ..identification.posterior import CONVERGED, Posterior
 from ..identification.result import IdentificationResult
 from ..identification.sensitivity import Sensitivity
-from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
-from .terminal import console, print_columns, print_folded
+from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure, single_axes
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,10 +34,8 @@ _CONTENTS = (0.5, 0.95)
 
 def fit_figure(result: IdentificationResult) -> Figure:
     """Draw measured values with the fitted model above, and residuals in units of the uncertainty below."""
-    from .notebook_figure import NotebookFigure
-
     indices = [index for index, data in enumerate(result.data) if data.load]
-    figure = NotebookFigure(figsize=(4.2 * max(1, len(indices)), 5.2), layout="constrained")
+    figure = new_figure(4.2 * max(1, len(indices)), 5.2)
     if not indices:
         figure.text(0.5, 0.5, "nothing was measured at a load", ha="center")
         return figure
@@ -51,7 +49,6 @@ def fit_figure(result: IdentificationResult) -> Figure:
 
 
 def _draw_set(above: Axes, below: Axes, result: IdentificationResult, index: int) -> None:
-    """Draw one data set with the fitted model, and its residuals."""
     data, residuals = result.data[index], result.residuals[index]
     x, label = _horizontal_values(data)
     quantity, factor = data.described, data.described.shown.factor
@@ -97,12 +94,10 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
 
     Without a posterior, the samples are of the normal distribution about the best fit that has the width of the bands.
     """
-    from .notebook_figure import NotebookFigure
-
     samples = _approximate_samples(result) if posterior is None else posterior.samples
     unknowns = result.transform.unknowns
     count = len(unknowns)
-    figure = NotebookFigure(figsize=(max(2.3 * count + 1.2, 4.6), 2.1 * count + 1.2), layout="constrained")
+    figure = new_figure(max(2.3 * count + 1.2, 4.6), 2.1 * count + 1.2)
     panels = figure.subplots(count, count, squeeze=False, sharex="col")
     columns = [unknown.quantity.shown.factor * samples[:, index] for index, unknown in enumerate(unknowns)]
     for row in range(count):
@@ -171,10 +166,7 @@ def _smoothed(counts: Numbers) -> Numbers:
 
 def experiment_figure(experiment: Experiment) -> Figure:
     """Draw the expected information gain of each candidate for the next measurement over its load."""
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(6.4, 4.2), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = single_axes()
     names = list(dict.fromkeys(gain.candidate.quantity for gain in experiment.gains))
     for number, name in enumerate(names):
         gains = [gain for gain in experiment.gains if gain.candidate.quantity == name]
@@ -196,7 +188,7 @@ _ROWS = 5
 
 def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
     """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
-    terminal, information = console(), result.information
+    terminal, information = Terminal(), result.information
     print_folded(terminal, f"{result.model.name} fitted to {_data_text(result)}", "bold")
     print_columns(terminal, _table(result, posterior))
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
@@ -212,14 +204,12 @@ def print_identified(result: IdentificationResult, posterior: Posterior | None) 
 
 
 def _data_text(result: IdentificationResult) -> str:
-    """Count the measured values of each data set."""
     sets = ", ".join(f"{len(data)} x {data.quantity}" for data in result.data)
     remarks = dict.fromkeys(data.remark for data in result.data if data.remark)
     return "; ".join([f"{len(result.misfit.value)} values ({sets})", *remarks])
 
 
 def _scatter_text(result: IdentificationResult) -> str:
-    """Describe the scatter of the data against their uncertainties."""
     if result.freedom <= 0:
         return "as many values as unknowns: the quality of the fit cannot be tested"
     if all(data.has_unknown_noise for data in result.data):
@@ -230,7 +220,6 @@ def _scatter_text(result: IdentificationResult) -> str:
 
 
 def _sampling_text(posterior: Posterior) -> str:
-    """Describe the sampling of the posterior: effective samples, acceptance, R-hat."""
     worst, fewest = max(posterior.r_hat.values()), min(posterior.effective.values())
     verdict = "converged" if posterior.converged else f"not converged, which is up to {CONVERGED}"
     return (
@@ -240,7 +229,6 @@ def _sampling_text(posterior: Posterior) -> str:
 
 
 def _table(result: IdentificationResult, posterior: Posterior | None) -> Table:
-    """Make the table of unknowns and products with their bands."""
     table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if posterior else ()))
     for unknown, estimate in zip(result.transform.unknowns, result.estimates.values(), strict=True):
         unit = unknown.quantity.shown
@@ -257,24 +245,18 @@ def _table(result: IdentificationResult, posterior: Posterior | None) -> Table:
 
 def _plain_table(*heads: str) -> Table:
     """Make an empty table; the first column and units are at the left."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for index, head in enumerate(heads):
-        table.add_column(head, justify="left" if index == 0 or head == "unit" else "right", no_wrap=index == 0)
-    return table
+    return text_table(heads, left=(heads[0], "unit"), folded=heads[1:])
 
 
 def _band_text(factor: float, low: float, high: float) -> str:
-    """Write a band in the unit of a factor."""
     return f"{_number_text(factor, low)} to {_number_text(factor, high)}"
 
 
 def _number_text(factor: float, number: float) -> str:
-    """Write a number in the unit of a factor with four digits."""
     return f"{factor * number:.4g}"
 
 
 def _sensitivity_table(result: IdentificationResult) -> Table:
-    """Make the table of shifts by machine errors, with ratios to half bands."""
     unknowns = result.transform.unknowns
     heads = [f"Δ{unknown.quantity.symbol}, {unknown.quantity.shown.text}".removesuffix(", ") for unknown in unknowns]
     table = _plain_table("if the machine had", *heads)
@@ -285,7 +267,6 @@ def _sensitivity_table(result: IdentificationResult) -> Table:
 
 
 def _shift_text(result: IdentificationResult, error: Sensitivity, index: int) -> str:
-    """Format a shift and its ratio to half a band."""
     unknown = result.transform.unknowns[index]
     ratio = result.shift_ratio(error, unknown.name)
     if not result.estimates[unknown.name].identifiable:
@@ -294,7 +275,6 @@ def _shift_text(result: IdentificationResult, error: Sensitivity, index: int) ->
 
 
 def _next_table(result: IdentificationResult) -> Table:
-    """Make the table of the best load of each quantity for the next measurement."""
     unknowns = result.transform.unknowns
     table = _plain_table(
         "measure next", "at", "to within", "bits", *(f"{unknown.quantity.symbol} left" for unknown in unknowns)

@@ -16,8 +16,8 @@ from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
-from .style import BLUE, INK, LEGEND, VERMILLION
-from .terminal import console, print_columns, print_folded, print_joint
+from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
+from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -44,21 +44,15 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     limits : sequence of Limit
         Limits that are drawn as dashed lines.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
         A single orientation.
     """
-    from .notebook_figure import NotebookFigure
-
     if orientations.status.size < 2:
         raise ValueError("a figure needs two values of an angle, got one orientation")
     is_map = min(orientations.status.shape) > 1
-    figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
+    figure = new_figure(10.4, 4.6)
     axes_pair = figure.subplots(1, 2, sharey=is_map)
     quantities = DERIVED["edge_distance"], CONTACT["max_pressure"]
     for axes, quantity in zip(axes_pair, quantities, strict=True):
@@ -70,8 +64,10 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     if is_map:
         axes_pair[1].set_ylabel("")
     _draw_legend(figure)
-    fixed = "" if is_map else f"; {_fixed_angle(orientations)}"
-    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}") + fixed
+    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}")
+    if not is_map:
+        name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
+        title += f"; {name} {_degree_text(float(getattr(orientations, name)[0]))}"
     figure.suptitle(title, fontsize=10, parse_math=False)
     return figure
 
@@ -111,15 +107,8 @@ def _draw_curve(
             axes.axhline(factor * end, label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
     if quantity.name == "edge_distance" and numpy.nanmin(shown, initial=0.0) < 0:
         axes.axhline(0.0, linestyle=":", color=INK, linewidth=1.8, label="the contact reaches the rim")
-    axes.set_xlabel(CUP[name].label())
-    axes.set_ylabel(label)
+    axes.set(xlabel=CUP[name].label(), ylabel=label)
     axes.grid(alpha=0.3)
-
-
-def _fixed_angle(orientations: Orientations) -> str:
-    """Describe the angle that has one value."""
-    name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
-    return f"{name} {_degree_text(float(getattr(orientations, name)[0]))}"
 
 
 def _draw_legend(figure: Figure) -> None:
@@ -144,8 +133,7 @@ def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Qua
     _hatch(axes, x, y, ~orientations.held.T, _LOST_BALL_HATCH, "the load leaves the bore")
     _hatch(axes, x, y, numpy.isposinf(values).T, _RIM_HATCH, "the rim digs in: unbounded pressure")
     _mark(axes, orientations)
-    axes.set_xlabel(CUP["inclination"].label())
-    axes.set_ylabel(CUP["anteversion"].label())
+    axes.set(xlabel=CUP["inclination"].label(), ylabel=CUP["anteversion"].label())
     axes.set_title(label, fontsize=10)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
@@ -191,15 +179,10 @@ def _mark(axes: Axes, orientations: Orientations) -> None:
 
 def load_text(orientations: Orientations) -> str:
     """Describe the load with its direction in the body."""
-    load = ", ".join(f"{CONTACT[name].symbol} {_number(name, value)}" for name, value in orientations.load.items())
+    shown = {CONTACT[name].symbol: (value, CONTACT[name].shown) for name, value in orientations.load.items()}
+    load = ", ".join(f"{symbol} {value * unit.factor:.4g} {unit.text}" for symbol, (value, unit) in shown.items())
     along = ", ".join(f"{part:g}" for part in orientations.model.direction)
     return f"{load} along ({along}); arc of cover {degrees(orientations.model.cup.arc_of_cover):.4g}°"
-
-
-def _number(name: str, value: float) -> str:
-    """Write a number after its symbol."""
-    unit = CONTACT[name].shown
-    return f"{value * unit.factor:.4g} {unit.text}"
 
 
 LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")
@@ -262,7 +245,7 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (),
 
     Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
     """
-    terminal = console(units)
+    terminal = Terminal(units)
     print_joint(terminal, orientations.joint)
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
@@ -294,7 +277,6 @@ def _limit_remarks(orientations: Orientations, limits: Sequence[Limit]) -> Itera
 
 
 def _range_text(orientations: Orientations, ends: tuple[float, float] | None) -> str:
-    """Describe the inclinations within the limits."""
     low, high = (_degree_text(orientations.inclination[index]) for index in (0, -1))
     if ends is None:
         return f"at no inclination from {low} to {high}"
@@ -317,9 +299,7 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit],
     """Make the table of a field: anteversion by inclination; a star marks an exceeded limit, "?" an undecided one."""
     codes = verdicts(orientations, limits)
     columns = range(len(orientations.inclination))
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
-        table.add_column(head, justify="right", no_wrap=True)
+    table = text_table(["", *map(_degree_text, orientations.inclination)])
     for j in range(len(orientations.anteversion)):
         marks = (_MARKS[codes[i, j]] if limits else "" for i in columns)
         cells = (_cell(orientations, values, i, j, mark, digits) for i, mark in zip(columns, marks, strict=True))
@@ -358,7 +338,6 @@ def _remarks(orientations: Orientations, units: Units) -> Iterator[str]:
 
 
 def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str:
-    """Describe the best orientation with its value."""
     inclination, anteversion, index = orientations.best(values)
     value = float(values.flat[index])
     is_distance = values is orientations.edge_distance
@@ -367,5 +346,4 @@ def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str
 
 
 def _degree_text(angle: float) -> str:
-    """Write an angle (rad) in degrees."""
     return f"{degrees(angle):.4g}°"

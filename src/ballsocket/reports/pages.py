@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.checks import needs
 from ..core.input_files import open_input
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..core.storage.atomic_files import check_ending, write_atomically
 from ..files.joint_file import ReportDetails
 from .figure_files import figure_bytes
 
@@ -58,23 +58,13 @@ def check_page_path(path: Path) -> None:
     ImportError
         A .pdf, and the writer of PDF is not installed.
     """
-    if path.suffix.lower() not in PAGE_FORMATS:
-        raise ValueError(f"report {str(path)!r} must end in {' or '.join(PAGE_FORMATS)}")
-    check_parent_folder(path)
+    check_ending("report", path, *PAGE_FORMATS)
     if path.suffix.lower() == ".pdf":
         _weasyprint()
 
 
 def write_page(page: str, path: Path, paper: str = "A4") -> None:
-    """Write a page as HTML, or printed as PDF, according to the ending of `path`.
-
-    Parameters
-    ----------
-    page : str
-        HTML that needs no other file.
-    path : Path
-    paper : str
-        Size of the sheets of a PDF: "A4" or "letter".
+    """Write a page as HTML, or printed as PDF on sheets of "A4" or "letter", according to the ending of `path`.
 
     Raises
     ------

@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from io import StringIO
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from rich.table import Table
 
 from ..core.executors.processes import Engine, Serial
 from ..core.kinds import Unit
 from ..core.quantities import JOINT
-from ..core.storage.atomic_files import write_atomically, write_text
+from ..core.storage.atomic_files import write_atomically, write_csv, write_text
 from ..model_catalogue import judge
 from ..models.foundation import HessForsbach
-from ..paper.accuracy import RANGES, THICKNESS
-from ..paper.cases import OUTER_RADII, RATIOS
+from ..paper.cases import OUTER_RADII, RANGES, RATIOS, THICKNESS
 from ..paper.claims import SCALE
 from ..paper.curves import FIT, Figure, Map, Panel
 from ..paper.plan import ELEMENTS
 from . import accuracy_results
 from .pages import data_address, render_page
 from .style import LEGEND, finish, in_matplotlib, line_of
-from .terminal import console, print_columns, print_folded
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,7 +62,9 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Eng
     rows = results["accuracy"][0]
     figures = {name: Figure.joined(map(Figure.of, pieces)) for name, pieces in results.items() if "figure" in name}
     pictures = dict(engine.run(_DrawFigure(tuple(figures.items()), tuple(rows), folder), range(len(figures) + 1)))
-    _write_accuracy(rows, folder)
+    write_text(folder / "accuracy.md", accuracy_results.markdown(rows))
+    write_csv(folder / "accuracy.csv", accuracy_results.table(rows))
+    write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")
     sections = {
         "claims": (f"Claims of the paper: {_tally(results['claims'])}", None),
         "elsewhere": ("Results of others", None),
@@ -114,7 +112,7 @@ class _DrawFigure:
         if index == len(self.figures):
             return _write_picture("accuracy", accuracy_results.heat_map(self.rows), self.folder)
         name, figure = self.figures[index]
-        write_text(self.folder / f"{name}.csv", _csv_text(figure))
+        write_csv(self.folder / f"{name}.csv", _points(figure))
         return _write_picture(name, draw(figure), self.folder)
 
 
@@ -126,34 +124,21 @@ def _write_picture(name: str, drawing: Drawing, folder: Path) -> bytes:
     return (folder / f"{name}.png").read_bytes()
 
 
-def _csv_text(figure: Figure) -> str:
-    """Write the points of a figure as CSV: panel, model, case, x and y with their names; z for maps."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("panel", "model", "case", "x_name", "x", "y_name", "y", "z"))
+def _points(figure: Figure) -> Iterator[tuple[Any, ...]]:
+    """Yield the points of a figure below heads: panel, model, case, x and y with their names; z for maps."""
+    yield "panel", "model", "case", "x_name", "x", "y_name", "y", "z"
     for panel in figure.panels:
         for line in panel.lines:
-            writer.writerows(
-                (panel.title, line.model, line.case, panel.x, x, panel.y, y, "")
-                for x, y in zip(line.x, line.y, strict=True)
-            )
+            for x, y in zip(line.x, line.y, strict=True):
+                yield panel.title, line.model, line.case, panel.x, x, panel.y, y, ""
     for field in figure.maps:
         for y, row in zip(field.y, field.z, strict=True):
-            names = (field.title, "", "", field.x_label)
-            known = ((x, z) for x, z in zip(field.x, row, strict=True) if z is not None)
-            writer.writerows((*names, x, field.y_label, y, z) for x, z in known)
-    return text.getvalue()
-
-
-def _write_accuracy(rows: Sequence[Row], folder: Path) -> None:
-    """Write the accuracy of all models as Markdown, CSV and JSON."""
-    write_text(folder / "accuracy.md", accuracy_results.markdown(rows))
-    write_text(folder / "accuracy.csv", accuracy_results.table(rows))
-    write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")
+            for x, z in zip(field.x, row, strict=True):
+                if z is not None:
+                    yield field.title, "", "", field.x_label, x, field.y_label, y, z
 
 
 def _tally(findings: Iterable[Row]) -> str:
-    """Count the verdicts."""
     verdicts = [finding["verdict"] for finding in findings]
     counts = zip(_VERDICT_STYLES, _VERDICT_COUNTS, strict=True)
     return ", ".join(f"{verdicts.count(verdict)} {words}" for verdict, words in counts)
@@ -161,13 +146,10 @@ def _tally(findings: Iterable[Row]) -> str:
 
 def print_verdicts(results: Mapping[str, Sequence[Any]]) -> None:
     """Print the verdict on each claim, the scale of the words, and the number of each verdict."""
-    terminal = console()
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in ("claim", "verdict"):
-        table.add_column(head)
-    for finding in (*results["claims"], *results["elsewhere"]):
-        table.add_row(finding["name"], finding["text"])
-    print_columns(terminal, table)
+    terminal = Terminal()
+    heads = ("claim", "verdict")
+    rows = [(finding["name"], finding["text"]) for finding in (*results["claims"], *results["elsewhere"])]
+    print_columns(terminal, text_table(heads, rows, left=heads, folded=heads))
     print_folded(terminal, f"Claims of the paper: {_tally(results['claims'])}. {SCALE}", "dim")
 
 
@@ -208,7 +190,6 @@ def _fit_table(name: str, columns: Sequence[Row]) -> PageTable:
 
 
 def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
-    """Return the accuracy of every model and quantity, with the joint of the largest error."""
     heads = accuracy_results.HEADS
     return {
         "address": data_address(png),
@@ -293,12 +274,10 @@ def _name_models(drawing: Drawing, figure: Figure) -> None:
 
 
 def _have_same_cases(panels: Sequence[Panel]) -> bool:
-    """Return whether all panels have the same cases."""
     return len({frozenset(line.case for line in panel.lines) for panel in panels}) == 1
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
-    """Draw the lines of a panel."""
     cases = list(dict.fromkeys(line.case for line in panel.lines))
     for line in panel.lines:
         colour = {} if len(cases) == 1 else {"color": _case_colours(cases)[line.case]}
@@ -360,8 +339,7 @@ def _draw_map(axes: Axes, field: Map) -> None:
     label = f"outer radius {OUTER_RADII[0]:g}, {OUTER_RADII[1]:g} mm"
     axes.legend(handles=[limit], labels=[label], loc="upper right", **LEGEND)
     axes.set_ylim(field.y[0], field.y[-1])
-    axes.set_xlabel(field.x_label)
-    axes.set_ylabel(field.y_label)
+    axes.set(xlabel=field.x_label, ylabel=field.y_label)
     axes.set_title(field.title, fontsize=10)
 
 

@@ -12,7 +12,7 @@ from ..planning.implants import ImplantFit
 from ..planning.pelvis import CupOrientation, PelvicFrame
 from ..planning.plan import HipPlan
 from ..planning.worn_bores import WornBore
-from .terminal import console, print_columns, print_folded
+from .terminal import Terminal, print_columns, print_folded
 
 _Row = tuple[str, str, str]
 
@@ -22,7 +22,7 @@ _MESH_ERROR = 0.005
 
 def print_plan(plan: HipPlan, remarks: Iterable[str]) -> None:
     """Print the table of a plan and remarks below it."""
-    terminal, table = console(), Table(box=None, pad_edge=False)
+    terminal, table = Terminal(), Table(box=None, pad_edge=False)
     for title in ("quantity", "value", "accuracy"):
         table.add_column(title, no_wrap=title == "value")
     for row in (
@@ -45,7 +45,6 @@ def _rounded(value: float, error: float) -> str:
 
 
 def _pelvis_rows(frame: PelvicFrame | None) -> Iterator[_Row]:
-    """Yield the rows of the pelvis."""
     if frame is None:
         return
     yield "distance of the ASIS", f"{frame.asis_distance:.1f} mm", ""
@@ -54,7 +53,6 @@ def _pelvis_rows(frame: PelvicFrame | None) -> Iterator[_Row]:
 
 
 def _cup_rows(orientation: CupOrientation | None) -> Iterator[_Row]:
-    """Yield the rows of the orientation of the cup."""
     if orientation is None:
         return
     yield "side", orientation.side.value, ""
@@ -74,7 +72,6 @@ def _cup_rows(orientation: CupOrientation | None) -> Iterator[_Row]:
 
 
 def _fit_rows(part: str, fit: ImplantFit | None) -> Iterator[_Row]:
-    """Yield the rows of a liner or head."""
     if fit is None:
         return
     yield f"{part} radius", f"{_rounded(fit.radius, max(fit.residual, _MESH_ERROR))} mm", f"{fit.residual:.3f} mm rms"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -18,7 +18,7 @@ from ..dynamics.motion import Motion
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..model_catalogue import reference
 from .cup_plots import cup_figure
-from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of
+from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of, new_figure, single_axes
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -71,9 +71,7 @@ def press_figure(
     matplotlib.figure.Figure
         Figure; curves outside the validity of their model are thin.
     """
-    from .notebook_figure import NotebookFigure
-
-    figure, axes = NotebookFigure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
+    figure, axes = new_figure(10.0, 4.6), force_axes(units)
     pressure = units.unit_of(FIELD["pressure"])
     pressure_axes, force_panel = figure.subplots(1, 2)
     for name, contact in contacts.items():
@@ -112,7 +110,6 @@ def _angles(contact: Contact) -> numpy.ndarray:
 
 
 def _title(contact: Contact, units: Units) -> str:
-    """Describe the joint and its load in one line."""
     joint = contact.joint
     if units is Units.IMPERIAL:
         lengths = {"head": joint.head_diameter, joint.fit[0]: 2 * joint.fit[1]}
@@ -153,7 +150,9 @@ def plot(contacts: Mapping[str, Contact], units: Units = Units.SI) -> Figure:
         return cup_figure(single, units)
     chosen = select_curves(shown)
     models: Any = {name: contact.model for name, contact in chosen.items()}
-    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen), units=units)
+    omitted = ", ".join(name for name in shown if name not in chosen)
+    note = f"not drawn: {omitted}" if omitted else ""
+    return press_figure(chosen, force_curves(chosen, models), note=note, units=units)
 
 
 def select_curves(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
@@ -172,12 +171,6 @@ def _coincide(contact: Contact, exact: Contact) -> bool:
     return all(abs(ratio - 1) < 1e-3 for ratio in ratios)
 
 
-def _omission_note(shown: Iterable[str], chosen: Mapping[str, Contact]) -> str:
-    """Describe the contacts that are not drawn."""
-    names = [name for name in shown if name not in chosen]
-    return f"not drawn: {', '.join(names)}" if names else ""
-
-
 _PARTS = {
     "kinetic_energy": ("moving", "#0072B2"),
     "energy": ("stored", "#009E73"),
@@ -186,28 +179,15 @@ _PARTS = {
 _DASHES = ("-", "--", "-.", ":")
 
 
-def _axes(count: int = 1, size: tuple[float, float] = (6.4, 4.2)) -> tuple[Figure, Any]:
-    """Create a figure with axes side by side."""
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=size, layout="constrained")
-    panels = figure.subplots(1, count, squeeze=False)[0]
-    for axes in panels:
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color="0.9", linewidth=0.6)
-    return figure, panels
-
-
 def energy_balance(motion: Motion) -> Figure:
     """Draw kinetic, stored and dissipated energy over time as a stack, with the total supplied energy as a line."""
-    figure, (axes,) = _axes()
+    figure, axes = single_axes()
     parts = [getattr(motion, name) for name in _PARTS]
     labels, colours = zip(*_PARTS.values(), strict=True)
     axes.stackplot(1e3 * motion.time, parts, labels=labels, colors=colours, alpha=0.7, linewidth=0)
     supplied = motion.kinetic_energy[0] + motion.energy[0] + motion.dissipated_energy[0] + motion.work
     axes.plot(1e3 * motion.time, supplied, color="black", linewidth=1.0, label="put in")
-    axes.set_xlabel("time [ms]")
-    axes.set_ylabel("energy [N mm]")
+    finish(axes, "time [ms]", "energy [N mm]")
     axes.set_title(f"balanced to {motion.drift:.0e} of the largest", fontsize=10)
     axes.legend(frameon=False, fontsize=8)
     return figure
@@ -215,29 +195,27 @@ def energy_balance(motion: Motion) -> Figure:
 
 def motion_figure(motion: Motion) -> Figure:
     """Draw the path of the ball's centre within its clearance, seen along y, and the force over time."""
-    figure, (path_axes, force_axes) = _axes(2, (9.0, 3.9))
+    figure = new_figure(9.0, 3.9)
+    path_axes, force_panel = figure.subplots(1, 2)
     clearance = float(motion.element.joint.clearance)
     angle = numpy.linspace(0.0, 2 * numpy.pi, 200)
     path_axes.plot(clearance * numpy.sin(angle), clearance * numpy.cos(angle), color="0.4", linewidth=0.8)
     path_axes.plot(motion.position[:, 0], motion.position[:, 2], color="#0072B2", linewidth=0.8)
     path_axes.set_aspect("equal")
-    path_axes.set_xlabel("x [mm]")
-    path_axes.set_ylabel("z [mm]; grey is first touch")
+    finish(path_axes, "x [mm]", "z [mm]; grey is first touch")
     load = motion.element(motion.position, motion.velocity, motion.spin)
-    force_axes.plot(1e3 * motion.time, numpy.linalg.norm(load.force, axis=1), color="#D55E00", linewidth=0.8)
-    force_axes.set_xlabel("time [ms]")
-    force_axes.set_ylabel("force [N]")
-    force_axes.set_ylim(bottom=0)
+    force_panel.plot(1e3 * motion.time, numpy.linalg.norm(load.force, axis=1), color="#D55E00", linewidth=0.8)
+    finish(force_panel, "time [ms]", "force [N]")
+    force_panel.set_ylim(bottom=0)
     return figure
 
 
 def loop_figure(depth: Numbers, forces: dict[str, Numbers]) -> Figure:
     """Draw forces over the indentation, each with the energy (N mm) that its loop dissipates."""
-    figure, (axes,) = _axes()
+    figure, axes = single_axes()
     for dash, (name, force) in zip(_DASHES * len(forces), forces.items(), strict=False):
         label = f"{name}: {numpy.trapezoid(force, depth):.3g} N mm lost"
         axes.plot(1e3 * numpy.asarray(depth), force, dash, label=label)
-    axes.set_xlabel("indentation d [µm]")
-    axes.set_ylabel("force [N]")
+    finish(axes, "indentation d [µm]", "force [N]")
     axes.legend(frameon=False, fontsize=8)
     return figure

@@ -14,7 +14,6 @@ from ..contact import Contact
 from ..contact.describe import number_text
 from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
 from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..files.joint_file import JointFile, ReportDetails
@@ -85,42 +84,6 @@ class PressedDesign:
         return self.file.joint.name or "A ball in its socket"
 
 
-def press_report(
-    comparison: Comparison,
-    file: JointFile,
-    leading: str,
-    units: Units = Units.SI,
-    surroundings: LocalUncertainty | None = None,
-    day: date | None = None,
-    command: str = "",
-) -> str:
-    """Return the page of single contacts of one joint as HTML.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    file : JointFile
-        Joint with its cup, load and head of the report.
-    leading : str
-        Name of the model whose contact gets the verdict; the exact one if there is one.
-    units : Units
-        Units of every number.
-    surroundings : LocalUncertainty, optional
-        Sensitivity of the results to each number and to the tolerances.
-    day : date, optional
-        Date of the page; by default today.
-    command : str
-        Options of the command line that compute the results from the joint file.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
-    """
-    design = PressedDesign(comparison=comparison, file=file, leading=leading, uncertainty=surroundings, command=command)
-    return designs_report([design], units, day)
-
-
 def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
     """Return the page of one design, or of several with a table that compares them, as HTML.
 
@@ -136,17 +99,13 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
     details = _common_details(designs)
     if len(designs) == 1:
         (design,) = designs
-        return _page(design.title, _design_sections(design, units), details, day, _lede(design, units))
+        lede = press_lede(design.contact, design.file.cup, units, design.uncertainty)
+        return _page(design.title, _design_sections(design, units), details, day, lede)
     sections: TitledHtml = {"comparison": ("Comparison", _comparison(designs, units))}
     for number, design in enumerate(designs, 1):
-        parts = [(title, html) for title, html in _design_sections(design, units).values()]
-        html = render_part(
-            _TEMPLATE,
-            "design",
-            trusted_html(_lede(design, units)),
-            [(title, trusted_html(html)) for title, html in parts],
-        )
-        sections[f"design-{number}"] = (design.title, html)
+        lede = press_lede(design.contact, design.file.cup, units, design.uncertainty)
+        parts = [(title, trusted_html(html)) for title, html in _design_sections(design, units).values()]
+        sections[f"design-{number}"] = (design.title, render_part(_TEMPLATE, "design", trusted_html(lede), parts))
     return _page(f"{len(designs)} designs", sections, details, day)
 
 
@@ -160,7 +119,6 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     """
 
     def text_of(name: str) -> str:
-        """Return one text for all designs, or that of each design."""
         texts = [(text, design.title) for design in designs if (text := getattr(design.file.report, name))]
         if len({text for text, _ in texts}) < 2:
             return texts[0][0] if texts else ""
@@ -172,13 +130,7 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     return ReportDetails(**{name: text_of(name) for name in HEAD_TEXTS}, logo=next(iter(logos), ""))
 
 
-def _lede(design: PressedDesign, units: Units) -> str:
-    """Return the verdicts on a design as HTML."""
-    return press_lede(design.contact, design.file.cup, units, design.uncertainty)
-
-
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
-    """Return a page with the head of a report."""
     return render_page("joint_report.html", title, sections, lede=trusted_html(lede), **letterhead(details, day))
 
 
@@ -191,29 +143,11 @@ def joint_report(
     day: date | None = None,
     title: str = "",
 ) -> str:
-    """Return the page of a joint as HTML.
+    """Return the page of a joint without axes as HTML that needs no other file.
 
-    Parameters
-    ----------
-    file : JointFile
-        Joint without axes, with its cup and load.
-    sections : mapping of str to tuple of str
-        Sections between the inputs and the joint file: title and HTML by id.
-    lede : str
-        HTML above the sections.
-    units : Units
-        Units of the drawing and the inputs.
-    contact : Contact, optional
-        Contact of the checks; it is drawn if it lies on the axis.
-    day : date, optional
-        Date of the page; by default today.
-    title : str
-        Title; by default the joint's name.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
+    Below `lede`, which is HTML, the page has the checks of the contact, a drawing with an axial contact, the inputs,
+    the given sections (title and HTML by id), and the joint file. By default its date is today, and its title the
+    joint's name.
     """
     everything = _joint_sections(file, dict(sections), units, contact)
     return _page(title or file.joint.name or "A ball in its socket", everything, file.report, day, lede)
@@ -238,7 +172,6 @@ def _joint_sections(
 
 
 def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
-    """Return all sections of a design."""
     contact = design.contact
     answers, *more = press_sections(design.comparison, units, design.uncertainty, design.remarks).items()
     drawn: TitledHtml = {"figures": ("Pressure and force", _figures(design.comparison, contact, units))}
@@ -283,7 +216,6 @@ _DIRECTION = "in which the ball pushes into the cup, in the body"
 
 
 def _material(material: Material, units: Units) -> str:
-    """Describe a material with its elastic constants and stress limits."""
     values = {MATERIAL[name]: getattr(material, name) for name in ("young", "poisson")}
     values |= {STRESS_LIMITS[name]: limit for name, limit in material.stress_limits.items()}
     numbers = (f"{quantity.title} {units.text_of(quantity, float(number))}" for quantity, number in values.items())
@@ -362,7 +294,6 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
 
 
 def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
-    """Return tables of the designs beside each other as HTML."""
     tables = []
     count = ceil(len(designs) / ceil(len(designs) / _MAX_COLUMNS))
     for start in range(0, len(designs), count):
@@ -406,22 +337,21 @@ def press_sections(
     remarks: Sequence[str] = (),
 ) -> TitledHtml:
     """Return the sections of a press without its figures: title and HTML by id."""
+    sources = [f"{source}, doi {source.doi}" if source.doi else str(source) for source in comparison.sources]
     return {
         "answers": ("Results", _results(comparison, units, remarks)),
         "tolerances": ("Sensitivity and tolerances", _tolerances(surroundings, units)),
-        "sources": ("Sources", render_part(_TEMPLATE, "sources", map(_source_text, comparison.sources))),
+        "sources": ("Sources", render_part(_TEMPLATE, "sources", sources)),
     }
 
 
 def _number(contact: Contact, name: str, units: Units) -> str:
-    """Write a quantity of a contact with its unit."""
     column = next(column for column in units.columns if column.attribute == name)
     gap = "" if column.unit == "°" else " "
     return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
 
 
 def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> str:
-    """Return tables of the results, with the models as columns, and the notes, as HTML."""
     columns = units.columns_of(comparison.joint)
     names = list(comparison)
     tables = []
@@ -449,7 +379,6 @@ def _figures(comparison: Comparison, leading: Contact, units: Units) -> str:
 
 
 def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
-    """Return elasticities and the bands of the tolerances as HTML."""
     if surroundings is None:
         return render_part(_TEMPLATE, "tolerances", None, ())
     names = list(next(iter(surroundings.changes.values())))
@@ -470,8 +399,3 @@ def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
     return render_part(
         _TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends, method if surroundings.presses else ""
     )
-
-
-def _source_text(source: Source) -> str:
-    """Write a source with its DOI."""
-    return f"{source}, doi {source.doi}" if source.doi else str(source)

@@ -15,7 +15,21 @@ from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import judge, reference
 from ..problem import Joint
 from ..problem.cup import Cup
-from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, in_matplotlib, line_of
+from .style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    LEGEND,
+    ORANGE,
+    PINK,
+    SKY,
+    VERMILLION,
+    finish,
+    in_matplotlib,
+    line_of,
+    new_figure,
+)
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -59,26 +73,11 @@ _LINE = {"color": INK, "linewidth": 0.8}
 
 
 def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units: Units = Units.SI) -> Figure:
-    """Draw ball, liner and backing in section, with diameters, magnified clearance, pressure and load.
+    """Draw ball, liner and backing in section, with diameters, magnified clearance, and pressure and load of a contact.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint without axes.
-    cup : Cup
-        Cup with the arc of cover.
-    contact : Contact, optional
-        Contact whose pressure and load are drawn.
-    units : Units
-        Units of the dimensions.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    The joint has no axes, and the cup the arc of cover.
     """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(6.6, 5.4), layout="constrained")
+    figure = new_figure(6.6, 5.4)
     axes = figure.add_subplot()
     axes.set_aspect("equal")
     axes.axis("off")
@@ -100,12 +99,10 @@ def _polar(radius: float | numpy.ndarray, angle: float | numpy.ndarray) -> Point
 
 
 def _outline(inner: Points, outer: Points) -> Points:
-    """Return the outline of the area between two arcs."""
     return numpy.append(inner[0], outer[0][::-1]), numpy.append(inner[1], outer[1][::-1])
 
 
 def _draw_bodies(axes: Axes, joint: Joint, cup: Cup, contact: Contact | None, radii: list[float], times: float) -> None:
-    """Draw the layers and the ball."""
     angle = numpy.linspace(-cup.rim, cup.rim, 200)
     for number, (inner, outer) in enumerate(pairwise(radii)):
         colour = _LAYERS[number % len(_LAYERS)]
@@ -118,7 +115,6 @@ def _draw_bodies(axes: Axes, joint: Joint, cup: Cup, contact: Contact | None, ra
 
 
 def _draw_diameters(axes: Axes, joint: Joint, radii: list[float], units: Units) -> None:
-    """Draw the dimensions of head, bore and outside above the ball."""
     listed = [("head", float(joint.ball_radius)), ("bore", radii[0]), ("outside", float(joint.outer_radius))]
     step = 0.13 * radii[-1]
     for number, (name, radius) in enumerate(item for item in listed if not isinf(item[1])):
@@ -130,7 +126,6 @@ def _draw_diameters(axes: Axes, joint: Joint, radii: list[float], units: Units) 
 
 
 def _label_layers(axes: Axes, joint: Joint, cup: Cup, radii: list[float], units: Units) -> None:
-    """Label the layers with name and thickness, from the bore outwards."""
     parts = [(joint.liner.name or "liner", joint.liner_thickness)]
     parts += [(layer.material.name or "backing", layer.thickness) for layer in joint.backing]
     across, angle = 1.25 * radii[-1], min(0.8 * cup.rim, 1.15)
@@ -186,9 +181,7 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     ValueError
         More than one contact, a contact without load, or a failed one.
     """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(11.0, 4.8), layout="constrained")
+    figure = new_figure(11.0, 4.8)
     section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, section_axes, contact)
     _draw_pressure(pressure_axes, contact, exact)
@@ -221,13 +214,11 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     high = max(part.position[1].max() for part in section.parts)
     axes.set_xlim(-extent, extent)
     axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
-    axes.set_xlabel("distance from the load axis [mm]")
-    axes.set_ylabel("height [mm]")
+    axes.set(xlabel="distance from the load axis [mm]", ylabel="height [mm]")
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def _draw_mesh(axes: Axes, part: Part) -> None:
-    """Draw the outlines of the elements at the left."""
     from matplotlib.collections import PolyCollection
 
     corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]

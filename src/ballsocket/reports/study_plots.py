@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from ..studies.limits import (
     undecided_reason,
     verdicts,
 )
-from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
+from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, single_axes
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import ContourSet
     from matplotlib.figure import Figure
+
+    from ..core.arrays import Numbers
 
 SHOWN = ("max_pressure", "area", "half_angle")
 """Results that a design map shows by default."""
@@ -65,11 +67,9 @@ def design_map(
     ValueError
         A study without exactly two axes of more than one value.
     """
-    from .notebook_figure import NotebookFigure
-
     names = [name for name in quantities if name in study.data_vars]
     across, up = _two_axes(study)
-    figure = NotebookFigure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
+    figure = new_figure(4.4 * len(names) + 0.4, 4.4)
     answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values = read(study, name, units).transpose(up, across).values
@@ -87,8 +87,7 @@ def design_map(
         if best is not None:
             position = (best[axis] * units.unit_of(QUANTITIES[axis]).factor for axis in (across, up))
             axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set_xlabel(_label(across, units))
-        axes.set_ylabel(_label(up, units))
+        axes.set(xlabel=_label(across, units), ylabel=_label(up, units))
         axes.set_title(_label(name, units), fontsize=10)
     figure.suptitle(_title(study, units), fontsize=10, parse_math=False)
     counts = count_verdicts(study, limits)
@@ -107,7 +106,6 @@ def read(study: xarray.Dataset, name: str, units: Units = Units.SI) -> xarray.Da
 
 
 def _label(name: str, units: Units) -> str:
-    """Return the label of an axis."""
     return QUANTITIES[name].label(units.unit_of(QUANTITIES[name]))
 
 
@@ -123,7 +121,6 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
 
 
 def _title(study: xarray.Dataset, units: Units) -> str:
-    """Describe the joint, the fixed parameters and the model of a study."""
     fixed = [
         _value_text(str(name), "=", float(coordinate), units)
         for name, coordinate in study.coords.items()
@@ -134,7 +131,6 @@ def _title(study: xarray.Dataset, units: Units) -> str:
 
 
 def _value_text(name: str, sign: str, value: float, units: Units) -> str:
-    """Write a quantity with a sign, a value and its unit."""
     quantity, unit = QUANTITIES[name], units.unit_of(QUANTITIES[name])
     return f"{quantity.title} {sign} {value * unit.factor:.4g} {unit.text}".strip()
 
@@ -162,13 +158,11 @@ def _draw_limits(
 
 
 def _one_sided_limits(limit: Limit) -> list[Limit]:
-    """Split a limit into one for each finite end."""
     ends = (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf))
     return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
 
 
 def _limit_text(limit: Limit, units: Units) -> str:
-    """Write a limit with one finite end."""
     sign, end = ("≤", limit.high) if limit.high < numpy.inf else ("≥", limit.low)
     return _value_text(limit.name, sign, end, units)
 
@@ -192,13 +186,11 @@ def band_figure(
     ValueError
         A study without samples, or without exactly one more axis.
     """
-    from .notebook_figure import NotebookFigure
-
     axis_names = [str(dim) for dim in study.sizes if dim != "sample"]
     if "sample" not in study.sizes or len(axis_names) != 1:
         raise ValueError("bands need samples and one more axis, such as the force")
     names = [name for name in quantities if name in study.data_vars]
-    figure = NotebookFigure(figsize=(5.0 * len(names), 4.0), layout="constrained")
+    figure = new_figure(5.0 * len(names), 4.0)
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values, x = read(study, name, units), read(study, axis_names[0], units).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
@@ -222,10 +214,7 @@ def front_figure(
     minimise : tuple of two str
     limits : sequence of Limit
     """
-    from .notebook_figure import NotebookFigure
-
-    figure = NotebookFigure(figsize=(6.4, 4.6), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = single_axes(6.4, 4.6)
     codes = verdicts(study, limits)
     for verdict, colour in ((Verdict.UNDECIDED, ORANGE), (Verdict.KEPT, "0.75")):
         first, second = (read(study, name).where(codes == int(verdict)).values.ravel() for name in minimise)
@@ -248,34 +237,49 @@ _INDEX_STYLES = {
 
 def sensitivity_figure(indices: xarray.Dataset) -> Figure:
     """Draw first and total indices, and Shapley effects, of every quantity with their intervals."""
-    from .notebook_figure import NotebookFigure
-
-    quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
-    figure = NotebookFigure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
-    rows = numpy.arange(len(parameters))
-    for axes, quantity in zip(
-        figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
-    ):
+    panels = {}
+    for quantity in indices.quantity.values.tolist():
         part = indices.sel(quantity=quantity)
-        orders = [order for order in _INDEX_STYLES if order in indices]
-        height = 0.64 / len(orders)
-        for position, order in enumerate(orders):
-            values, (label, colour, hatch) = part[order].values, _INDEX_STYLES[order]
-            ends = [part[f"{order}{end}"].values for end in ("_low", "_high") if f"{order}{end}" in part]
+        panels[QUANTITIES[quantity].title] = {
+            order: [part[name].values for end in ("", "_low", "_high") if (name := f"{order}{end}") in part]
+            for order in _INDEX_STYLES
+            if order in part
+        }
+    return draw_indices(panels, [QUANTITIES[name].title for name in indices.parameter.values.tolist()])
+
+
+def draw_indices(panels: Mapping[str, Mapping[str, Sequence[Numbers]]], names: Sequence[str]) -> Figure:
+    """Draw shares of the variance as bars, with a panel for each result.
+
+    Parameters
+    ----------
+    panels : mapping
+        For each result the kinds of index, "first_order", "total_order" or "shapley": shares (names,), and if known
+        the low and the high ends of their intervals.
+    names : sequence of str
+        Titles of the parameters.
+    """
+    figure = new_figure(3.4 * len(panels) + 1.2, 0.55 * len(names) + 1.8)
+    rows, axes_row = numpy.arange(len(names)), figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+    for axes, (title, kinds) in zip(axes_row, panels.items(), strict=True):
+        height = 0.64 / len(kinds)
+        for position, (order, (values, *ends)) in enumerate(kinds.items()):
+            label, colour, hatch = _INDEX_STYLES[order]
+            off = numpy.clip([values - ends[0], ends[1] - values], 0.0, None) if ends else None
             axes.barh(
-                rows + (position - (len(orders) - 1) / 2) * (height + 0.02),
+                rows + (position - (len(kinds) - 1) / 2) * (height + 0.02),
                 values,
                 height,
-                xerr=numpy.clip([values - ends[0], ends[1] - values], 0.0, None) if ends else None,
+                xerr=None if off is None else numpy.nan_to_num(off),
                 color=colour,
                 hatch=hatch,
                 edgecolor="white",
                 label=label,
             )
-        axes.set_yticks(rows, [QUANTITIES[name].title for name in parameters])
+        axes.set_yticks(rows, names)
         axes.set_xlim(0.0, 1.05)
         finish(axes, "share of the variance", "")
-        axes.set_title(QUANTITIES[quantity].title, fontsize=10)
+        axes.set_title(title, fontsize=10)
     figure.axes[0].invert_yaxis()
     figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,20 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..core.storage.atomic_files import write_csv
 from ..studies.file_formats import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
 from ..studies.task import BOUNDS, OUTCOMES, VERDICT
-from .terminal import print_columns
+from .terminal import Terminal, print_columns
 from .unit_systems import Units
 
 if TYPE_CHECKING:
@@ -132,12 +130,10 @@ def _values(study: xarray.Dataset) -> dict[str, Any]:
 
 
 def _plain(values: numpy.ndarray) -> Any:
-    """Convert an array to a list for JSON."""
     return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
 def _ends_of(study: xarray.Dataset, name: str, report: StudyReport) -> dict[str, Any]:
-    """Summarise least, median and largest value of a result."""
     low, high = report.ends[name]
     if numpy.isnan(low.value):
         return {"least": None, "median": None, "largest": None}
@@ -222,29 +218,18 @@ def _pairs_summary(part: xarray.Dataset) -> dict[str, Any]:
     return {"pairs": pairs} if names else {}
 
 
-_CSV_HEAD = ("quantity", "index", "parameter", "other_parameter", "value", "low", "high")
-
-
-def check_csv(path: Path) -> None:
-    """Check that a path ends in .csv and that its folder exists; raise ValueError otherwise."""
-    if path.suffix.lower() != ".csv":
-        raise ValueError(f"{str(path)!r} must end in .csv")
-    check_parent_folder(path)
-
-
 def write_sensitivity(indices: xarray.Dataset, path: Path) -> None:
     """Write the shares of the variance with their intervals, and elasticities, to a CSV file, one value in a row."""
-    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(_CSV_HEAD)
-        for quantity, content in sensitivity_summary(indices)["quantities"].items():
-            rows = [([name], numbers) for name, numbers in content["numbers"].items()]
-            rows += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
-            for parameters, numbers in rows:
-                for name in (name for name in _INDEX_NAMES if name in numbers):
-                    values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
-                    cells = ("" if value is None else repr(value) for value in values)
-                    writer.writerow([quantity, name, *(*parameters, "")[:2], *cells])
+    rows: list[Sequence[str]] = [("quantity", "index", "parameter", "other_parameter", "value", "low", "high")]
+    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+        parts = [([name], numbers) for name, numbers in content["numbers"].items()]
+        parts += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
+        for parameters, numbers in parts:
+            for name in (name for name in _INDEX_NAMES if name in numbers):
+                values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
+                cells = ("" if value is None else repr(value) for value in values)
+                rows.append([quantity, name, *(*parameters, "")[:2], *cells])
+    write_csv(path, rows)
 
 
 _INDEX_NAMES = {
@@ -278,7 +263,7 @@ def held_text(held: Mapping[str, float], units: Units = Units.SI) -> str:
 def _print_held(held: Mapping[str, float], units: Units = Units.SI) -> None:
     """Print a line with the lengths that a study holds, if there are any."""
     if held:
-        Console().print(f"held: {held_text(held, units)}", highlight=False)
+        Terminal().print(f"held: {held_text(held, units)}")
 
 
 def result_names(study: xarray.Dataset) -> list[str]:
@@ -301,7 +286,7 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
     """Print least, median and largest value of each result, with the coordinates of the ends."""
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     remark = f"; {study.attrs['comment']}" if "comment" in study.attrs else ""
-    Console().print(f"{study.attrs['model']}, {shape or 'one point'}{remark}", highlight=False)
+    Terminal().print(f"{study.attrs['model']}, {shape or 'one point'}{remark}")
     _print_held(held_in(study), units)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
     report = StudyReport.of(study)
@@ -311,18 +296,14 @@ def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
             continue
         middle = float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))
         numbers = (_value_text(name, value, units) for value in (low.value, middle, high.value))
-        table.add_row(
-            name,
-            _unit(name, units),
-            *numbers,
-            _point_text(study, low.place, units),
-            _point_text(study, high.place, units),
-        )
-    print_columns(Console(), table)
-    verdicts = _verdict_counts(report.verdicts)
-    Console().print(f"{study.status.size} points, {report.valid} of them valid{verdicts}", highlight=False)
+        points = (_point_text(study, end.place, units) for end in (low, high))
+        table.add_row(name, _unit(name, units), *numbers, *points)
+    print_columns(Terminal(), table)
+    verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
+    yields = f"; yield stress: {verdicts}" if verdicts else ""
+    Terminal().print(f"{study.status.size} points, {report.valid} of them valid{yields}")
     for note in report.notes(study):
-        Console().print(f"  {note}", highlight=False)
+        Terminal().print(f"  {note}")
 
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
@@ -331,20 +312,14 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     table = _table(*heads)
     for row in rows:
         table.add_row(*row)
-    print_columns(Console(), table)
+    print_columns(Terminal(), table)
     counts = count_verdicts(study, limits)
     shares = ", ".join(f"{100 * n / study.status.size:.3g} % {word}" for word, n in counts.items() if n)
-    Console().print(f"of the map: {shares}" + "".join(f"; {limit}" for limit in limits), highlight=False)
+    Terminal().print(f"of the map: {shares}" + "".join(f"; {limit}" for limit in limits))
     if counts[Verdict.UNDECIDED.word]:
         reason = undecided_reason(study, limits)
-        Console().print(f"undecided: {reason}; the table has the kept designs only", highlight=False)
+        Terminal().print(f"undecided: {reason}; the table has the kept designs only")
     _print_held(held_in(study))
-
-
-def _verdict_counts(counts: Mapping[Verdict, int]) -> str:
-    """Write the verdicts on the yield stress with their numbers of points; empty without a utilisation."""
-    numbers = ", ".join(f"{count} {verdict.word}" for verdict, count in counts.items() if count)
-    return f"; yield stress: {numbers}" if numbers else ""
 
 
 def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
@@ -366,47 +341,42 @@ def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
     table = _table(*(QUANTITIES[name].head() if name in QUANTITIES else name for name in names))
     for index in range(chosen.sizes["point"]):
         table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
-    print_columns(Console(), table)
-    Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
+    print_columns(Terminal(), table)
+    Terminal().print(f"{front.sizes['point']} designs that no other beats in both")
     _print_held(held_in(front))
 
 
 def print_optimum(best: Optimum) -> None:
     """Print the best design, its active limits, and the derivatives of the objective."""
-    console = Console()
-    console.print(
-        f"{best.minimise} {_value_text(best.minimise, best.value)} {_unit(best.minimise)}",
-        style="bold",
-        highlight=False,
-    )
+    terminal = Terminal()
+    terminal.print(f"{best.minimise} {_value_text(best.minimise, best.value)} {_unit(best.minimise)}", style="bold")
     table = _table("number", "value", "unit", f"d {best.minimise} / d number")
     for name, value in best.point.items():
         slope = f"{best.slopes[name] * _factor(best.minimise) / _factor(name):.4g}" if name in best.slopes else "-"
         table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), slope)
     for part, material in best.materials.items():
         table.add_row(part, material, "", "-")
-    print_columns(console, table)
+    print_columns(terminal, table)
     _print_held(best.held)
     if not best.valid:
-        console.print("the model is not valid there: use another model", highlight=False)
+        terminal.print("the model is not valid there: use another model")
     if best.undecided:
-        console.print(
+        terminal.print(
             f"{best.undecided} of {best.searched} searched joints are undecided: their error bar contains a limit, or "
             "a strength is missing; the best one keeps the limits by its whole error bar",
-            highlight=False,
         )
     if best.active:
-        console.print(f"active limits: {', '.join(best.active)}", highlight=False)
+        terminal.print(f"active limits: {', '.join(best.active)}")
 
 
 def print_sensitivity(indices: xarray.Dataset) -> None:
     """Print the shares of the variance with their intervals, and elasticities, by quantity."""
-    console = Console()
+    terminal = Terminal()
     orders = [name for name in ("shapley", "first_order", "total_order") if name in indices]
     with_intervals = orders[:1] if "shapley" in orders else orders  # a line has 80 columns
     for quantity, content in sensitivity_summary(indices)["quantities"].items():
         mean, deviation = (_value_text(quantity, content[name]) for name in ("mean", "deviation"))
-        console.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold", highlight=False)
+        terminal.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold")
         table = _table("number", *(_INDEX_NAMES[name] for name in orders), _INDEX_NAMES["elasticity"])
         for parameter, numbers in content["numbers"].items():
             cells = (
@@ -414,36 +384,32 @@ def print_sensitivity(indices: xarray.Dataset) -> None:
                 for name in orders
             )
             table.add_row(parameter, *cells, f"{numbers['elasticity']:+.2f}")
-        print_columns(console, table)
+        print_columns(terminal, table)
         if "pairs" in content:
             pairs = _table("pair", _INDEX_NAMES["second_order"])
             for pair in content["pairs"]:
                 pairs.add_row(" x ".join(pair["parameters"]), _interval_text(pair, "second_order"))
-            print_columns(console, pairs)
+            print_columns(terminal, pairs)
     _print_held(held_in(indices))
     if "correlation" in indices.attrs:
-        console.print(f"rank correlations: {indices.attrs['correlation']}", highlight=False)
+        terminal.print(f"rank correlations: {indices.attrs['correlation']}")
 
 
 def _interval_text(numbers: Mapping[str, Any], name: str) -> str:
-    """Write an index with its interval, if it has one."""
     value, low, high = (_number_text(numbers.get(f"{name}{end}")) for end in ("", "_low", "_high"))
     return f"{value} ({low}..{high})" if f"{name}_low" in numbers else value
 
 
 def _number_text(value: float | None) -> str:
-    """Write a share of the variance; nan for a missing one."""
     return "nan" if value is None else f"{round(value, 2) + 0.0:.2f}"  # without the sign of -0.00
 
 
 def _point_text(study: xarray.Dataset, flat: int, units: Units) -> str:
-    """Describe the varied parameters at a point."""
     at = coordinates(study, flat)
     return _parameter_text({name: at[name] for name in varying_parameters(study)}, units)
 
 
 def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
-    """Write parameters with symbol and value."""
     return ", ".join(
         f"{QUANTITIES[name].symbol if name in QUANTITIES else name} {_value_text(name, value, units)}"
         for name, value in at.items()
@@ -451,22 +417,18 @@ def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
 
 
 def _unit(name: str, units: Units = Units.SI) -> str:
-    """Return the unit of a quantity in tables."""
     return units.unit_of(QUANTITIES[name]).text
 
 
 def _factor(name: str, units: Units = Units.SI) -> float:
-    """Return the factor to the unit of tables."""
     return units.unit_of(QUANTITIES[name]).factor
 
 
 def _value_text(name: str, value: float | str, units: Units = Units.SI) -> str:
-    """Write a value in the unit of tables."""
     return value if isinstance(value, str) else f"{value * _factor(name, units):.4g}"
 
 
 def _table(*heads: str) -> Table:
-    """Make an empty table with dim heads."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     for head in heads:
         table.add_column(Text(head), no_wrap=not table.columns)

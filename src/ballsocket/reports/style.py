@@ -9,6 +9,7 @@ from zlib import crc32
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 INK = "black"
 """Colour of text; a light one on a dark page."""
@@ -94,3 +95,16 @@ def finish(axes: Axes, x: str, y: str) -> None:
     axes.set_ylabel(y)
     axes.grid(color="0.9", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Create a figure whose layout fits its labels; width and height are in inches."""
+    from .notebook_figure import NotebookFigure
+
+    return NotebookFigure(figsize=(width, height), layout="constrained")
+
+
+def single_axes(width: float = 6.4, height: float = 4.2) -> tuple[Figure, Axes]:
+    """Create a figure with one pair of axes; width and height are in inches."""
+    figure = new_figure(width, height)
+    return figure, figure.subplots()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from math import degrees, pi
@@ -42,13 +42,23 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
 
     Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
     """
-    terminal, ordered = console(units), _exact_first(comparison)
+    terminal, ordered, exact = Terminal(units), comparison, comparison.get(reference.name)
+    if exact is not None and exact.valid:
+        ordered = replace(comparison, contacts={reference.name: exact, **comparison.contacts})
     print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
     for line in _strength_lines(ordered):
         print_folded(terminal, line, "")
-    for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
+    symbols = ", ".join(f"{column.symbol} {column.title}" for column in shown)
+    deviating = any(ordered.deviation(name) is not None for name in ordered)
+    lines = [f"{symbols}; Δ % from {reference.name}" if deviating else symbols]
+    known = [*_pole_columns(ordered), *(column.attribute for column in shown)]
+    omitted = [column for column in units.columns_of(ordered.joint) if column.attribute not in known]
+    if omitted:
+        text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
+        lines.append(f"not shown, the terminal is too narrow: {text}")
+    for line in (*lines, *remarks, *ordered.notes()):
         print_folded(terminal, line, "dim")
 
 
@@ -63,43 +73,18 @@ def _strength_lines(comparison: Comparison) -> Iterator[str]:
     yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())
 
 
-def _exact_first(comparison: Comparison) -> Comparison:
-    """Return the comparison with a valid exact contact first."""
-    exact = comparison.get(reference.name)
-    if exact is None or not exact.valid:
-        return comparison
-    return replace(comparison, contacts={reference.name: exact, **comparison.contacts})
-
-
-def _symbols_text(comparison: Comparison, columns: Sequence[Column]) -> str:
-    """Describe the symbols in the heads of the columns."""
-    symbols = ", ".join(f"{column.symbol} {column.title}" for column in columns)
-    deviating = any(comparison.deviation(name) is not None for name in comparison)
-    return f"{symbols}; Δ % from {reference.name}" if deviating else symbols
-
-
-def _omitted_text(comparison: Comparison, shown: Sequence[Column], units: Units) -> tuple[str, ...]:
-    """Name the columns that do not fit the width of the terminal."""
-    hidden = _pole_columns(comparison)
-    columns = units.columns_of(comparison.joint)
-    omitted = [column for column in columns if column.attribute not in hidden and column not in shown]
-    text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
-    return (f"not shown, the terminal is too narrow: {text}",) if omitted else ()
-
-
 def print_curve(contact: Contact) -> None:
     """Print contacts at increasing loads as a table of the main quantities, and the notes."""
-    terminal = console()
+    terminal = Terminal()
     print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
-    for column in COLUMNS:
-        if column.attribute in HEADLINE:
-            table.add_column(Text(column.head), justify="right", no_wrap=True)
-    table.add_column("valid", no_wrap=True)
-    values = [column.values_of(contact) for column in COLUMNS if column.attribute in HEADLINE]
-    for index, valid in enumerate(contact.valid):
-        table.add_row(*(number_text(value[index], 4, "-") for value in values), "yes" if valid else "no")
-    print_columns(terminal, table)
+    columns = [column for column in COLUMNS if column.attribute in HEADLINE]
+    values = [column.values_of(contact) for column in columns]
+    rows = [
+        [*(number_text(value[index], 4, "-") for value in values), "yes" if valid else "no"]
+        for index, valid in enumerate(contact.valid)
+    ]
+    heads = [*(column.head for column in columns), "valid"]
+    print_columns(terminal, text_table(heads, rows, left=("valid",), gap=1))
     for note in contact.notes:
         print_folded(terminal, note, "dim")
 
@@ -112,9 +97,20 @@ class Terminal(Console):
         self.units = units
 
 
-def console(units: Units = Units.SI) -> Terminal:
-    """Create a console that does not colour numbers."""
-    return Terminal(units)
+def text_table(
+    heads: Iterable[str],
+    rows: Iterable[Sequence[str | Text]] = (),
+    left: Container[str] = (),
+    folded: Container[str] = (),
+    gap: int = 2,
+) -> Table:
+    """Make a table of texts; columns are aligned to the right but in `left`, and in one line but in `folded`."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, gap, 0, 0))
+    for head in heads:
+        table.add_column(Text(head), justify="left" if head in left else "right", no_wrap=head not in folded)
+    for row in rows:
+        table.add_row(*(Text(cell) if isinstance(cell, str) else cell for cell in row))  # "[nm]" is no style of rich
+    return table
 
 
 def print_folded(console: Console, text: str, style: str) -> None:
@@ -264,7 +260,6 @@ def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> li
 
 
 def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
-    """Return the cells of one contact."""
     style = "" if contact.valid else "yellow"
     numbers = [number_text(column.values_of(contact), 4 if column.unit else 3, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
@@ -280,7 +275,9 @@ def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
         for name, contact in comparison.items()
     }
     highest = max((pressure.max() for pressure in pressures.values()), default=0.0)
-    return {name: _bars(pressure / highest if highest > 0 else 0 * angle, bars) for name, pressure in pressures.items()}
+    scale = highest if highest > 0 else 1.0
+    shares = {name: numpy.clip(pressure / scale, 0.0, 1.0) for name, pressure in pressures.items()}
+    return {name: "".join(bars[round(8 * float(level))] for level in share).rstrip() for name, share in shares.items()}
 
 
 def _profile_end(comparison: Comparison) -> float:
@@ -289,8 +286,3 @@ def _profile_end(comparison: Comparison) -> float:
         return pi / 2
     cups = (contact.model.cup for contact in comparison.values() if hasattr(contact.model, "cup"))
     return max((float(cup.arc_of_cover) / 2 for cup in cups), default=pi / 2)
-
-
-def _bars(share: numpy.ndarray, bars: str) -> str:
-    """Draw shares from 0 to 1 as characters."""
-    return "".join(bars[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0)).rstrip()

@@ -196,7 +196,6 @@ def _imperial(match: re.Match[str]) -> str:
     unit = _legible(_WRITTEN_UNITS[written], largest)
 
     def converted(number: re.Match[str]) -> str:
-        """Write one number."""
         value = float(number[0]) * unit.factor
         return plain_number(value)
 

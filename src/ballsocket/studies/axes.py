@@ -83,7 +83,6 @@ class SpanAxis(Axis):
 
 @lru_cache(maxsize=16)
 def _span_values(axis: SpanAxis) -> Mapping[str, Numbers]:
-    """Compute the values of an axis with equal steps."""
     return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
 
 
@@ -195,7 +194,6 @@ CACHED_CHUNKS = 8
 
 @lru_cache(maxsize=CACHED_CHUNKS)
 def _draw_samples(axis: SampleAxis, chunk: int) -> tuple[Numbers, ...]:
-    """Draw the samples of one chunk, an array for each parameter."""
     probabilities = draw_chunk(axis.method, axis.count, len(axis.distributions), axis.seed, chunk)
     if axis.correlation:
         probabilities = correlate(probabilities, copula_matrix(axis.names, dict(axis.correlation)))

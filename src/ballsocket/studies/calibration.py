@@ -197,7 +197,6 @@ def calibrate(
 
 
 def _to_floats(numbers: Array) -> numpy.ndarray:
-    """Convert numbers or arrays of any library to a NumPy array of floats."""
     return numpy.asarray(arrays.to_numpy(numbers), dtype=float)
 
 

@@ -26,17 +26,11 @@ Derivatives = dict[str, dict[str, float]]
 REPORTED_QUANTITIES = ("max_pressure", "half_angle", "indentation", "area", "stiffness")
 """Quantities whose elasticities and bands are computed."""
 
-_VARIED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
-"""Dimensions of the joint with an elasticity."""
-
-_ORIENTATION = ("inclination", "anteversion")
-"""Angles of the cup that set the direction of a load in the body."""
-
+_VARIED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")  # dimensions of the joint with an elasticity
+_ORIENTATION = ("inclination", "anteversion")  # angles of the cup that set the direction of a load in the body
 _SAMPLE_COUNT = 512
 _QUADRATIC_SAMPLE_COUNT = 8192
-_NODE = 3**0.5
-"""Distance of the nodes of a quadratic from the mean, in standard deviations, as of Gauss-Hermite quadrature."""
-
+_NODE = 3**0.5  # nodes of a quadratic in standard deviations from the mean, as of Gauss-Hermite quadrature
 _BAND_PROBABILITIES = (0.025, 0.5, 0.975)
 _NO_RESULT = "some joints within the tolerances have no result; narrow the tolerances"
 
@@ -137,11 +131,9 @@ def jax_derivatives(
 
 @lru_cache(maxsize=16)
 def _compile_jax(model: Model, joint: Joint, quantities: tuple[str, ...]) -> Callable[[dict[str, float]], Any]:
-    """Compile the function from parameters to quantities and their gradients."""
     import jax
 
     def compute(values: dict[str, Any]) -> dict[str, Any]:
-        """Compute the quantities of a press."""
         check_aims(model, values)
         varied_joint, load, _ = press_arguments(joint, values)
         contact = model.press(varied_joint, **load)
@@ -289,7 +281,8 @@ def off_axis_uncertainty(
     """
     angles = {name: getattr(model.cup, name) for name in _ORIENTATION} if tilt is None else {"tilt": tilt}
     for name, distribution in tolerances.items():
-        _check_direction(name, angles)
+        if name in AIMS and name not in angles:
+            raise ValueError(f"{name} has a tolerance, and the direction of the load is set by {' and '.join(angles)}")
         nominal = {**angles, **load}.get(name) if name in (*AIMS, *LOADS) else nominal_value(joint, name)
         if nominal is not None:
             check_nominal(name, float(nominal), distribution, PARAMETERS[name].written)
@@ -313,12 +306,6 @@ def off_axis_uncertainty(
     return LocalUncertainty(model=model.name, changes=changes, band=bands, presses=2 * len(means) + 1)
 
 
-def _check_direction(name: str, angles: Mapping[str, float]) -> None:
-    """Raise ValueError for the tolerance of an angle that does not set the direction of the load."""
-    if name in AIMS and name not in angles:
-        raise ValueError(f"{name} has a tolerance, and the direction of the load is set by {' and '.join(angles)}")
-
-
 def _star(means: Mapping[str, float], steps: Numbers, load: Mapping[str, float]) -> dict[str, Numbers]:
     """Return the means, and for each parameter one point above and one below; the load stays if it has no tolerance."""
     fixed = {} if set(means) & set(load) else dict(load)
@@ -329,12 +316,10 @@ def _star(means: Mapping[str, float], steps: Numbers, load: Mapping[str, float])
 
 
 def _ends(values: Numbers) -> tuple[float, ...]:
-    """Return low end, median and high end of sampled values."""
     return tuple(float(end) for end in numpy.quantile(values, _BAND_PROBABILITIES))
 
 
 def _compute_bands(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances: Mapping[str, Distribution]) -> Bands:
-    """Compute the bands of the quantities from samples within the tolerances."""
     design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
     check_values(design)
     samples = design.values_in([slice(None)])

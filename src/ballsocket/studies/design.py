@@ -149,8 +149,10 @@ def grid(**axes: Any) -> Design:
             fixed |= {number: float(column[0]) for number, column in _create_axis(name, [value]).values.items()}
         elif isinstance(value, Span) or not is_number(value):
             varying[name] = value
+        elif name in MATERIAL_PARTS:
+            raise ValueError(f"{name} must be a Material or a list of Materials, got {shown(value)}")
         else:
-            fixed[name] = _check_fixed(name, value)
+            fixed[name] = float(parameter_values(name, numpy.asarray([value]))[0])
     return Design(tuple(_create_axis(name, value) for name, value in varying.items()), fixed)
 
 
@@ -174,9 +176,8 @@ def check_values(design: Design) -> None:
         for name, values in ends.items():
             _check_allowed(name, values)
     for name, value in design.fixed.items():
-        if isnan(value):  # an unknown yield stress of a material
-            continue
-        _check_allowed(name, numpy.array([value]))
+        if not isnan(value):  # an unknown yield stress of a material
+            _check_allowed(name, numpy.array([value]))
 
 
 def _check_samples(axis: SampleAxis) -> None:
@@ -207,24 +208,11 @@ def is_number(value: Any) -> bool:
     return numpy.ndim(value) == 0
 
 
-def _check_materials(name: str, values: Any) -> tuple[Material, ...]:
-    """Check that values are a sequence of materials, and return them as a tuple."""
-    if isinstance(values, Sequence) and all(isinstance(material, Material) for material in values):
-        return tuple(values)
-    raise ValueError(f"{name} must be a list of Materials, got {shown(values)}")
-
-
-def _check_fixed(name: str, value: Any) -> float:
-    """Check a fixed parameter, and return it as a float."""
-    if name in MATERIAL_PARTS:
-        raise ValueError(f"{name} must be a Material or a list of Materials, got {shown(value)}")
-    return float(parameter_values(name, numpy.asarray([value]))[0])
-
-
 def _create_axis(name: str, value: Any) -> Axis:
-    """Create the axis of a parameter, or of the materials of a part."""
     if name in MATERIAL_PARTS:
-        return MaterialAxis(name, _check_materials(name, value))
+        if isinstance(value, Sequence) and all(isinstance(material, Material) for material in value):
+            return MaterialAxis(name, tuple(value))
+        raise ValueError(f"{name} must be a list of Materials, got {shown(value)}")
     if isinstance(value, Span):
         return SpanAxis(name, value)
     return GridAxis(name, parameter_values(name, numpy.asarray(value)))

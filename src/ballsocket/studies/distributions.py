@@ -119,11 +119,8 @@ class LogNormal:
 Distribution = Rectangular | Normal | LogNormal
 """Any of the distributions."""
 
-_TAIL_PROBABILITY = 1e-3
-"""Tail probability at which an unbounded distribution is cut for the check of a nominal value."""
-
-_ROUNDING = 1e-9
-"""Rounding error of a nominal value relative to the ends of its distribution."""
+_TAIL_PROBABILITY = 1e-3  # tail probability at which an unbounded distribution is cut for the check of a nominal value
+_ROUNDING = 1e-9  # rounding error of a nominal value relative to the ends of its distribution
 
 
 def check_nominal(name: str, nominal: float, distribution: Distribution, unit: Unit) -> None:
@@ -219,11 +216,8 @@ def correlation_text(correlation: Correlation) -> str:
     return "; ".join(f"{one}, {other} = {rank:g}" for (one, other), rank in correlation.items())
 
 
-_SMALLEST_EIGENVALUE = 1e-6
-"""Smallest eigenvalue of a matrix of correlations that can be sampled."""
-
-_SMALLEST_PROBABILITY = 1e-16
-"""Probability at which normal quantiles are cut, so that they are finite."""
+_SMALLEST_EIGENVALUE = 1e-6  # smallest eigenvalue of a matrix of correlations that can be sampled
+_SMALLEST_PROBABILITY = 1e-16  # probability at which normal quantiles are cut, so that they are finite
 
 
 def correlate(probabilities: Numbers, matrix: Numbers) -> Numbers:

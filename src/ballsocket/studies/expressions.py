@@ -15,8 +15,7 @@ from .distributions import Correlation, Distribution, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
 
-_MAX_CHARACTERS = 200
-"""Largest length of a text; matching a longer one could take seconds."""
+_MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could take seconds
 
 
 def parse_range(text: str) -> tuple[str, float, float]:

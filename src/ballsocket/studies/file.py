@@ -85,18 +85,15 @@ def distribution_of(name: str, content: Any, read: Read) -> Distribution:
     """
     for keys, make in _DISTRIBUTIONS:
         if isinstance(content, Mapping) and set(content) == set(keys):
-            numbers = {key: _number(f"{name}.{key}", content[key], read) for key in keys}
+            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
+            if "factor" in keys:  # it has no unit
+                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
             with as_given(content, f"{name}."):
                 return make(**numbers)
     raise ValueError(
         f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
         "{median, factor}, or {nominal, plus_minus}"
     )
-
-
-def _number(name: str, value: Any, read: Read) -> float:
-    """Read a number of a distribution; a factor has no unit."""
-    return parse(name, value, Kind.NUMBER) if name.endswith(".factor") else read(name, value)
 
 
 class ModelName(Word):
@@ -260,29 +257,22 @@ def read_study(path: str | Path) -> StudyFile:
 
 
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
-    """Create the study of a file in a folder."""
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
     model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup)
+    store = None if tables.store is None else str(check_filled("store", tables.store))
     everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
         model=model,
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or everything)),
-        store=None if tables.store is None else _store(tables.store, folder),
+        store=store if store is None or address_of(store) is not None else folder / store,
         engine=_engine(tables.engine),
     )
 
 
-def _store(text: str, folder: Path) -> str | Path:
-    """Return the path of a store beside the file, or its address; ValueError if it is empty."""
-    filled = check_filled("store", text)
-    return folder / filled if address_of(filled) is None else str(filled)
-
-
 def _engine(table: EngineTable) -> Engine:
-    """Create an executor."""
     if table.kind == "serial" and table.workers is not None:
         raise ValueError("engine kind 'serial' has no workers: 'processes' and 'dask' have")
     if table.kind != "dask" and table.address is not None:
@@ -304,7 +294,6 @@ def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
-    """Create the design of a study: the product of samples, rows of a table and a grid."""
     axes = content.get("axes", {})
     design = grid(**parsed_values(tables.axes, axes))
     with as_given(_texts_of_values(axes), "axes."):

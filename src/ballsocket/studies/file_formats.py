@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ import numpy
 
 from ..contact.verdict import Verdict
 from ..core.checks import needs
-from ..core.quantities import QUANTITIES, Quantity
+from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from ..core.storage.folders import folder_at, open_address
 from .metadata import derived_lengths, invalid_reasons
@@ -23,11 +23,8 @@ if TYPE_CHECKING:
 SUFFIXES = (".nc", ".csv", ".parquet", ".zarr")
 """Endings of the file names of exports."""
 
-_MAX_CHUNK_POINTS = 1 << 18
-"""Largest number of points of a chunk."""
-
-_QUOTED_CHARACTERS = set(',"\r\n')
-"""Characters that only a quoted cell may contain."""
+_MAX_CHUNK_POINTS = 1 << 18  # largest number of points of a chunk
+_QUOTED_CHARACTERS = set(',"\r\n')  # characters that only a quoted cell may contain
 
 
 def dimension_names(study: xarray.Dataset) -> tuple[str, ...]:
@@ -36,7 +33,6 @@ def dimension_names(study: xarray.Dataset) -> tuple[str, ...]:
 
 
 def _chunk_blocks(study: xarray.Dataset) -> Blocks:
-    """Divide a study into chunks that fit into the memory."""
     return Blocks.divide(tuple(study.sizes[dim] for dim in dimension_names(study)), _MAX_CHUNK_POINTS)
 
 
@@ -106,13 +102,19 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
         _upload(study, address)
         return
     path = Path(path)
-    write = {".nc": _write_netcdf, ".csv": _write_csv, ".parquet": _write_parquet, ".zarr": _write_zarr}
+    write: dict[str, Callable[[xarray.Dataset, Path], Any]] = {
+        ".nc": lambda study, draft: _plain_dataset(study).to_netcdf(draft, engine="h5netcdf"),
+        ".csv": _write_csv,
+        ".parquet": _write_parquet,
+        ".zarr": lambda study, draft: (
+            _plain_dataset(study).drop_encoding().to_zarr(draft, zarr_format=3, consolidated=False)
+        ),
+    }
     with write_atomically(path) as draft:
         write[path.suffix.lower()](study, draft)
 
 
 def _upload(study: xarray.Dataset, address: str) -> None:
-    """Write a study to the address of a remote store."""
     with TemporaryDirectory() as folder:
         local = Path(folder) / address.rpartition("/")[2]
         export(study, local)
@@ -142,18 +144,7 @@ def _plain_dataset(study: xarray.Dataset) -> xarray.Dataset:
     return plain.chunk(dict(zip(dimension_names(study), _chunk_blocks(study).size, strict=True)))
 
 
-def _write_netcdf(study: xarray.Dataset, path: Path) -> None:
-    """Write a study to a NetCDF file."""
-    _plain_dataset(study).to_netcdf(path, engine="h5netcdf")
-
-
-def _write_zarr(study: xarray.Dataset, path: Path) -> None:
-    """Write a study to a Zarr group."""
-    _plain_dataset(study).drop_encoding().to_zarr(path, zarr_format=3, consolidated=False)
-
-
 def _write_parquet(study: xarray.Dataset, path: Path) -> None:
-    """Write a study to a Parquet file, one row group for each chunk."""
     import pyarrow
     from pyarrow import parquet
 
@@ -174,6 +165,7 @@ def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]
     """Yield the columns of each chunk by their heads, in the units of files."""
     names = [str(name) for name in (*study.coords, *study.data_vars)]
     dims, reasons = dimension_names(study), invalid_reasons(study)
+    words = numpy.array([*(verdict.word for verdict in Verdict), "no result"])
     for chunk in iterate_chunks(study):
         variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
         columns = (variable.transpose(*dims).values.ravel() for variable in variables)
@@ -182,12 +174,17 @@ def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]
         values = {**parameters, **derived_lengths(study, parameters), **values}
         kinds = zip(values["status"].tolist(), values.pop("broken_limit").tolist(), strict=True)
         why = [reasons.get(kind, "") for kind in kinds]
-        heads = {_column_head(name): _in_written_unit(name, column) for name, column in values.items()}
-        yield {**heads, "why_not_valid": numpy.array(why)}
+        written = {}
+        for name, column in values.items():
+            quantity = BOUNDS.get(name) or QUANTITIES.get(name)
+            if quantity is not None:
+                written[quantity.column] = column * quantity.written.factor
+            else:
+                written[name] = words[column] if name == VERDICT else column
+        yield {**written, "why_not_valid": numpy.array(why)}
 
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:
-    """Write a study to a CSV file."""
     with path.open("w", encoding="utf-8", newline="") as stream:
         for number, columns in enumerate(_iterate_columns(study)):
             if number == 0:
@@ -196,27 +193,7 @@ def _write_csv(study: xarray.Dataset, path: Path) -> None:
             stream.writelines(",".join(map(_cell_text, row)) + "\n" for row in rows)
 
 
-def _column_head(name: str) -> str:
-    """Return the head of a variable's column, with its unit."""
-    quantity = _quantity(name)
-    return name if quantity is None else quantity.column
-
-
-def _in_written_unit(name: str, column: numpy.ndarray) -> numpy.ndarray:
-    """Convert a column from internal units to the units of files, and verdicts to words."""
-    if name == VERDICT:
-        return numpy.array([*(verdict.word for verdict in Verdict), "no result"])[column]
-    quantity = _quantity(name)
-    return column if quantity is None else column * quantity.written.factor
-
-
-def _quantity(name: str) -> Quantity | None:
-    """Return the quantity of a variable, or of the bound of one; None for another variable."""
-    return BOUNDS.get(name) or QUANTITIES.get(name)
-
-
 def _cell_text(value: object) -> str:
-    """Format a value as a cell of a CSV file."""
     if isinstance(value, numpy.bool_):
         return "1" if value else "0"
     if isinstance(value, str):

@@ -143,7 +143,6 @@ class _LengthDimensions(Dimensions):
 
 
 def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
-    """Derive the dimensions of the joints of a study from its coordinates and the summary of its joint."""
     varied = {str(name): study[name] for name in study.coords if name in JOINT}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
     shell = thickness if thickness < inf else 0.0

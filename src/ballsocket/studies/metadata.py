@@ -22,7 +22,7 @@ from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
 from ..core.validity import Status
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of, lost_lengths
-from .axes import Axis, MaterialAxis, SampleAxis, TableAxis
+from .axes import MaterialAxis, SampleAxis, TableAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
 from .task import BOUNDS, VERDICT, Task
@@ -31,29 +31,17 @@ if TYPE_CHECKING:
     import xarray
 
 
-_PARAMETERS = "parameters"
-"""Attribute with the names of varied and fixed parameters, in the order of the design."""
+_PARAMETERS = "parameters"  # attribute with the names of varied and fixed parameters, in the order of the design
 
 HELD = "held"
 """Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
 
-_DERIVED = "derived_lengths"
-"""Attribute with the names of the lengths that follow from varied ones, and the shell's thickness in mm, as JSON."""
-
-_LIMITS = "limits"
-"""Attribute with the sentences of the limits of the model's validity, as JSON."""
-
-_MISSING = "missing"
-"""Attribute with the reason why a quantity is missing at every point, by its name, as JSON."""
-
-_LABELS = "labels"
-"""Attribute with the names of materials by axis, as JSON."""
-
-_MAX_LISTED_VALUES = 40
-"""Number of values above which an axis is described by its ends and a digest."""
-
-_MAX_VALUE_CHARACTERS = 60
-"""Characters of a value in a message."""
+_DERIVED = "derived_lengths"  # attribute with the lengths that follow from varied ones and the shell in mm, as JSON
+_LIMITS = "limits"  # attribute with the sentences of the limits of the model's validity, as JSON
+_MISSING = "missing"  # attribute with the reason why a quantity is missing at every point, by its name, as JSON
+_LABELS = "labels"  # attribute with the names of materials by axis, as JSON
+_MAX_LISTED_VALUES = 40  # number of values above which an axis is described by its ends and a digest
+_MAX_VALUE_CHARACTERS = 60  # characters of a value in a message
 
 
 def variable_attributes(name: str) -> dict[str, Any]:
@@ -84,6 +72,8 @@ def study_attributes(task: Task) -> dict[str, Any]:
     """Return the attributes of a study: title, model, joint, design, publications and version."""
     remarks = [axis.remark for axis in task.design.axes if isinstance(axis, TableAxis) and axis.remark]
     labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
+    # the name of a material axis comes before its properties
+    names = ((*([axis.name] if axis.labels else []), *axis.names) for axis in task.design.axes)
     return {
         "title": f"{task.model.title}, pressed at {task.design.size} points",
         "model": task.model.name,
@@ -91,7 +81,7 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
         "design": json.dumps(describe_axes(task.design)),
         "source": f"ballsocket {fingerprint()}",
-        _PARAMETERS: " ".join(_parameter_order(task.design)),
+        _PARAMETERS: " ".join((*chain.from_iterable(names), *task.design.constants)),
         HELD: json.dumps(task.design.held),
         _DERIVED: json.dumps([_derived_names(task), float(task.joint.shell)]),
         _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
@@ -143,7 +133,6 @@ def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
 
 
 def _missing_reasons(task: Task) -> dict[str, str]:
-    """Return the reason why a quantity is missing at every point of a study, by its name."""
     liner, name = task.joint.liner, "liner_yield_stress"
     by_material = [
         axis.values[name] for axis in task.design.axes if isinstance(axis, MaterialAxis) and name in axis.names
@@ -158,11 +147,10 @@ def _missing_reasons(task: Task) -> dict[str, str]:
 
 def parameter_coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:
     """Return dimensions and values of each varied or fixed parameter."""
-    varying = {name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()}
-    fixed: dict[str, tuple[tuple[str, ...], Numbers]] = {
-        name: ((), numpy.asarray(value)) for name, value in design.constants.items()
+    coordinates: dict[str, tuple[tuple[str, ...], Numbers]] = {
+        name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()
     }
-    return {**varying, **fixed}
+    return coordinates | {name: ((), numpy.asarray(value)) for name, value in design.constants.items()}
 
 
 def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
@@ -195,12 +183,6 @@ def order_coordinates(study: xarray.Dataset) -> xarray.Dataset:
     return xarray.Dataset(results, coords=ordered, attrs=study.attrs)
 
 
-def _parameter_order(design: Design) -> tuple[str, ...]:
-    """Return the names of all parameters; the name of a material axis comes before its properties."""
-    axes = ((*([axis.name] if axis.labels else []), *axis.names) for axis in design.axes)
-    return (*chain.from_iterable(axes), *design.constants)
-
-
 def study_identity(task: Task) -> dict[str, Any]:
     """Describe a study as data for JSON; equal descriptions have equal results."""
     return {
@@ -216,14 +198,7 @@ def study_identity(task: Task) -> dict[str, Any]:
 
 def describe_axes(design: Design) -> dict[str, Any]:
     """Describe the axes of a design as data for JSON: values, or seed and distributions of samples."""
-    return {axis.name: _describe_axis(axis) for axis in design.axes}
-
-
-def _describe_axis(axis: Axis) -> Any:
-    """Describe one axis as data for JSON."""
-    if isinstance(axis, SampleAxis):
-        return _as_plain_data(axis)
-    return {name: _describe_array(values) for name, values in axis.values.items()}
+    return {axis.name: _as_plain_data(axis if isinstance(axis, SampleAxis) else axis.values) for axis in design.axes}
 
 
 def _as_plain_data(value: Any) -> Any:
@@ -251,7 +226,6 @@ def _as_plain_data(value: Any) -> Any:
 
 
 def _qualified_name(item: Any) -> str:
-    """Return the full name of a class or function."""
     return f"{item.__module__}.{item.__qualname__}"
 
 
@@ -293,6 +267,5 @@ def list_differences(stored: Mapping[str, Any], requested: Mapping[str, Any], pa
 
 
 def _shorten(value: Any) -> str:
-    """Format a value with limited length."""
     text = "missing" if value is None else str(value)
     return text if len(text) <= _MAX_VALUE_CHARACTERS else f"{text[: _MAX_VALUE_CHARACTERS - 3]}..."

@@ -23,24 +23,12 @@ from .parameters import MATERIAL_PARTS, PARAMETERS, hold, vary_joint
 from .run import study
 from .task import QUANTITIES
 
-_SEARCH_SECONDS = 3.0
-"""Time in s that the search for starts may take."""
-
-_MIN_SAMPLES, _MAX_SAMPLES = 64, 4096
-"""Range of the number of samples of the search."""
-
-_STARTS = 3
-"""Number of starts of the local optimisation."""
-
-_MARGIN_TOLERANCE = 1e-6
-"""Largest violation of a limit by an optimum, in the unit of the limit."""
-
-_ACTIVE_MARGIN = 1e-5
-"""Margin, relative to the size of a limit, below which the limit is active."""
-
-_ACTIVE_FRACTION = 1e-6
-"""Distance from the end of a range, as a fraction of the range, below which the end is active."""
-
+_SEARCH_SECONDS = 3.0  # time in s that the search for starts may take
+_MIN_SAMPLES, _MAX_SAMPLES = 64, 4096  # range of the number of samples of the search
+_STARTS = 3  # number of starts of the local optimisation
+_MARGIN_TOLERANCE = 1e-6  # largest violation of a limit by an optimum, in the unit of the limit
+_ACTIVE_MARGIN = 1e-5  # margin, relative to the size of a limit, below which the limit is active
+_ACTIVE_FRACTION = 1e-6  # distance from the end of a range, as a fraction of the range, below which the end is active
 _NO_CHOICES: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -208,11 +196,6 @@ class _Search:
         names = {part: material.name or str(material) for part, material in materials.items()}
         return replace(problem.make_optimum(fractions, searched), materials=names, undecided=undecided)
 
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        """Quantities that are minimised or limited."""
-        return tuple(dict.fromkeys((self.minimise, *limited_quantities(self.limits))))
-
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
@@ -258,7 +241,8 @@ class _Problem:
     def study(self, design: Design) -> Any:
         """Press the joint at the points of a design."""
         points = design * grid(**self.search.load)
-        return study(self.search.model, self.joint, points, quantities=self.search.quantities)
+        names = dict.fromkeys((self.search.minimise, *limited_quantities(self.search.limits)))
+        return study(self.search.model, self.joint, points, quantities=names)
 
     def refine(self, start: Numbers) -> tuple[Numbers, float]:
         """Minimise from a start with SLSQP; return the start itself if the result is not better or not allowed."""
@@ -273,7 +257,6 @@ class _Problem:
         ]
 
         def relative_value(fractions: Numbers) -> tuple[float, Numbers]:
-            """Compute value and gradient relative to the value at the start."""
             value, gradient = self.value_and_gradient(fractions)
             return value / scale, gradient / scale
 
@@ -323,5 +306,4 @@ class _Problem:
 
 def _size(limit: Limit) -> float:
     """Return the largest finite end of a limit, at least 0.001."""
-    finite = [abs(end) for end in (limit.low, limit.high) if numpy.isfinite(end)]
-    return max([*finite, 1e-3])
+    return max(abs(end) for end in (limit.low, limit.high, 1e-3) if numpy.isfinite(end))

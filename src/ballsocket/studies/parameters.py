@@ -29,8 +29,7 @@ LOADS = tuple(quantities.LOADS)
 MATERIAL_PARTS = ("liner", "ball")
 """Parts of the joint whose axes have materials as values."""
 
-_ROUNDING = 1e-12
-"""Rounding error of a length relative to the radius of the ball."""
+_ROUNDING = 1e-12  # rounding error of a length relative to the radius of the ball
 
 
 def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]:

@@ -47,13 +47,9 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Listener", "Progress", "read", "study"]
-
 _SERIAL = Serial()
-
 _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
-
-_MANY_HOURS = 100.0
-"""Number of hours that is written without digits after the point."""
+_MANY_HOURS = 100.0  # number of hours that is written without digits after the point
 
 
 @dataclass(frozen=True)
@@ -171,7 +167,6 @@ def study(
 
 
 def _check_types(model: Any, joint: Any, design: Any) -> None:
-    """Raise TypeError for arguments of another type."""
     if not isinstance(model, Model):
         hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
         raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
@@ -183,7 +178,6 @@ def _check_types(model: Any, joint: Any, design: Any) -> None:
 def _create_task(
     model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]
 ) -> Task:
-    """Create the task of a study; raise ValueError for names and numbers that are not allowed."""
     points = (grid(**axes) if design is None else design * grid(**axes)).holding(joint)
     loads = [name for name in LOADS if name in points.names]
     if not loads:
@@ -200,21 +194,12 @@ def _create_task(
 
 
 def _check_space(task: Task, folder: ResultFolder | None, n_points: int | None = None) -> None:
-    """Check that the results of a study fit into the memory, or on the disk of its store.
-
-    `n_points` is the number of points to compute, all points by default.
-
-    Raises
-    ------
-    ValueError
-        The space is too small; the message has the size and the computing time.
-    """
+    """Check that the results of some points, all by default, fit into the memory, or on the disk of the store."""
     count = task.design.size if n_points is None else n_points
     results = count * _result_size(task)
     duration = _duration_text(count * task.model.seconds_a_press / 3600)
 
     def check(size: float, free: float, hint: str) -> None:
-        """Raise ValueError if the free space is smaller than a size in bytes."""
         if size > free:
             raise ValueError(
                 f"{count_text(count)} points take about {size_text(size)} and {duration} on one core, and there are "
@@ -254,7 +239,6 @@ def _axis_size(axis: Axis) -> int:
 
 
 def _duration_text(hours: float) -> str:
-    """Format a duration in hours, with seconds or minutes if it is short."""
     if hours < 1 / 60:
         return f"{3600 * hours:.2g} s"
     if hours < 1:
@@ -263,7 +247,6 @@ def _duration_text(hours: float) -> str:
 
 
 def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
-    """Compute all blocks of a study, and return its arrays by name."""
     arrays = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
     numbers = range(len(task.blocks))
     for number, results in _report_progress(engine.run(task, numbers), task, numbers, listen):
@@ -273,7 +256,6 @@ def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str
 
 
 def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
-    """Compute and store the missing blocks of a study; raise OSError if a block cannot be written."""
     n_stored = len(run.stored)
     try:
         for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):
@@ -288,7 +270,6 @@ def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: En
 def _report_progress(
     results: Iterable[tuple[int, Any]], task: Task, numbers: Iterable[int], listen: Listener
 ) -> Iterable[tuple[int, Any]]:
-    """Yield the results of blocks, and call `listen` with the progress after each block."""
     n_points = prod(task.design.shape)
     n_stored = n_done = n_points - sum(task.blocks.n_points(number) for number in numbers)
     start = time.perf_counter()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from functools import lru_cache
 from threading import get_ident
 from typing import TYPE_CHECKING
@@ -22,14 +21,9 @@ CHUNK_SIZE = 1 << 16
 MAX_SOBOL_COUNT = 1 << 30
 """Number of points of SciPy's Sobol sequence."""
 
-_MAX_SCIPY_COUNT = 1 << 20
-"""Number of points up to which SciPy draws a Latin hypercube, all points at once."""
-
-_N_ROUNDS = 8
-"""Rounds of the Feistel network."""
-
-_MULTIPLIERS = (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)
-"""Multipliers of the 64-bit finaliser of MurmurHash3 (Appleby 2011)."""
+_MAX_SCIPY_COUNT = 1 << 20  # number of points up to which SciPy draws a Latin hypercube, all points at once
+_N_ROUNDS = 8  # rounds of the Feistel network
+_MULTIPLIERS = (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)  # of MurmurHash3's 64-bit finaliser (Appleby 2011)
 
 
 class Method(Choice):
@@ -57,16 +51,15 @@ def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: in
     -------
     array (dimension, points of the chunk)
     """
-    start = number * CHUNK_SIZE
-    draw: dict[Method, Callable[[int, int, int, int, int], Numbers]] = {
-        Method.SOBOL: _draw_sobol,
-        Method.LATIN_HYPERCUBE: _draw_latin_hypercube if count > _MAX_SCIPY_COUNT else _draw_small_hypercube,
-    }
-    return draw[method](count, dimension, seed, start, min(count, start + CHUNK_SIZE)).T
+    start, stop = number * CHUNK_SIZE, min(count, (number + 1) * CHUNK_SIZE)
+    if method is Method.SOBOL:
+        return _draw_sobol(dimension, seed, start, stop).T
+    if count > _MAX_SCIPY_COUNT:
+        return _draw_latin_hypercube(count, dimension, seed, start, stop).T
+    return _scipy_hypercube(count, dimension, seed)[start:stop].T
 
 
-def _draw_sobol(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
-    """Draw the points of a section of the scrambled Sobol sequence of a seed."""
+def _draw_sobol(dimension: int, seed: int, start: int, stop: int) -> Numbers:
     engine = _sobol_engine(dimension, seed, get_ident())
     if engine.num_generated > start:
         engine.reset()
@@ -86,14 +79,8 @@ def _sobol_engine(dimension: int, seed: int, thread: int) -> Sobol:
     return Sobol(dimension, rng=seed)
 
 
-def _draw_small_hypercube(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
-    """Return the points of a section of a Latin hypercube that SciPy draws at once."""
-    return _scipy_hypercube(count, dimension, seed)[start:stop]
-
-
 @lru_cache(maxsize=1)
 def _scipy_hypercube(count: int, dimension: int, seed: int) -> Numbers:
-    """Draw a Latin hypercube, of shape (count, dimension)."""
     from scipy.stats.qmc import LatinHypercube
 
     points: Numbers = LatinHypercube(dimension, rng=seed).random(count)

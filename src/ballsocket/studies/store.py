@@ -37,18 +37,10 @@ CHECKSUM = "block_checksum"
 NOT_COMPUTED = -1
 """Status of the points of a missing block."""
 
-_IDENTITY = "study"
-"""Attribute with the identity of the study."""
-
-_LABEL_FILE = "zarr.json"
-"""File with the attributes of the group."""
-
-_MAX_LABEL_BYTES = 10_000_000
-"""Largest size in bytes of the file with the attributes."""
-
-_MAX_DIFFERENCES = 8
-"""Number of differences in a message."""
-
+_IDENTITY = "study"  # attribute with the identity of the study
+_LABEL_FILE = "zarr.json"  # file with the attributes of the group
+_MAX_LABEL_BYTES = 10_000_000  # largest size in bytes of the file with the attributes
+_MAX_DIFFERENCES = 8  # number of differences in a message
 _MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
 
 
@@ -126,18 +118,14 @@ class StudyStore:
         with TemporaryDirectory() as temporary_folder:
             draft = Path(temporary_folder) / "draft"
             _write_group(draft, task, identity)
-            for label in draft.rglob("*"):
-                if label.is_file():
-                    self._repair_label(label.relative_to(draft).as_posix(), label.read_bytes())
-
-    def _repair_label(self, name: str, content: bytes) -> None:
-        """Write a label again unless it has its content."""
-        try:
-            stored = self.folder.read(name)
-        except _MISSING_FILE_ERRORS:
-            stored = b""
-        if stored != content:
-            self.folder.write(name, content)
+            for label in filter(Path.is_file, draft.rglob("*")):
+                name, content = label.relative_to(draft).as_posix(), label.read_bytes()
+                try:
+                    stored = self.folder.read(name)
+                except _MISSING_FILE_ERRORS:
+                    stored = b""
+                if stored != content:
+                    self.folder.write(name, content)
 
     def read_identity(self) -> Mapping[str, Any]:
         """Read the identity of the stored study.
@@ -199,18 +187,11 @@ class BlockStore(PieceStore):
         return dict.fromkeys(self.store.intact_blocks(self.task, numbers))
 
     def save(self, number: int, result: Mapping[str, Numbers]) -> None:
-        """Write the values of a block.
-
-        Raises
-        ------
-        OSError
-            The store is not writable or the disk is full.
-        """
+        """Write the values of a block; see `StudyStore.write`."""
         self.store.write(self.task, number, result)
 
 
 def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
-    """Create the Zarr group of a study with its coordinates and empty arrays."""
     import zarr
     from zarr.codecs import BloscCodec
 
@@ -265,7 +246,6 @@ def _stored_checksum(group: Any, task: Task, number: int) -> int | None:
 
 
 def _checksum(results: Mapping[str, Numbers], task: Task) -> int:
-    """Compute the checksum of the results of a block."""
     checksum = 0
     for name in task.variables:
         checksum = crc32(numpy.ascontiguousarray(results[name]).view(numpy.uint8).data, checksum)

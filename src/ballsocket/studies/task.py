@@ -63,17 +63,10 @@ DTYPES: dict[str, Any] = {
 }
 """Types of the arrays of a study."""
 
-_POINTS_PER_PRESS = 1 << 14
-"""Number of points that one press computes, so that intermediate arrays stay in the processor's cache."""
-
-_BLOCK_SECONDS = 0.5
-"""Intended computing time of a block in s."""
-
-_MAX_BLOCK_POINTS = 1 << 20
-"""Number of points above which a block is not enlarged."""
-
-_MAX_BLOCKS = 10_000
-"""Number of blocks above which the blocks of a study are enlarged."""
+_POINTS_PER_PRESS = 1 << 14  # points of one press, whose intermediate arrays stay in the processor's cache
+_BLOCK_SECONDS = 0.5  # intended computing time of a block in s
+_MAX_BLOCK_POINTS = 1 << 20  # number of points above which a block is not enlarged
+_MAX_BLOCKS = 10_000  # number of blocks above which the blocks of a study are enlarged
 
 
 @dataclass(frozen=True)
@@ -179,7 +172,6 @@ class Task:
         return results
 
     def _press(self, values: Mapping[str, Numbers]) -> Mapping[str, Any]:
-        """Press the joint at parameter values that broadcast, and return the variables by name."""
         joint, load, is_joint = press_arguments(self.joint, values)
         possible = numpy.asarray(is_joint)
         try:

@@ -20,14 +20,9 @@ SampledFunction = Callable[[Numbers], Numbers]
 MAX_CORRELATED = 10
 """Largest number of parameters with Shapley effects, which need a set of samples for each subset of parameters."""
 
-_RESAMPLES = 999
-"""Number of bootstrap resamples."""
-
-_CHUNK_SIZE = 1 << 21
-"""Number of values in a chunk of resamples."""
-
-_DEFAULT_TERMS = 200
-"""Number of averaged terms for which memory is checked if it is not stated."""
+_RESAMPLES = 999  # number of bootstrap resamples
+_CHUNK_SIZE = 1 << 21  # number of values in a chunk of resamples
+_DEFAULT_TERMS = 200  # number of averaged terms for which memory is checked if it is not stated
 
 
 def check_sample_memory(count: int, n_terms: int = _DEFAULT_TERMS) -> None:
@@ -179,20 +174,16 @@ def shapley_effects(
     arrays: dict[str, Numbers] = {}
     for name, results in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
         blocks = numpy.split(results, 3, axis=-1)
-        arrays |= {f"{order}{name}": block for order, block in zip(_CORRELATED_ORDERS, blocks, strict=True)}
+        orders = ("first_order", "total_order", "shapley")
+        arrays |= {f"{order}{name}": block for order, block in zip(orders, blocks, strict=True)}
     return arrays
 
 
-_CORRELATED_ORDERS = ("first_order", "total_order", "shapley")
-
-
 def _without(indices: Sequence[int], removed: int) -> tuple[int, ...]:
-    """Return indices without one of them."""
     return tuple(index for index in indices if index != removed)
 
 
 def _shapley_values(explained: dict[tuple[int, ...], Numbers], dimension: int) -> Iterator[Numbers]:
-    """Yield the Shapley value of each parameter from the explained shares of all subsets."""
     for index in range(dimension):
         yield numpy.sum(
             [
@@ -215,10 +206,7 @@ def _two_sets(dimension: int, count: int, seed: int) -> Numbers:
 
 
 def _evaluate_mixed(evaluate: SampledFunction, base: Numbers, other: Numbers) -> Numbers:
-    """Evaluate, for each parameter, the base samples with this parameter of the other set.
-
-    The shape of the result is (n_parameters, n_quantities, n_points).
-    """
+    """Evaluate the base samples with each parameter of the other set: (n_parameters, n_quantities, n_points)."""
     dimension, count = base.shape
     mixed = numpy.tile(base, (dimension, 1, 1))
     index = numpy.arange(dimension)

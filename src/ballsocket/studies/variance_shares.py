@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 MAX_SAMPLES = 1 << 30
 """Largest number of samples."""
 
-_POINTS_PER_PRESS = 1 << 16
-"""Number of samples that are pressed at once."""
+_POINTS_PER_PRESS = 1 << 16  # number of samples that are pressed at once
 
 
 def sensitivity(
@@ -140,7 +139,6 @@ def sensitivity(
 def _check_arguments(
     distributions: Mapping[str, Distribution], quantities: Iterable[str], fixed: Mapping[str, float]
 ) -> None:
-    """Raise ValueError for unknown names, and for parameters that contradict each other."""
     check_names(distributions, PARAMETERS, "among what scatters")
     check_names(quantities, QUANTITIES, "among the quantities")
     if not distributions:
@@ -178,14 +176,9 @@ class _SampleEvaluation:
             raise ValueError(
                 f"{self.model.name} has no answer for {n_bad} of {count} samples: narrow the distributions"
             )
-        if not self.tables:
-            self._check_changes(table)
+        for name, row in zip(self.quantities, table, strict=True) if not self.tables else ():
+            if numpy.ptp(row) == 0:
+                raise ValueError(f"{name} does not change with {' and '.join(self.names)}: its variance is zero")
         if len(self.tables) < 2:
             self.tables.append(table)
         return table
-
-    def _check_changes(self, table: Numbers) -> None:
-        """Raise ValueError for a quantity that is the same for all samples."""
-        for name, row in zip(self.quantities, table, strict=True):
-            if numpy.ptp(row) == 0:
-                raise ValueError(f"{name} does not change with {' and '.join(self.names)}: its variance is zero")

@@ -25,18 +25,17 @@ from ..widgets.reading import Reading
 from . import svg
 from .svg import Contours, heat, levels_between, scale
 
-METRIC = Reading()
-"""mm, N, MPa and degrees."""
-
-CELLS_EDGE = 0.03
-"""Share of the highest value from which values on cells are drawn: their edge is no sharper."""
-
+METRIC = Reading()  # mm, N, MPa and degrees
+CELLS_EDGE = 0.03  # share of the highest value from which values on cells are drawn: their edge is no sharper
 _MAP_WIDTH, _MIDDLE, _RADIUS, _MAP_HEIGHT = 400.0, 200.0, 140.0, 420.0
 _TOP = 30.0  # of the picture: above are neither bore nor directions
 _RIM = f'cx="{_MIDDLE}" cy="{_MIDDLE}" r="{_RADIUS}"'
 _POINTS = 181
 _MOSTLY_VERTICAL = 0.7
 _MIN_IN_PLANE = 0.3  # of a unit vector: one that points more steeply out of the picture is not drawn
+_RINGS, _MERIDIANS = 96, 256
+_FULL = 255
+_MAX_LINER, _MAX_BACKING = 0.8, 0.4  # of the bore's radius: thicker layers are drawn so thick
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -150,7 +149,6 @@ def _projection(reach: float) -> Callable[[numpy.ndarray], tuple[numpy.ndarray, 
 
 
 def _load_cross(x: float, y: float) -> Iterator[str]:
-    """Draw a cross at the direction of the load."""
     lines = f"M{x - 5:.1f},{y - 5:.1f}L{x + 5:.1f},{y + 5:.1f}M{x - 5:.1f},{y + 5:.1f}L{x + 5:.1f},{y - 5:.1f}"
     yield f'<path class="halo" d="{lines}"/><path class="cross" d="{lines}"/>'
 
@@ -175,11 +173,6 @@ def _body_directions(cup: Cup) -> Iterator[str]:
             anchor = "middle" if abs(above) > _MOSTLY_VERTICAL else "start" if across > 0 else "end"
             position = _MIDDLE + (_RADIUS + 8) * across, _MIDDLE - (_RADIUS + 8) * above + 5 - 5 * above
             yield svg.text(*position, name, "tick", anchor)
-
-
-_RINGS, _MERIDIANS = 96, 256
-_FULL = 255
-_MAX_LINER, _MAX_BACKING = 0.8, 0.4  # of the bore's radius: thicker layers are drawn so thick
 
 
 def pressed_viewer(contact: OffAxisContact, reading: Reading = METRIC) -> str:

@@ -25,20 +25,16 @@ class _ChartArea:
 
     @property
     def right(self) -> float:
-        """Right end of the area of the curves."""
         return self.size[0] - _RIGHT
 
     @property
     def foot(self) -> float:
-        """Lower end of the area of the curves."""
         return self.size[1] - _FOOT
 
     def across(self, value: Any) -> Any:
-        """Return the horizontal positions of values."""
         return _X_LEFT + (self.right - _X_LEFT) * value / self.ends[0]
 
     def up(self, value: Any) -> Any:
-        """Return the vertical positions of values."""
         return self.foot - (self.foot - _TOP) * value / self.ends[1]
 
 

@@ -18,8 +18,7 @@ _WIDTH, _HEIGHT = 440.0, 400.0
 _LEFT, _RIGHT, _TOP, _FOOT = 58.0, 14.0, 12.0, 92.0
 _SPAN, _RISE = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _FOOT
 _FRAME = f'x="{_LEFT:g}" y="{_TOP:g}" width="{_SPAN:g}" height="{_RISE:g}"'
-_MAX_SAMPLES = 31
-"""Values an axis that the browser receives for the number under the pointer."""
+_MAX_SAMPLES = 31  # values an axis that the browser receives for the number under the pointer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -24,6 +24,11 @@ Numbers = numpy.ndarray
 Cells = tuple[Numbers, Numbers, Numbers]
 """Radii (mm) and angles (rad) of the corners of quadrilaterals, (cells, 4), and their pressures or stresses in MPa."""
 
+_QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
+_STRESS_COLUMNS, _STRESS_ROWS = 40, 10
+_MASSIVE_DEPTH = 1.5  # contact radii that are drawn of what has no end
+_STRESS_WIDTH = 1.25  # half angles to each side
+
 
 @dataclass(frozen=True, kw_only=True)
 class DrawingFrame:
@@ -51,9 +56,6 @@ class DrawingFrame:
         return [f'<path fill="{svg.heat(share)}" d="{_QUAD(*row)}"/>' for share, row in zip(shares, rows, strict=True)]
 
 
-_QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
-
-
 def section(file: JointFile, contact: Contact | None, extent: float, highest: float) -> str:
     """Draw a joint under a load from above to `extent` (mm), with pressure colours up to `highest` (MPa)."""
     frame = DrawingFrame(x=_SIZE / 2, y=_SIZE / 2, scale=_SIZE / 2 / extent / 1.04)
@@ -65,7 +67,8 @@ def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
     """Draw liner and backing layers inside the cup's arc."""
     ends = list(pairwise(radii_of(file.joint)))
     kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
-    return [_sector(frame, *radii, file.cup.rim, kind) for radii, kind in zip(ends, kinds, strict=True)]
+    paths = [f"M{frame.arc(inner, file.cup.rim)}L{frame.arc(outer, -file.cup.rim)}Z" for inner, outer in ends]
+    return [f'<path class="part {kind}" d="{path}"/>' for kind, path in zip(kinds, paths, strict=True)]
 
 
 def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
@@ -82,10 +85,6 @@ def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highe
 def extent_of(file: JointFile) -> float:
     """Return half the width of the drawing in mm."""
     return radii_of(file.joint)[-1]
-
-
-def _sector(frame: DrawingFrame, inner: float, outer: float, rim: float, kind: str) -> str:
-    return f'<path class="part {kind}" d="M{frame.arc(inner, rim)}L{frame.arc(outer, -rim)}Z"/>'
 
 
 def _ball(file: JointFile, contact: Contact | None, tilt: float) -> tuple[Numbers, Numbers]:
@@ -132,11 +131,6 @@ def _pressure_in_plane(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
     in_contact = numpy.flatnonzero(pressure > 0)
     shown = slice(max(in_contact[0] - 1, 0), in_contact[-1] + 2) if in_contact.size else slice(0, 0)
     return angle[shown], pressure[shown]
-
-
-_STRESS_COLUMNS, _STRESS_ROWS = 40, 10
-_MASSIVE_DEPTH = 1.5  # contact radii that are drawn of what has no end
-_STRESS_WIDTH = 1.25  # half angles to each side
 
 
 @dataclass(frozen=True, eq=False)

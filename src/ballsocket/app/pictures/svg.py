@@ -11,6 +11,10 @@ from typing import Any
 import numpy
 from contourpy import FillType, LineType, contour_generator
 
+Numbers = numpy.ndarray
+_STEPS = 240
+_DIGIT_WIDTH = 8.0  # pixels of a digit in a number below a row of colours, with its share of the space between
+
 
 def path(x: numpy.ndarray, y: numpy.ndarray) -> str:
     """Join points by lines, with gaps at NaN."""
@@ -64,12 +68,6 @@ def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: s
     """Return a picture of full width with a label for screen readers, which can enter one of the role "group"."""
     marks = f'role="{role}" aria-label="{escape(label)}"{more}'
     return f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" {marks}>{"".join(parts)}</svg>'
-
-
-Numbers = numpy.ndarray
-
-
-_STEPS = 240
 
 
 def _colours(*stops: tuple[int, int, int]) -> list[str]:
@@ -148,6 +146,3 @@ def scale(levels: Sequence[float], label: str, x: float, y: float, wide: float) 
         yield f'<rect x="{x + wide * number / count:.1f}" y="{y:.1f}" {size} fill="{fill}"/>'
     for number, words in [*enumerate(numbers)][::stride]:
         yield text(x + wide * number / count, y + 22, words, "tick")
-
-
-_DIGIT_WIDTH = 8.0  # pixels of a digit in a number below a row of colours, with its share of the space between

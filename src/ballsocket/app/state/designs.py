@@ -16,15 +16,12 @@ from ...files.joint_toml import written_tables
 from ...files.toml import MAX_FILE_SIZE, parse_toml, toml_text
 from .screen import START, Screen, link_of, read_link
 
-MAX_DESIGNS = 50
-"""Largest number of designs in a browser and in a session file."""
-
+MAX_DESIGNS = 50  # largest number of designs in a browser and in a session file
 _DESIGN, _PAGE = "design", "page"
 _JOINT_KEYS = (*JointFileTable.__struct_fields__, "preset")
 _NOT_SAVED = (*_JOINT_KEYS, "theme")
 _STEM_LENGTH = 60
-_DEVICES = re.compile(r"(con|prn|aux|nul|(com|lpt)\d)(\..*)?", re.IGNORECASE)
-"""Names that Windows refuses."""
+_DEVICES = re.compile(r"(con|prn|aux|nul|(com|lpt)\d)(\..*)?", re.IGNORECASE)  # names that Windows refuses
 
 
 def file_stem(name: str) -> str:
@@ -42,10 +39,7 @@ def file_stem(name: str) -> str:
 def session_text(links: Sequence[str]) -> str:
     """Return the text of a session file of the designs with these links.
 
-    Raises
-    ------
-    ValueError
-        A link that cannot be read, too many designs, or a file that would be too long to read.
+    Raises ValueError for a link that cannot be read, too many designs, or a file that would be too long to read.
     """
     check_count(len(links))
     text = toml_text({_DESIGN: [_table_of(read_link(parse_qs(link, keep_blank_values=True))) for link in links]})
@@ -75,23 +69,10 @@ def _table_of(screen: Screen) -> dict[str, Any]:
 
 
 def read_upload(text: str, screen: Screen) -> list[Screen]:
-    """Read a joint file, or a session file in TOML or JSON.
+    """Read a joint file, or a session file in TOML or JSON, as one screen for each design.
 
-    Parameters
-    ----------
-    text : str
-    screen : Screen
-        Its settings and its load hold for a joint file, which states none.
-
-    Returns
-    -------
-    list of Screen
-        One for each design. Heads of reports are left out: the path of a logo would be one of the server.
-
-    Raises
-    ------
-    ValueError
-        One sentence: the design, the key, the value and what is allowed.
+    Settings and load of `screen` hold for a joint file, which states none. Heads of reports are left out: the path of
+    a logo would be one of the server. Raises ValueError with the design, the key, the value and what is allowed.
     """
     if len(text.encode()) > MAX_FILE_SIZE:
         raise ValueError(f"the file is larger than {MAX_FILE_SIZE} bytes; a design is a few lines")
@@ -119,7 +100,6 @@ def _screens(content: Mapping[str, Any], screen: Screen) -> list[Screen]:
 
 
 def _design(number: int, table: Mapping[str, Any]) -> Screen:
-    """Read one design of a session file."""
     try:
         page = table.get(_PAGE, {})
         if not isinstance(page, dict):

@@ -34,16 +34,12 @@ class EvidenceQuestion:
             check_names([getattr(self, name)], known, f"as {name}")
 
 
-DEFAULT_QUESTION = EvidenceQuestion()
-"""Question of a page without a link."""
+DEFAULT_QUESTION = EvidenceQuestion()  # question of a page without a link
 
 
 def question_pairs(inputs: EvidenceQuestion) -> list[tuple[str, str]]:
     """List the differences from `DEFAULT_QUESTION` as pairs of a link."""
-    names = [
-        entry.name for entry in fields(inputs) if getattr(inputs, entry.name) != getattr(DEFAULT_QUESTION, entry.name)
-    ]
-    return [(f"ask.{name}", getattr(inputs, name)) for name in names]
+    return [(f"ask.{name}", value) for name, value in vars(inputs).items() if value != getattr(DEFAULT_QUESTION, name)]
 
 
 def question_of(pairs: Mapping[str, str]) -> EvidenceQuestion:

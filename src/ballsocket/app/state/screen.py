@@ -30,31 +30,21 @@ from .use import DEFAULT_USE, Use
 VIEWS = tuple(VIEW_CLASSES)
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
-PAINTED = ("pressure", "stress")
-"""Fields on the drawing of the joint."""
+PAINTED = ("pressure", "stress")  # fields on the drawing of the joint
 
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
 
 MAX_COMPARED = 6
-BASES = tuple(map(str, range(MAX_COMPARED + 1)))
-"""Indices of the compared joints: that on the screen first."""
-
-STANDINGS = ("edge_distance", "max_pressure")
-"""Quantities of the map over orientations of the cup."""
+BASES = tuple(map(str, range(MAX_COMPARED + 1)))  # indices of the compared joints: that on the screen first
+STANDINGS = ("edge_distance", "max_pressure")  # quantities of the map over orientations of the cup
 
 MAP_MODELS = (*QUICK, *(name for name, model in catalogue.items() if 1e-4 <= model.seconds_a_press < 1e-2))
 """Models that press a map's points at once, and those that press fewer of them in a second or two."""
 
-PICKED = ("any", "catalogue")
-"""Sizes that a click on a map takes."""
-
-MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
-"""Quantities of the design map."""
-
-AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)
-"""Parameters of the design map."""
-
+PICKED = ("any", "catalogue")  # sizes that a click on a map takes
+MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")  # quantities of the design map
+AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)  # parameters of the design map
 MAX_LINK_LENGTH = 8000
 MAX_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
@@ -134,7 +124,6 @@ class Screen:
 
     @cached_property
     def link(self) -> str:
-        """Query of the link of this screen."""
         return link_of(self)
 
 
@@ -155,8 +144,7 @@ _KNOWN: Mapping[str, Sequence[str]] = {
 }
 """Names of each choice, in the order of a link."""
 
-START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
-"""Screen of a page without a link."""
+START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))  # screen of a page without a link
 
 
 def link_of_file(file: JointFile) -> str:

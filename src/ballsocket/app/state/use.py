@@ -26,9 +26,7 @@ CONTACTS = ("springs", "shell", "cup")
 FIELDS = ("pressure", "film")
 LAWS = tuple(WEAR_LAWS)
 _TABLES = (".csv", ".txt", ".dat", ".mot", ".sto")
-_MAX_MILLIONS = 50.0
-"""Million cycles of a run."""
-
+_MAX_MILLIONS = 50.0  # million cycles of a run
 _NO_CREEP, _DEFAULT_CREEP = "no", "yes"
 _CREEP_PREFIX = "creep_"
 
@@ -49,11 +47,8 @@ def _creep_choices() -> tuple[str, ...]:
 WEAR_INPUTS = {key: part for key, part in _inputs(WEAR_LAWS).items() if key != COEFFICIENT}
 """Numbers of wear laws beside the coefficient, by input."""
 
-CREEP_INPUTS = _inputs(CREEP_LAWS, _CREEP_PREFIX)
-"""Numbers of creep laws, by input."""
-
-LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS
-"""Numbers of all laws beside the wear coefficient, by input."""
+CREEP_INPUTS = _inputs(CREEP_LAWS, _CREEP_PREFIX)  # numbers of creep laws, by input
+LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS  # numbers of all laws beside the wear coefficient, by input
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,8 +139,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
 }
 """Names of each choice."""
 
-DEFAULT_USE = Use()
-"""Settings of a page without a link."""
+DEFAULT_USE = Use()  # settings of a page without a link
 
 _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
@@ -192,7 +186,6 @@ class UploadedCycle:
             raise ValueError(f"{shown(self.name)} is not a table of a cycle, which ends in {', '.join(_TABLES)}")
 
     def cycle(self, body_weight: float) -> Cycle:
-        """Read the table as a cycle."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"cycle{Path(self.name).suffix.lower()}"
             path.write_text(self.text, encoding="utf-8")

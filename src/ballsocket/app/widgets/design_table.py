@@ -54,13 +54,11 @@ class Cell:
 
     @property
     def html(self) -> str:
-        """Cell of a table in HTML."""
         small = f"<small>{escape(self.difference)}</small>" if self.difference else ""
         return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
 
 
-Designs = Mapping[str, ComparedDesign]
-"""Designs by their names, the one on the screen first."""
+Designs = Mapping[str, ComparedDesign]  # designs by their names, the one on the screen first
 
 
 def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[str, str]) -> Designs:
@@ -122,7 +120,8 @@ def design_rows(
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
         rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
     rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
-    rows.append(("ball", [Cell(text=_ball(design.file)) for design in listed]))
+    balls = [design.file.joint.ball for design in listed]
+    rows.append(("ball", [Cell(text="rigid" if ball is None else ball.name or "custom numbers") for ball in balls]))
     for column in reading.columns:
         if column.attribute in names:
             values = {name: _value(design, column.attribute, column.factor) for name, design in designs.items()}
@@ -131,16 +130,11 @@ def design_rows(
     return rows
 
 
-def _ball(file: JointFile) -> str:
-    return "rigid" if file.joint.ball is None else file.joint.ball.name or "custom numbers"
-
-
 def _value(design: ComparedDesign, attribute: str, factor: float) -> float:
     return float("nan") if design.contact is None else float(getattr(design.contact, attribute)) * factor
 
 
 def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
-    """Return a number with its difference from the base in percent of it."""
     value = values[name]
     if value == values[base] or value != value:
         return Cell(text=number_text(value))

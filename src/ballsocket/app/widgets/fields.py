@@ -16,15 +16,13 @@ from .reading import Reading, box_text, unit_suffix
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 
-_MAX_SHOWN = 60
-"""Characters of typed text in a message."""
+_MAX_SHOWN = 60  # characters of typed text in a message
 
-Field = dict[str, Any]
-"""One input: its name, kind, label, value, and what its kind needs."""
+Field = dict[str, Any]  # one input: its name, kind, label, value, and what its kind needs
 
 
-Options = Iterable[Sequence[str]]
-"""Values of a choice, each with its label unless that is the value."""
+Options = Iterable[Sequence[str]]  # values of a choice, each with its label unless that is the value
+_KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
 
 
 def choice(name: str, label: str, options: Options, value: str) -> Field:
@@ -123,9 +121,6 @@ def typed_quantity(label: str, text: Any, quantity: Quantity, reading: Reading) 
     """Convert typed text to a number in internal units; a bare number has the unit of the page."""
     unit, written = reading.unit(quantity), quantity.written.factor
     return typed(label, text, Unit(unit.text, unit.factor / written), quantity.kind) / written
-
-
-_KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
 
 
 def in_words_of(field: Field, sentence: str, text: Any) -> str:

@@ -26,11 +26,10 @@ _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
 _MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
 _CHANGED = " (changed)"
-_LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")
-"""Lengths of the joint with an input."""
-
-_MAX_NAME = 80
-"""Characters of a design's name."""
+_LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")  # lengths of the joint with an input
+_MAX_NAME = 80  # characters of a design's name
+_NO_CHOICE, _REMOVE = "", "away"
+_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
 
 @dataclass(frozen=True)
@@ -48,12 +47,16 @@ def joint_inputs(screen: Screen) -> dict[str, JointInput]:
         JointInput(words("name", "Design", file.joint.name), partial(_with_name, file)),
         _preset_input(file),
         *_number_inputs(screen, tables, _LENGTHS),
-        *_solid_inputs(file),
+        *([] if file.joint.backing else [_solid_input(file)]),
         *_load_inputs(screen, tables),
         _material_input(file, "liner", "Liner", _chosen(tables["liner"]), _MATERIALS),
         *_number_inputs(screen, tables, ("liner_young", "liner_poisson")),
         _allowable_input(screen),
-        *_thickness_inputs(screen),
+        *(
+            _thickness_input(screen, index, layer)
+            for index, layer in enumerate(file.joint.backing)
+            if not isinf(float(layer.thickness))
+        ),
         _material_input(
             file, "ball", "Ball", _chosen(tables["ball"]) if file.joint.ball else _RIGID, (_RIGID, *_MATERIALS)
         ),
@@ -70,7 +73,6 @@ def _preset_input(file: JointFile) -> JointInput:
 
 
 def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list[JointInput]:
-    """Return inputs of the finite numbers that the joint has."""
     values = _numbers_of(screen.file.joint, tables)
     specs = {name: number_of(name, screen.size) for name in names}
     known = {name: (spec, values.get(spec.table, {}).get(spec.key)) for name, spec in specs.items()}
@@ -94,8 +96,6 @@ def _numbers_of(joint: Joint, tables: Tables) -> Tables:
 
 
 def _number_input(screen: Screen, name: str, spec: Number, value: float) -> JointInput:
-    """Return the input of one number of the tables."""
-
     def edit(typed: Any) -> JointFile:
         meant = spec.meant(typed, screen.reading)
         return _changed(screen.file, lambda tables: _set_number(tables, spec, meant))
@@ -118,16 +118,12 @@ def _set_length(lengths: Tables, name: str, value: float) -> None:
     lengths[name] = value
 
 
-def _solid_inputs(file: JointFile) -> list[JointInput]:
-    """Return the tick box of a solid socket; none with a backing."""
-    if file.joint.backing:
-        return []
+def _solid_input(file: JointFile) -> JointInput:
     solid = isinf(float(file.joint.liner_thickness))
-    return [JointInput(tick("massive", "Solid socket (no backing)", solid), partial(_with_solid_socket, file))]
+    return JointInput(tick("massive", "Solid socket (no backing)", solid), partial(_with_solid_socket, file))
 
 
 def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
-    """Return the inputs of the load: its kind, its value and its tilt."""
     file, reading = screen.file, screen.reading
     ((kind, _),) = file.load.items()
     kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind)
@@ -145,15 +141,6 @@ def _material_input(file: JointFile, part: str, label: str, present: str, option
 def _allowable_input(screen: Screen) -> JointInput:
     field = ALLOWABLE.field("allowable", screen.file.joint.liner.allowable_pressure, screen.reading)
     return JointInput({**field, "optional": True}, partial(_with_allowable, screen))
-
-
-def _thickness_inputs(screen: Screen) -> list[JointInput]:
-    """Return the inputs of the finite thicknesses behind the liner."""
-    return [
-        _thickness_input(screen, index, layer)
-        for index, layer in enumerate(screen.file.joint.backing)
-        if not isinf(float(layer.thickness))
-    ]
 
 
 def _thickness_input(screen: Screen, index: int, layer: Layer) -> JointInput:
@@ -199,7 +186,6 @@ def _as_changed(joint: Joint) -> Joint:
 
 
 def _with_name(file: JointFile, value: Any) -> JointFile:
-    """Change the name of the design."""
     name = " ".join(check_text("the name", value).split())
     if len(name) > _MAX_NAME:
         raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
@@ -229,7 +215,6 @@ def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
 
 
 def _with_tilt(screen: Screen, value: Any) -> JointFile:
-    """Replace the direction of the load by another tilt."""
     tilt, file = TILT.meant(value, screen.reading), screen.file
     along = tilt == 0 and float(file.cup.tilt(UP)) == 0
     return replace(file, aim={} if along else read_aim({"tilt": tilt}))
@@ -259,10 +244,6 @@ def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
     if material is not None:
         numbers = {"young": float(material.young), "poisson": float(material.poisson)}
     return _changed(file, lambda tables: tables.update({part: numbers}))
-
-
-_NO_CHOICE, _REMOVE = "", "away"
-_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
 
 def layer_fields(joint: Joint) -> dict[str, Field]:

@@ -22,11 +22,9 @@ _SIGNS = {"<=": "at most", ">=": "at least"}
 _ROUNDINGS = {"<=": ROUND_CEILING, ">=": ROUND_FLOOR}
 """Direction in which a number of the present design is rounded, so that the design keeps its own limit."""
 
-_DIGITS = 3
-"""Digits of a limit that starts at the present design."""
+_DIGITS = 3  # digits of a limit that starts at the present design
 
-Row = tuple[str, str, str]
-"""Name of a quantity, sign, and the text of the value in the unit of the page."""
+Row = tuple[str, str, str]  # name of a quantity, sign, and the text of the value in the unit of the page
 
 
 class LimitRows:

@@ -12,8 +12,7 @@ from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, typed
 from .reading import Reading, box_text, handy_step, unit_suffix
 
-_NEARLY_ZERO = 0.01
-"""Share of the largest number below which the smallest is stated as zero."""
+_NEARLY_ZERO = 0.01  # share of the largest number below which the smallest is stated as zero
 
 
 @dataclass(frozen=True)

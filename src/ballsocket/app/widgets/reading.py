@@ -13,9 +13,7 @@ from ...reports.unit_systems import Units
 
 _DIGITS, _BOX_DIGITS = 4, 5
 _INCH_DECIMALS = 4
-_LARGEST_PLAIN = 1e12
-"""Value from which numbers are written with an exponent."""
-
+_LARGEST_PLAIN = 1e12  # value from which numbers are written with an exponent
 _INCH = Unit("in", 1 / 25.4)
 _CONVERTED_DIGITS = {"in": 4, "mil": 3, "lbf": 3, "psi": 3, "ksi": 3, "Mpsi": 3}
 """Digits in a box of a number that was converted from metric units, by its unit."""

@@ -23,8 +23,8 @@ from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
 
-_SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}
-"""Units as the head of a column in a file has them."""
+_SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}  # units as the head of a column in a file has them
+_MAIN_QUANTITY = "max_pressure"
 
 
 def alert(sentence: str) -> str:
@@ -45,7 +45,6 @@ def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
 
 
 def _unit_html(unit: str) -> str:
-    """Return a unit as it stands behind a number."""
     return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
 
 
@@ -77,12 +76,10 @@ def axial_models_table(comparison: Comparison, reading: Reading, real: Contact |
 
 @lru_cache(maxsize=8)
 def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
-    """Return the columns of a table of models, each behind its heading in HTML."""
     return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
 
 
 def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Reading) -> str:
-    """Return rows of models, and the reasons of the missing ones, as a table."""
     columns = _shown_columns(reading)
     heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{head}</th>" for head, column in columns)
     missing = "".join(
@@ -159,7 +156,6 @@ def column_of(quantity: Quantity, unit: Unit) -> str:
 VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
 """Style of each verdict on the page."""
 
-_MAIN_QUANTITY = "max_pressure"
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 

@@ -198,12 +198,10 @@ def _compute_pieces(client: Client, work: Work, numbers: Sequence[int], retries:
 
 
 def _return_work(work: Work) -> Work:
-    """Return the work function, as the result of a Dask task."""
     return work
 
 
 def _compute_piece(number: int, work: Work) -> tuple[int, Any]:
-    """Compute a piece of work on a worker; return its number and result."""
     return number, work(number)
 
 
@@ -227,7 +225,6 @@ def _report_missing_workers(client: Client) -> Iterator[None]:
     ended = Event()
 
     def watch() -> None:
-        """Check the workers at intervals."""
         had_workers = True
         while not ended.wait(_WORKER_CHECK_INTERVAL):
             try:

@@ -37,9 +37,6 @@ _QUEUED_PER_WORKER = 2
 _PARENT_CHECK_INTERVAL = 0.5
 """Seconds between two checks that the parent process still runs."""
 
-_STDIN = 0
-"""File descriptor of the standard input."""
-
 _PARENT_ENDED = 1
 """Exit status of a process whose parent process has ended."""
 
@@ -105,10 +102,11 @@ class Processes:
         RuntimeError
             The worker process of a piece died more than `retries` times.
         """
+        workers = self.workers or available_cores()
         pending, deaths = deque(numbers), Counter[int]()
         while pending:
-            with _start_pool(self._n_workers, work) as pool:
-                for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * self._n_workers):
+            with _start_pool(workers, work) as pool:
+                for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * workers):
                     if future is _WORKER_DIED:
                         deaths[number] += 1
                         pending.append(number)
@@ -119,11 +117,6 @@ class Processes:
                 raise RuntimeError(
                     f"the worker process of piece {failed[0]} died {deaths[failed[0]]} times; run again to resume"
                 )
-
-    @property
-    def _n_workers(self) -> int:
-        """Number of worker processes."""
-        return self.workers or available_cores()
 
 
 def available_cores() -> int:
@@ -201,7 +194,6 @@ def _initialize_worker(work: Work) -> None:
 
 
 def _compute_piece(number: int) -> Any:
-    """Compute one piece with the work function of this worker process."""
     assert _work is not None
     return _work(number)
 
@@ -215,7 +207,7 @@ def exit_with_parent() -> None:
     Thread(target=_watch_parent, args=(os.getppid(),), daemon=True).start()
     if fcntl is not None and hasattr(os, "O_ASYNC"):
         parent = parent_process()
-        pipe = _STDIN if parent is None else parent.sentinel
+        pipe = 0 if parent is None else parent.sentinel  # 0 is the standard input
         signal.signal(signal.SIGIO, signal.SIG_DFL)
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
@@ -226,7 +218,6 @@ def exit_with_parent() -> None:
 
 
 def _watch_parent(parent: int) -> None:
-    """End this process after its parent process has ended."""
     while os.getppid() == parent:
         time.sleep(_PARENT_CHECK_INTERVAL)
     os._exit(_PARENT_ENDED)
@@ -268,13 +259,9 @@ def available_disk_space(path: Path) -> int:
     return shutil.disk_usage(folder).free
 
 
-_GROUPED_COUNT = 10_000
-"""Count from which digits are grouped."""
-
-
 def count_text(count: int) -> str:
     """Format a count with spaces between groups of three digits, such as "14 800"; plain below 10000."""
-    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", " ")
+    return str(count) if abs(count) < 10_000 else f"{count:,}".replace(",", " ")
 
 
 def size_text(size: float) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
 from io import BytesIO
@@ -46,6 +47,20 @@ def check_parent_folder(path: Path) -> None:
         raise ValueError(f"cannot write {path.name}: {str(path.parent)!r} is not a folder; create it first")
 
 
+def check_ending(noun: str, path: Path, *endings: str) -> None:
+    """Check that a path has one of the endings, and that its parent folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, in a message that begins with the noun, or a folder that does not exist.
+    """
+    if path.suffix.lower() not in endings:
+        allowed = (" or " if len(endings) == 2 else ", ").join(endings)
+        raise ValueError(f"{noun} {str(path)!r} must end in {allowed}".strip())
+    check_parent_folder(path)
+
+
 # a drive of Windows has a single letter
 _ADDRESS = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/+(.*)", re.DOTALL)
 
@@ -84,9 +99,7 @@ def make_folder(path: Path) -> None:
 def write_atomically(path: Path) -> Iterator[Path]:
     """Yield a draft path to write to, and move the draft to `path` at the end.
 
-    An error in the block discards the draft. The draft has the same file name.
-
-    The draft is a file or a folder.
+    The draft is a file or a folder of the same name. An error in the block discards it.
 
     Raises
     ------
@@ -154,15 +167,16 @@ def _is_abandoned_draft(folder: Path) -> bool:
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
-    """Write a text file atomically, and return its path.
-
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full.
-    """
+    """Write a text file, and return its path; errors as of `write_atomically`."""
     with write_atomically(path) as draft:
         draft.write_text(text, encoding=encoding)
+    return path
+
+
+def write_csv(path: Path, rows: Iterable[Iterable[Any]]) -> Path:
+    """Write rows as CSV atomically, and return its path; see `write_text`."""
+    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(rows)
     return path
 
 
@@ -177,13 +191,7 @@ _MAX_CACHE_SIZE = 2 * 2**30
 
 
 def write_arrays(path: Path, **arrays: Any) -> None:
-    """Write named arrays, numbers and texts to an npz file, with checksums.
-
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full.
-    """
+    """Write named arrays, numbers and texts to an npz file, with checksums; errors as of `write_atomically`."""
     with write_atomically(path) as draft:
         draft.write_bytes(pack_arrays(**arrays))
 
@@ -196,15 +204,7 @@ def pack_arrays(**arrays: Any) -> bytes:
 
 
 def read_arrays(path: Path) -> dict[str, Numbers]:
-    """Read the arrays of an npz file by name, and verify their checksums.
-
-    Raises
-    ------
-    ValueError
-        The file is damaged or is not an npz file.
-    OSError
-        The file does not exist or is not readable.
-    """
+    """Read the arrays of an npz file by name; errors as of `open_input` and `unpack_arrays`."""
     with open_input(path) as stream:
         return unpack_arrays(stream, path.name)
 
@@ -252,13 +252,13 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
         Computes the array.
     """
     path = _cached_path(key)
-    array = _read_cached_array(path)
-    if array is None:
-        array = compute()
-        with suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_arrays(path, rings=array)
-            _remove_oldest_files(path.parent)
+    with suppress(OSError, ValueError, KeyError):  # missing or damaged
+        return read_arrays(path)["rings"]
+    array = compute()
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_arrays(path, rings=array)
+        _remove_oldest_files(path.parent)
     return array
 
 
@@ -268,7 +268,6 @@ def is_array_cached(key: object) -> bool:
 
 
 def _cached_path(key: object) -> Path:
-    """Return the path of the cached array of these inputs."""
     return cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
 
 
@@ -281,14 +280,6 @@ def cache_folder() -> Path:
     if folder:
         return Path(folder)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
-
-
-def _read_cached_array(path: Path) -> Numbers | None:
-    """Read a cached array; return None if the file is missing or damaged."""
-    try:
-        return read_arrays(path)["rings"]
-    except (OSError, ValueError, KeyError):
-        return None
 
 
 def _remove_oldest_files(folder: Path) -> None:

@@ -68,15 +68,7 @@ class ResultFolder(ABC):
         self.write(name, pack_arrays(**arrays))
 
     def read_arrays(self, name: str) -> dict[str, Numbers]:
-        """Read the arrays of an npz file by name, and verify their checksums.
-
-        Raises
-        ------
-        ValueError
-            The file is damaged or is not an npz file.
-        OSError
-            The file does not exist or is not readable.
-        """
+        """Read the arrays of an npz file by name; errors as of `read` and `unpack_arrays`."""
         return unpack_arrays(BytesIO(self.read(name)), name)
 
     @abstractmethod
@@ -246,7 +238,6 @@ class ArrayPieceStore(PieceStore):
         return result
 
     def _piece_name(self, piece: int) -> str:
-        """Return the name of the file of a piece."""
         return f"{self.prefix}_{piece:06d}.npz"
 
     def _read_piece(self, piece: int) -> Any:

@@ -10,7 +10,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from hashlib import sha256
 from itertools import chain
 from pathlib import Path
@@ -114,18 +114,12 @@ class PieceRun:
 
     def compute_missing(self, engine: Engine) -> Iterator[tuple[int, Any]]:
         """Compute and store the missing pieces; yield (number, result) in the order of completion."""
-        return engine.run(self.work if self.store is None else _StoringWork(self.work, self.store), self.missing)
+        work = self.work if self.store is None else partial(_compute_and_store, self.work, self.store)
+        return engine.run(work, self.missing)
 
 
-@dataclass(frozen=True, eq=False)
-class _StoringWork:
-    """Work function that also stores each result, in the process that computed it."""
-
-    work: Work
-    store: PieceStore
-
-    def __call__(self, number: int) -> Any:
-        return self.store.save(number, self.work(number))
+def _compute_and_store(work: Work, store: PieceStore, number: int) -> Any:
+    return store.save(number, work(number))
 
 
 Piece = Callable[[], Any]
@@ -153,7 +147,6 @@ class Plan:
     parts: Mapping[str, Mapping[str, Piece]]
 
     def __len__(self) -> int:
-        """Count the pieces."""
         return sum(map(len, self.parts.values()))
 
     def run(self, folder: Path, engine: Engine = _SERIAL) -> Iterator[tuple[str, str, Any]]:
@@ -173,7 +166,7 @@ class Plan:
             paths=tuple(folder / ("_".join([part, *re.findall(r"\w+", name)]) + ".json") for part, name in pieces),
             keys=tuple(f"ballsocket {fingerprint()}, {self.name}, {part} {name}" for part, name in pieces),
         )
-        work = _PlanWork(tuple(self.parts[part][name] for part, name in pieces))
+        work = partial(_compute_piece, tuple(self.parts[part][name] for part, name in pieces))
         run = PieceRun(work, range(len(pieces)), store)
         for number, result in chain(run.stored.items(), run.compute_missing(engine)):
             yield *pieces[number], result
@@ -198,15 +191,8 @@ class Plan:
         return {part: [results[part, name] for name in pieces] for part, pieces in self.parts.items()}
 
 
-@dataclass(frozen=True)
-class _PlanWork:
-    """Work of a plan; a call with a number computes that piece."""
-
-    pieces: tuple[Piece, ...]
-
-    def __call__(self, number: int) -> Any:
-        """Compute a piece."""
-        return self.pieces[number]()
+def _compute_piece(pieces: Sequence[Piece], number: int) -> Any:
+    return pieces[number]()
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,6 @@ class AbelState(PeakPressure):
 
     @property
     def _point_angles(self) -> Numbers:
-        """Angles t in rad of the quadrature points."""
         return self._target_angles[:, :-1]
 
     @cached_property
@@ -139,7 +138,6 @@ class AbelState(PeakPressure):
 
     @property
     def _squared_radius(self) -> float:
-        """Square of the socket radius R2 in mm²."""
         return self.gap.socket_radius * self.gap.socket_radius
 
     @cached_property
@@ -262,7 +260,6 @@ class AbelState(PeakPressure):
 
 
 def _powers(first: Numbers, factor: Numbers, count: int) -> Numbers:
-    """Compute the products of `first` with the powers of `factor` from 0 below `count`: (count, points)."""
     factors = numpy.tile(factor, (count, 1))
     factors[0] = first
     return numpy.cumprod(factors, axis=0)
@@ -302,22 +299,10 @@ def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:
     square = y * y
     following, current = 0.0, coefficients[-1]
     for k in range(len(coefficients) - 2, -1, -1):
-        n = 2 * k
-        # P_n+2 = (A y² + B) P_n + D P_n-2
-        current, following = (
-            coefficients[k] + _recurrence_factor(n, square) * current + _recurrence_offset(n + 2) * following,
-            current,
-        )
+        # P_n+2 = (A y² + B) P_n + D P_n-2: A y² + B at n = 2k, D at m = n + 2
+        n, m = 2 * k, 2 * k + 2
+        lead = (2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))
+        shift = (n + 1) ** 2 / ((2 * n + 1) * (2 * n + 3)) + (n**2 / ((2 * n + 1) * (2 * n - 1)))
+        D = -((2 * m + 1) * (2 * m + 3) / ((m + 1) * (m + 2))) * (m * (m - 1) / ((2 * m - 1) * (2 * m + 1)))
+        current, following = coefficients[k] + lead * (square - shift) * current + D * following, current
     return current + 0.0 * y
-
-
-def _recurrence_factor(n: int, square: Numbers) -> Numbers:
-    """Compute the factor A y² + B in the recurrence P_n+2 = (A y² + B) P_n + D P_n-2, n = 2k."""
-    lead = (2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))
-    shift = (n + 1) ** 2 / ((2 * n + 1) * (2 * n + 3)) + (n**2 / ((2 * n + 1) * (2 * n - 1)))
-    return lead * (square - shift)
-
-
-def _recurrence_offset(n: int) -> float:
-    """Compute the coefficient D in the recurrence P_n+2 = (A y² + B) P_n + D P_n-2, n = 2k."""
-    return -((2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))) * (n * (n - 1) / ((2 * n - 1) * (2 * n + 1)))

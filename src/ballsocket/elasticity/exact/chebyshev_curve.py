@@ -154,7 +154,6 @@ class ChebyshevCurve:
 
     @cached_property
     def _start_angles(self) -> Numbers:
-        """Half angles in rad of the initial estimates, dense near a point contact and near the perfect fit."""
         widest = self.curve.widest_angle
         small, last = numpy.geomspace(_MIN_START, 0.98 * widest, _STARTS), numpy.geomspace(0.02, 1e-8, _STARTS // 4)
         return numpy.concatenate([small, widest * (1 - last[1:]), [widest]])
@@ -264,10 +263,7 @@ class ChebyshevState(PeakPressure):
 
         The half angle ε and the total displacement X count as exact.
         """
-        truncation_error, values = (
-            self.series.truncation_error[:, None],
-            abs(self._function_values[0][LOG_FUNCTIONS:]),
-        )
+        truncation_error, values = self.series.truncation_error[:, None], abs(self._function_values[0][LOG_FUNCTIONS:])
         return (
             numpy.max(truncation_error[:LOG_FUNCTIONS])
             + numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
@@ -332,7 +328,6 @@ def _knot_angles(curve: LoadCurve, terms: int) -> Numbers:
 
 
 def _evaluate_contacts_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
-    """Evaluate a function of contacts (contacts,) in blocks that fit into the cache."""
     if len(contacts) <= _BLOCK:
         return function(contacts)
     return numpy.concatenate(

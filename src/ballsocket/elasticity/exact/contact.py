@@ -49,8 +49,7 @@ _FITTED_RANGES = (
 )
 """Range of joints for the fitted estimate of the changes on a hemisphere."""
 
-_SAFETY = 2.0
-"""Safety factor on that estimate: the 1st percentile of estimate over change is 0.6."""
+_SAFETY = 2.0  # safety factor on that estimate: the 1st percentile of estimate over change is 0.6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,7 +144,6 @@ class ElasticContact(SolvedContact):
         return (*super().notes, *((_PREPARING,) if follows else ()))
 
     def _hemisphere_note(self) -> list[str]:
-        """Return a note on the changes on a hemisphere, or no note if none exceeds 1 %."""
         if self.hemisphere_change_bound("largest") <= NOTED_CHANGE:
             return []
         changes = {QUANTITIES[name].symbol: arrays.to_numpy(values) for name, values in self.hemisphere.items()}
@@ -158,7 +156,6 @@ class ElasticContact(SolvedContact):
 
     @property
     def _is_single(self) -> bool:
-        """True for a single contact whose half angle is large enough for a sum of modes."""
         return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
     @cached_property
@@ -196,17 +193,13 @@ class ElasticContact(SolvedContact):
         stress = super().quick_von_mises
         if arrays.all_true(arrays.isfinite(stress.high) | self._failed) is not False:
             return stress
-        estimate = self._mask_failed(
-            lambda: self.laws.combine_by_index(lambda position, contacts: self._estimate_von_mises(contacts))
-        )
+        estimate = self._mask_failed(lambda: self.laws.combine_by_index(self._estimate_von_mises))
         return exact_number(estimate).scaled(1.0, VON_MISES_TOLERANCE)
 
-    def _estimate_von_mises(self, contacts: JointContacts) -> numpy.ndarray:
-        """Estimate the largest von Mises stress in the liner in MPa for the contacts of one joint."""
+    def _estimate_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
         return estimate_von_mises(contacts.state)
 
     def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
-        """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         return largest_von_mises(contacts.state, contacts.reached)
 
     def summary(self) -> dict[str, Any]:
@@ -232,17 +225,15 @@ class ElasticContact(SolvedContact):
 class CurveContact(ElasticContact):
     """Contact of the elastic solution with an interpolated largest stress in the liner."""
 
-    def _estimate_von_mises(self, contacts: JointContacts) -> numpy.ndarray:
-        return self._joint_von_mises(numpy.empty(0), contacts)
-
     def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
         if isinstance(contacts.state, ChebyshevState):
             return contacts.state.largest_von_mises(contacts.reached)
         return super()._joint_von_mises(position, contacts)
 
+    _estimate_von_mises = _joint_von_mises
+
 
 def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:
-    """Compute the relative change of each quantity if the socket is a hemisphere: (quantities, contacts)."""
     changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])
 
@@ -251,7 +242,6 @@ _PREPARING = "closed sphere: preparing its differences from a hemisphere with a 
 
 
 def _describe_changes(changes: dict[str, numpy.ndarray]) -> str:
-    """Describe in words the changes on a hemisphere beyond 1 %, the largest of each quantity."""
     largest = {
         symbol: float(values.ravel()[numpy.nanargmax(abs(values))])
         for symbol, values in changes.items()

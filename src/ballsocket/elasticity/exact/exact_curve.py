@@ -63,7 +63,6 @@ class ExactCurve(ModelWrapper):
         object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of all joints and loads on the Chebyshev curve of each joint."""
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
         )
@@ -95,5 +94,4 @@ def exact_stress_ratio(joint: Joint, half_angle: Array) -> Array:
     return contact.von_mises / contact.max_pressure
 
 
-_CLEARANCE = 1e-3
-"""Clearance over the socket radius of the joint whose stress ratio stands for all clearances."""
+_CLEARANCE = 1e-3  # clearance over the socket radius of the joint whose stress ratio stands for all clearances

@@ -27,8 +27,7 @@ MODES = 40
 POLAR_TERMS = 12
 """Number of polynomials along the meridian."""
 
-_RADIAL = 5
-"""Degree of the polynomials through each layer."""
+_RADIAL = 5  # degree of the polynomials through each layer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,7 +96,6 @@ class FreeFace:
         hoop, g = Q_rate + Q_cot, slope * r[:, None]
 
         def integrate_polar(a: Numbers, b: Numbers) -> Numbers:
-            """Integrate products of polar functions a and b over cos φ: (a, b)."""
             return a.T @ (weight[:, None] * b)
 
         def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
@@ -156,10 +154,7 @@ class FreeFace:
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(numpy.cos(angle))
         radial_displacement = P @ (f @ radial).T
         strain_r = P @ (slope @ radial).T
-        strain_phi, strain_theta = (
-            (radial_displacement + Q_rate @ (f @ sideways).T) / r,
-            (radial_displacement + Q_cot @ (f @ sideways).T) / r,
-        )
+        strain_phi, strain_theta = ((radial_displacement + rate @ (f @ sideways).T) / r for rate in (Q_rate, Q_cot))
         shear = P_rate @ (f @ radial / r[:, None]).T + Q @ ((slope - f / r[:, None]) @ sideways).T
         lame, rigidity = _lame_constants(shell.young, shell.poisson)
         volumetric = lame * (strain_r + strain_phi + strain_theta)

@@ -24,11 +24,8 @@ from .kernel import Kernel
 from .load_curve import LoadCurve, knot_window
 from .modes import ElasticBall, Socket
 
-_ITERATIONS = 3
-"""Fixed-point iterations before the extrapolation."""
-
-_POINTS = 48
-"""Points of integration over a contact."""
+_ITERATIONS = 3  # fixed-point iterations before the extrapolation
+_POINTS = 48  # points of integration over a contact
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -138,7 +135,6 @@ def _even_legendre(count: int) -> Numbers:
 
 
 def _make_hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
-    """Make the contacts on a hemisphere from the additional displacements of the surfaces."""
     gap = closed.gap
     return HemisphereState(
         kernel=closed.kernel,
@@ -207,7 +203,6 @@ class ContactSeries:
 
 
 def _interpolate_cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
-    """Interpolate a function and its slope by cubic Hermite polynomials between the points `x`."""
     i = numpy.clip(numpy.searchsorted(x, at) - 1, 0, len(x) - 2)
     width, t = x[i + 1] - x[i], (at - x[i]) / (x[i + 1] - x[i])
     rise, first, second = y[i + 1] - y[i], width * slope[i], width * slope[i + 1]
@@ -231,7 +226,6 @@ class Hemisphere:
 
     @cached_property
     def _load_curve(self) -> LoadCurve:
-        """Load curve of the joint with unit clearance."""
         gap = LinearGap(clearance=1.0, socket_radius=self.kernel.socket.radius)
         return LoadCurve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
 
@@ -242,7 +236,6 @@ class Hemisphere:
 
     @cached_property
     def _knot_bodies(self) -> Bodies | None:
-        """Contacts of both bodies at all tabulated half angles."""
         return self._solve_bodies(self._load_curve.knots)
 
     @cached_property

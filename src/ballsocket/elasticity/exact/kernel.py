@@ -98,12 +98,10 @@ class CachedIntervals:
 
     @cached_property
     def _intervals(self) -> Intervals:
-        """Intervals without a cache."""
         return Intervals(half_angle=self.half_angle, grid=self.grid)
 
     @cached_property
     def _unit_operators(self) -> Operators:
-        """Integral operators of each of the six closed forms, along a new last axis."""
         operators = zip(*(self._intervals.closed_form_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
         even, odd = (numpy.stack(stack, axis=-1) for stack in operators)
         return even, odd
@@ -160,18 +158,21 @@ def _waves_and_integration_matrices(
     even *= edge[..., None]
     panel_cosines, panel_sines = _cosines_and_sines("sources", edge * panels.position, count)
     shape = (len(half_angle), count, grid.points)
-    even_integrals = numpy.matmul(
-        panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
-    )
-    odd_integrals = numpy.matmul(
-        panel_sines.swapaxes(-1, -2), _odd_interpolation(grid, panels), out=workspace_array("odd integrals", shape)
+    even_integrals, odd_integrals = (
+        numpy.matmul(
+            waves.swapaxes(-1, -2), _interpolation_matrix(grid, panels, parity), out=workspace_array(name, shape)
+        )
+        for parity, (name, waves) in enumerate({"even integrals": panel_cosines, "odd integrals": panel_sines}.items())
     )
     return even, odd, even_integrals, odd_integrals
 
 
 def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
-    """Choose quadrature panels that resolve this number of cosines and sines."""
-    return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
+    """Choose panels that resolve `count` cosines and sines, with points rounded up so that few rules are built."""
+    points = grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4
+    if points <= _LONGEST_PANEL:
+        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
+    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
 
 
 def _cosines_and_sines(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -226,33 +227,14 @@ class _Panels:
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-def _panels_with_points(points: float) -> _Panels:
-    """Choose panels with at least this number of points, rounded up so that few rules are built."""
-    if points <= _LONGEST_PANEL:
-        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
-    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
-
-
 @cache
 def _panels_of(panels: int, points: int) -> _Panels:
-    """Return this number of panels with this number of points each, from a cache."""
     return _Panels(panels=panels, points=points)
 
 
 @cache
-def _even_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
-    """Compute the matrix that interpolates an even function from a grid to panels, times their weights."""
-    return _interpolation_matrix(grid, panels, 0)
-
-
-@cache
-def _odd_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
-    """Compute the matrix that interpolates an odd function from a grid to panels, times their weights."""
-    return _interpolation_matrix(grid, panels, 1)
-
-
 def _interpolation_matrix(grid: QuadratureGrid, panels: _Panels, parity: int) -> Numbers:
-    """Compute the matrix that interpolates a function of one parity from a grid to panels, times their weights."""
+    """Compute the matrix that interpolates a function (parity 0 even, 1 odd) to panels, times their weights."""
     y, w = grid.positive_nodes
     degree = 2 * numpy.arange(grid.points) + parity
     P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, panels.nodes[0]))

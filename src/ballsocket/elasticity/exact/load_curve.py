@@ -26,8 +26,7 @@ _MAX_ANGLE = 1.03 * LIMIT  # of the contacts that are computed, to detect those 
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _MAX_ANGLE)
 _KNOT_INTERVALS = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(_COARSE_POINTS))
-_WINDOW, _WINDOW_STEP = 8, 4
-"""Number of knots in a window of half angles, and the step between windows."""
+_WINDOW, _WINDOW_STEP = 8, 4  # number of knots in a window of half angles, and the step between windows
 
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
 
@@ -83,7 +82,6 @@ class LoadCurve:
         )
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
-        """Solve the contacts under loads by Newton's method; return them and the relative residuals."""
         state = self.state(angle, points)
         if kind == "half_angle":
             return state, numpy.zeros_like(load)
@@ -96,7 +94,6 @@ class LoadCurve:
         return state, abs(residual)
 
     def _clip_angles(self, angle: Numbers) -> Numbers:
-        """Clip angles to the largest computed one, and replace NaN by it."""
         return numpy.where(angle < self._max_computed_angle, angle, self._max_computed_angle)
 
     @cached_property
@@ -129,7 +126,6 @@ class LoadCurve:
 
     @cached_property
     def _knot_state(self) -> AbelState:
-        """Contacts at all tabulated half angles, valid or not."""
         return AbelState(kernel=self.kernel, gap=self.gap, intervals=_KNOT_INTERVALS)
 
     @cached_property

@@ -123,7 +123,6 @@ class Exact(Model):
     )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of all joints and loads on the load curve of each joint."""
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
         )

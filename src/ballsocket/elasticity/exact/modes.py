@@ -285,7 +285,6 @@ def ball_of(joint: Joint) -> ElasticBall | None:
 
 
 def _make_shell(thickness: Array, material: Material) -> Shell:
-    """Make the shell of a layer from its thickness in mm and its material."""
     return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
 
@@ -294,18 +293,15 @@ _ROUNDING = 1e-12  # relative rounding error of a radius
 
 
 def _check_radius(radius: float) -> None:
-    """Raise ValueError unless a radius is positive and finite."""
     require("radius", radius, 0 < radius < inf, "a radius (mm) is above 0 and finite")
 
 
 def _check_material(young: float, poisson: float) -> None:
-    """Raise ValueError for a Young's modulus or a Poisson's ratio outside its range."""
     MATERIAL["young"].check(young)
     MATERIAL["poisson"].check(poisson)
 
 
 def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:
-    """Convert degrees n to floats; raise an error unless they are integers from 0 on."""
     n = numpy.asarray(degrees)
     if n.dtype.kind not in "iu":
         raise TypeError(f"degrees must be integers, got an array of {n.dtype}")

@@ -176,7 +176,6 @@ _HALF_INTERVALS, _SEARCH_ROUNDS = 4, 4
 
 
 def _refine_points_around(values: Numbers, i: int) -> Numbers:
-    """Make a finer row of points between the two neighbours of index i."""
     low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
     below = numpy.linspace(low, values[i], _HALF_INTERVALS + 1)
     return numpy.append(below, numpy.linspace(values[i], high, _HALF_INTERVALS + 1)[1:])
@@ -245,24 +244,16 @@ class StressCurve:
     curve: LoadCurve
     points: int
 
-    @property
-    def _thickness_ratio(self) -> float:
-        """Ratio R2/L of socket radius and liner thickness."""
-        return self.curve.ratio
-
     @cached_property
     def _widest_coordinate(self) -> float:
         """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest_angle, self._thickness_ratio))
+        return float(angle_root(self.curve.widest_angle, self.curve.ratio))
 
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
-        position = numpy.clip(
-            (angle_root(angle, self._thickness_ratio) - self._first_coordinate_and_step[0])
-            / self._first_coordinate_and_step[1],
-            0.0,
-            _STRESS_INTERVALS - 1e-9,
-        )
+        start, step = self._first_coordinate_and_step
+        position = (angle_root(angle, self.curve.ratio) - start) / step
+        position = numpy.clip(position, 0.0, _STRESS_INTERVALS - 1e-9)
         first, fraction = position.astype(int), position % 1
         low, high = (self._stress_ratios_at(number) for number in (first, first + 1))
         return low + fraction * (high - low)
@@ -270,24 +261,22 @@ class StressCurve:
     @property
     def _first_coordinate_and_step(self) -> tuple[float, float]:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
-        first = min(float(angle_root(_NARROWEST, self._thickness_ratio)), self._widest_coordinate)
+        first = min(float(angle_root(_NARROWEST, self.curve.ratio)), self._widest_coordinate)
         return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
 
     def _stress_ratios_at(self, numbers: Numbers) -> Numbers:
-        """Return the stress ratios at the half angles of these indices."""
         unique, positions = numpy.unique(numbers, return_inverse=True)
         return numpy.array([self._solve_stress_ratio(int(number)) for number in unique])[positions.ravel()]
 
     def _solve_stress_ratio(self, number: int) -> float:
         """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""
         if number not in self._cached_ratios:
-            coordinate = self._first_coordinate_and_step[0] + number * self._first_coordinate_and_step[1]
-            angle = float(half_angle_at(2 * coordinate - 1, self._thickness_ratio))
+            first, step = self._first_coordinate_and_step
+            angle = float(half_angle_at(2 * (first + number * step) - 1, self.curve.ratio))
             state = self.curve.state(numpy.array([min(angle, self.curve.widest_angle)]), self.points)
             self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
         return self._cached_ratios[number]
 
     @cached_property
     def _cached_ratios(self) -> dict[int, float]:
-        """Stress ratios solved so far, by the index of the half angle."""
         return {}

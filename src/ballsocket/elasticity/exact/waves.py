@@ -31,17 +31,14 @@ UNIT: Matrix = numpy.eye(2)[:, :, None]
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:
-    """Multiply the 2×2 matrices of each degree n."""
     return a[:, :1] * b[:1] + a[:, 1:] * b[1:]
 
 
 def _inverse(a: Matrix) -> Matrix:
-    """Invert the 2×2 matrices of each degree n."""
     return numpy.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / (a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0])
 
 
 def _outer_product(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
-    """Compute the outer product of a column and a row for each degree n."""
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
@@ -124,7 +121,6 @@ def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
 
 
 def _twice_shear(young: float, nu: float) -> float:
-    """Compute twice the shear modulus in MPa."""
     return young / (1 + nu)
 
 
@@ -144,12 +140,10 @@ class SupportedLayer:
 
     @cached_property
     def _growing_wave(self) -> Wave:
-        """Wave of the powers of r that grow outwards."""
         return growing_wave(self.n, self.young, self.poisson)
 
     @cached_property
     def _decaying_wave(self) -> Wave:
-        """Wave of the powers of r that decay outwards."""
         return decaying_wave(self.n, self.young, self.poisson)
 
     @cached_property

@@ -17,6 +17,7 @@ from math import inf
 from typing import Any
 
 import numpy
+from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from ...core.arrays import Numbers
@@ -52,20 +53,13 @@ class CondensedBody:
     @cached_property
     def _elimination_order(self) -> Numbers:
         """Indices of the free unknowns in the order of elimination, those of the contact last."""
-        block = self.elastic.block
-        # the two nodes of a sliding interface share a grid point, and so a rank
-        grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
-        rank = numpy.empty(grid.size, dtype=int)
-        rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
-        node_rank = rank[grid[:, block.level]].ravel()
+        ranks = elimination_ranks(self.elastic.block)
         free = numpy.unique(self.elastic.element_unknowns)
         free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normal_unknowns)]
-        return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normal_unknowns])
+        return numpy.concatenate([free[numpy.argsort(ranks[free // 2], kind="stable")], self.normal_unknowns])
 
     def _factorize_stiffness(self) -> Any:
-        """Compute the LU factors of the stiffness matrix in the order of elimination."""
-        ordered = self.elastic.stiffness_matrix()[self._elimination_order][:, self._elimination_order].tocsc()
-        return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
 
     def compliance(self) -> Numbers:
         """Compute the compliance matrix of the contact nodes: normal displacements by unit normal forces."""
@@ -83,6 +77,20 @@ class CondensedBody:
             number = self.elastic.block.number
             solution[2 * number[:, column + 1] + 1] = solution[2 * number[:, column] + 1]
         return solution.reshape(-1, 2)
+
+
+def factorize(matrix: csc_matrix, order: Numbers) -> Any:
+    """Compute the LU factors of a symmetric matrix for the unknowns in this order."""
+    ordered = matrix[order][:, order].tocsc()
+    return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def elimination_ranks(block: Block) -> Numbers:
+    """Compute the rank of each node in the order of elimination; both nodes of a sliding interface share a rank."""
+    grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
+    rank = numpy.empty(grid.size, dtype=int)
+    rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
+    return rank[grid[:, block.level]].ravel()
 
 
 def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
@@ -142,7 +150,6 @@ def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
 
 
 def _axis_mask(mesh: Block) -> Numbers:
-    """Return the mask of displacements that are zero because their node lies on the axis."""
     fixed_unknowns = numpy.zeros(2 * mesh.number.size, dtype=bool)
     fixed_unknowns[2 * mesh.number[0]] = True
     return fixed_unknowns

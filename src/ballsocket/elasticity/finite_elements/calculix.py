@@ -132,7 +132,6 @@ class _Surfaces:
 
     @property
     def _bore_angles(self) -> Numbers:
-        """Polar angles of the bore's nodes in rad, from the pole outwards."""
         return numpy.array(self.deck["bore"]["angle"])
 
     def _surface_displacements(self, name: str, rows: Numbers) -> Numbers:

@@ -149,7 +149,6 @@ class Deck:
 
     @cached_property
     def _bodies(self) -> DeckBodies:
-        """Both bodies of the deck."""
         return DeckBodies(contact=self.contact, scale=self.scale)
 
     # --- expected results ---
@@ -178,15 +177,12 @@ class Deck:
 
     @property
     def _indentations(self) -> Numbers:
-        """Indentations of the steps in mm."""
         return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
     def _expected_rows(self) -> list[list[float]]:
-        """Return the expected results as one row for each step."""
         return numpy.stack(list(self.expected.values()), axis=-1).tolist()
 
     def _expected_record(self) -> dict[str, Any]:
-        """Return the content of the file `expected.json`."""
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
@@ -203,14 +199,12 @@ class Deck:
     # --- comments at the top ---
 
     def _title_lines(self) -> Iterator[str]:
-        """Yield the comment lines at the top of the deck."""
         for sentence in self._description_sentences():
             yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
         for number, row in enumerate(self._expected_rows(), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
 
     def _description_sentences(self) -> Iterator[str]:
-        """Yield sentences that describe the deck."""
         cup = self.contact.model.cup
         yield f"ballsocket {__version__}: {ascii_text(str(self._bodies.joint))}"
         yield f"Liner {cup.interface.value}, rim at {degrees(cup.rim):g} degrees, chamfer {cup.chamfer:g} mm."
@@ -275,11 +269,12 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
         ("SEATED", "2, 2", socket.node_numbers(seated)),
         ("ROLLING", "1, 1", socket.node_numbers(rolling)),
     ):
-        yield from _boundary_lines(name, directions, nodes)
+        if nodes:
+            yield from node_set_lines(name, nodes)
+            yield from ("*BOUNDARY", f"{name}, {directions}")
 
 
 def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
-    """Yield the lines of polar directions (radius first) of supported and sliding nodes, and sliding constraints."""
     inner, outer = socket.sliding
     polar = fixed_directions.copy()
     polar[inner] = polar[outer] = True
@@ -292,10 +287,3 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
     for inner_node, outer_node in zip(inner, outer, strict=True):
         direction = 2 if socket.axis_nodes[inner_node] else 1
         yield from ("2", f"{socket.number[inner_node]}, {direction}, 1., {socket.number[outer_node]}, {direction}, -1.")
-
-
-def _boundary_lines(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
-    """Yield the lines of a named set of nodes and of its boundary condition."""
-    if nodes:
-        yield from node_set_lines(name, nodes)
-        yield from ("*BOUNDARY", f"{name}, {directions}")

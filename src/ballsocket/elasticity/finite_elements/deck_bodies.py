@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ...core.arrays import Numbers
-from ...problem import Joint, Material
+from ...problem import Joint
 from .bodies import ball_body, socket_body
 from .load_search import Solved
 from .mesh import Block, mesh_block, socket_shape
@@ -142,9 +142,11 @@ class DeckBodies:
     @cached_property
     def ball(self) -> DeckBody:
         """Body of the ball at first contact; its radius is R2 minus the scaled clearance."""
-        mesh, fixed_directions, contact = (
-            self._rigid_ball_mesh() if self.joint.ball is None else self._elastic_ball_mesh(self.joint.ball)
-        )
+        if self.joint.ball is None:
+            mesh, fixed_directions, contact = self._rigid_ball_mesh()
+        else:
+            body = ball_body(float(self.joint.ball.poisson), self.solved.pair.ball_resolution)
+            mesh, fixed_directions, contact = body.elastic.block, body.fixed_unknowns.reshape(-1, 2).T, body.contact
         clearance = self.scale * float(self.joint.clearance)
         return DeckBody(
             names=("BALL",),
@@ -156,11 +158,6 @@ class DeckBodies:
             nodes_before=self.socket.node_count,
             elements_before=self.socket.block.elements.shape[1],
         )
-
-    def _elastic_ball_mesh(self, material: Material) -> tuple[Block, Numbers, Numbers]:
-        """Mesh half of an elastic ball; return the block, its fixed directions and its contact nodes."""
-        body = ball_body(float(material.poisson), self.solved.pair.ball_resolution)
-        return body.elastic.block, body.fixed_unknowns.reshape(-1, 2).T, body.contact
 
     def _rigid_ball_mesh(self) -> tuple[Block, Numbers, Numbers]:
         """Mesh a rigid ball as one fixed layer of elements, which match the bore's and extend one element further."""

@@ -11,15 +11,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Any
 
 import numpy
 from scipy.sparse import coo_matrix, csc_matrix
-from scipy.sparse.linalg import splu
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
-from .bodies import nested_dissection, socket_block, socket_elastic
+from .bodies import elimination_ranks, factorize, socket_block, socket_elastic
 from .elasticity import ElasticBlock, element_quadrature
 from .mesh import Block, Resolution, SocketShape
 from .surfaces import lagrange
@@ -49,7 +47,6 @@ class Harmonics:
 
     @property
     def _block(self) -> Block:
-        """Mesh of the meridian."""
         return self.elastic.block
 
     @cached_property
@@ -90,7 +87,7 @@ class Harmonics:
         order, count = self._elimination_order(m)
         load = numpy.zeros((len(order), loads.shape[1]))
         load[-count:] = loads[-count:]
-        displacements = self._factorize_stiffness(m, order).solve(load)
+        displacements = factorize(_sum_powers(self.stiffness_powers, m), order).solve(load)
         forces = [_sum_powers(slope, m)[order][:, order] @ displacements for slope in slopes]
         return numpy.stack([-displacements.T @ force for force in forces])
 
@@ -107,29 +104,19 @@ class Harmonics:
     def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
         """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
         order, count = self._elimination_order(m)
-        factors = self._factorize_stiffness(m, order)
+        factors = factorize(_sum_powers(self.stiffness_powers, m), order)
         lower, upper = factors.L[-count:, -count:].toarray(), factors.U[-count:, -count:].toarray()
         normal_loads = loads[-count:]
         compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
         return (compliance + compliance.T) / 2
 
-    def _factorize_stiffness(self, m: int, order: Numbers) -> Any:
-        """Compute the LU factors of the stiffness matrix for one harmonic m in this order of the free unknowns."""
-        matrix = _sum_powers(self.stiffness_powers, m)[order][:, order].tocsc()
-        return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
     def _elimination_order(self, m: int) -> tuple[Numbers, int]:
         """Return the free unknowns in the order of elimination, and the number of contact unknowns at the end."""
-        block = self._block
-        grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
-        rank = numpy.empty(grid.size, dtype=int)
-        rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
-        node_rank = rank[grid[:, block.level]].ravel()
-        normals = 3 * self.bore + 1
+        ranks, normals = elimination_ranks(self._block), 3 * self.bore + 1
         normals = normals[~self._fixed_unknowns(m)[normals]]
         free = numpy.unique(self._element_unknowns)
         free = free[~self._fixed_unknowns(m)[free] & ~numpy.isin(free, normals)]
-        return numpy.concatenate([free[numpy.argsort(node_rank[free // 3], kind="stable")], normals]), len(normals)
+        return numpy.concatenate([free[numpy.argsort(ranks[free // 3], kind="stable")], normals]), len(normals)
 
     def _fixed_unknowns(self, m: int) -> Numbers:
         """Return the mask of unknowns that are zero: on the axis by symmetry, and at the supports.
@@ -189,14 +176,12 @@ class Harmonics:
         plain, azimuthal = self._harmonic_strains(gradients.strain, points, gradients.coordinates[0])
         traces = plain[..., :2, :].sum(axis=-2) + plain[..., _HOOP, :], azimuthal[..., _HOOP, :]
         swelling = [self.elastic.project_volume(elements, gradients.coordinates, volume, trace) for trace in traces]
-        rows = [
-            _merge_strain_axes(strain * (_SCALE * numpy.sqrt(shear)[..., None, None])) for strain in (plain, azimuthal)
-        ]
+        scale = _SCALE * numpy.sqrt(shear)[..., None, None]
+        rows = [(strain * scale).reshape(len(strain), -1, strain.shape[-1]) for strain in (plain, azimuthal)]
         drops = [trace * numpy.sqrt(2 / 3 * shear)[..., None] for trace in traces]
         swells = [projection * numpy.sqrt(bulk)[..., None] for projection in swelling]
 
         def multiply_strains(i: int, j: int) -> Numbers:
-            """Compute the strain energy matrix between the strain terms i and j of each element."""
             products = (factors[i].swapaxes(1, 2) @ factors[j] for factors in (rows, swells, drops))
             strain, swell, drop = products
             return strain + swell - drop
@@ -248,8 +233,3 @@ def _sum_powers(powers: StiffnessPowers, m: int) -> csc_matrix:
     """Sum the stiffness matrices of the powers of m: K0 + m K1 + m² K2."""
     constant, linear, quadratic = powers
     return constant + m * linear + m * m * quadratic
-
-
-def _merge_strain_axes(strain: Numbers) -> Numbers:
-    """Reshape strains to (elements, points times strains, unknowns)."""
-    return strain.reshape(len(strain), -1, strain.shape[-1])

@@ -49,7 +49,6 @@ class ContactBracket:
 
     @property
     def _samples(self) -> list[PartialContact]:
-        """Sample contacts of increasing force and indentation."""
         return self._samples_and_fit[0]
 
     @cached_property
@@ -86,7 +85,6 @@ class ContactBracket:
         )
 
     def _solve_by_secant(self, kind: str, load: float) -> PartialContact | None:
-        """Solve the contact under a load by the secant method for the log half angle; None without convergence."""
         goal = numpy.log(load)
         angle, rise = float(self._interpolators[kind](goal)), float(self._interpolators[kind](goal, 1))
         contact, residual = self._solve_residual(kind, goal, angle)
@@ -105,8 +103,6 @@ class ContactBracket:
         return contact, goal - float(numpy.log(getattr(contact, kind)))
 
     def _solve_by_brent(self, kind: str, load: float, low: float, high: float) -> PartialContact:
-        """Solve the contact under a load by Brent's method between two half angles (rad)."""
-
         def residual(angle: float) -> float:
             """Compute the difference between 1 and a power of the load ratio at a half angle; 1 without contact."""
             contact = partial_contact(self.pair, self.gap, angle)

@@ -250,14 +250,10 @@ class SocketShape:
             layer = graded_points(inner, inner + thickness, min(first, longest), resolution.growth, longest)
             radii.append(resolution.refine(layer))
             first, inner = (layer[-1] - layer[-2]) * resolution.growth, float(layer[-1])
-        return [self._chamfer_liner(angle, radii[0]), *radii[1:]]
-
-    def _chamfer_liner(self, angle: Numbers, liner: Numbers) -> Numbers:
-        """Compute the liner's radii with the chamfer cut off: (angles, radii)."""
-        if not self.chamfer:
-            return liner
-        depth = numpy.clip(angle - self.reach, 0.0, None)[:, None]
-        return liner + depth * (liner[-1] - liner) / (liner[-1] - liner[0])
+        if self.chamfer:
+            liner, depth = radii[0], numpy.clip(angle - self.reach, 0.0, None)[:, None]
+            radii[0] = liner + depth * (liner[-1] - liner) / (liner[-1] - liner[0])
+        return radii
 
 
 def socket_shape(joint: Joint, cup: Cup) -> SocketShape:

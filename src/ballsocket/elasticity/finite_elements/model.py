@@ -65,7 +65,6 @@ class MeshedContact(SolvedContact):
         return stress if is_known else exact_number(self.von_mises).scaled(1.0, self.stress_error or 0.0)
 
     def _joint_von_mises(self, index: Numbers, contacts: JointContacts) -> Numbers:
-        """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         from .section import section
 
         values = [
@@ -96,7 +95,6 @@ class MeshedContact(SolvedContact):
 
     @property
     def _plain_joint(self) -> Joint:
-        """Joint with plain numbers."""
         return self.joint.with_numbers([float(to_numpy(number).item()) for number in self.joint.numbers()])
 
     @property
@@ -234,7 +232,6 @@ class FiniteElement(Model):
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of all joints and loads, and mark those that failed."""
         needs("fem", "skfem", "psutil")
         from .solver import Settings, load_curve_of  # slow to import
 
@@ -248,7 +245,6 @@ class FiniteElement(Model):
         )
 
         def solve(plain_joint: Joint, loads: Numbers) -> JointContacts:
-            """Solve the contacts of one joint with the gap that suits it."""
             curve = load_curve_of(replace(settings, gap=select_gap(self.gap, plain_joint)), plain_joint)
             return curve.press(kind, loads)
 

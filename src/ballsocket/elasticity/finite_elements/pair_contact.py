@@ -21,8 +21,7 @@ from .surfaces import SurfacePair
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
 _INDENTATION_TOLERANCE = 1e-13  # relative
-_POLE_FRACTION = 0.35
-"""Fraction of the contact whose pressures determine the one at the pole, by an even polynomial."""
+_POLE_FRACTION = 0.35  # fraction of the contact whose pressures determine the one at the pole, by an even polynomial
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,7 +99,6 @@ class PartialContact:
         return W, border, tail[:, -2:] - border.T @ border
 
     def _solve_pressures(self, side: Numbers) -> Numbers:
-        """Solve for the pressures p_0 .. p_k and q in MPa from a right-hand side (functions,)."""
         W, border, pivot = self._bordered_blocks
         inner = W @ side[:-2]
         last = numpy.linalg.solve(pivot, side[-2:] - border.T @ inner)
@@ -133,7 +131,6 @@ class PartialContact:
 
     @cached_property
     def _cosines(self) -> tuple[Numbers, Numbers]:
-        """Cosines of the polar angle at the pair's points and at the edge points."""
         return numpy.cos(self.pair.points[0]), numpy.cos(self._edge_functions[0])
 
     # --- results ---

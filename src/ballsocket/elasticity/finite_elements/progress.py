@@ -6,12 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-
-def _ignore_message(_: str) -> None:
-    """Ignore a progress message."""
-
-
-_CALLBACK: ContextVar[Callable[[str], None]] = ContextVar("progress_callback", default=_ignore_message)
+_CALLBACK: ContextVar[Callable[[str], object]] = ContextVar("progress_callback", default=str)
+"""Function that takes each message; `str` ignores it."""
 
 
 def report_progress(text: str) -> None:

@@ -146,7 +146,6 @@ class _LoadedBody:
 
     @cached_property
     def _node_displacements(self) -> Numbers:
-        """Displacements u_φ and u_r of the nodes as fractions of the radius, shape (nodes, 2)."""
         return self.body.displacements(self.forces / (self.young * self.loaded_radius**2))
 
     def make_parts(self, names: tuple[str, ...]) -> Iterator[Part]:
@@ -207,7 +206,6 @@ class _LoadedBody:
 def _spherical_stresses(
     position: Numbers, rho: Numbers, z: Numbers, shear: Numbers
 ) -> tuple[Numbers, Numbers, Numbers]:
-    """Compute the spherical stresses σ_rr, σ_φφ and σ_rφ from stresses along the axis and across it."""
     r = numpy.hypot(*position)
     sine, cosine = position / r
     across, along = rho - z, 2 * sine * cosine * shear

@@ -28,11 +28,8 @@ from .surfaces import ContactSurface, SurfacePair
 FINE, COARSE = 0, 1
 """Indices of the two meshes."""
 
-_STRIDE = 4
-"""Number of classes whose contacts one coarse mesh resolves."""
-
-_CLASS_MARGIN = 1.12
-"""Factor by which the half angle may differ from its class on another mesh."""
+_STRIDE = 4  # number of classes whose contacts one coarse mesh resolves
+_CLASS_MARGIN = 1.12  # factor by which the half angle may differ from its class on another mesh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,7 +90,6 @@ class MeshedLoadCurve:
         return last
 
     def _contact_bracket(self, number: int, mesh: int) -> ContactBracket:
-        """Return the contacts on the mesh of a class of half angles and of a few narrower classes, from a cache."""
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
@@ -250,8 +246,10 @@ class Settings:
 @lru_cache(maxsize=32)
 def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
     """Return the load curve of a joint with scalar parameters; it is cached for further loads."""
-    _check_geometry(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
+    if isinstance(settings.spacing, Uniform):
+        _check_element_size(settings.spacing.size, joint, radius * bore)
+    check_cup(settings.cup, joint)
     ends_at_rim = bore <= pi / 2 + 1e-12
     widest = bore if ends_at_rim else LIMIT
     class_limits = settings.spacing.classes(widest, radius)
@@ -259,12 +257,10 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
     thickness, order = float(joint.liner_thickness), settings.order
 
     def make_resolution(spacing: Spacing, class_index: int, mesh: int) -> Resolution:
-        """Make the coarse or the fine mesh resolution of a class of half angles."""
         coarse = spacing.coarse(class_limits[class_index], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        """Make the meshed surfaces of socket and ball for a class of half angles."""
         socket, ball = (
             make_resolution(spacing, class_index, mesh) for spacing in (settings.spacing, settings.ball_spacing)
         )
@@ -274,14 +270,6 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
     return MeshedLoadCurve(
         pairs=make_pair, classes=class_limits, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
     )
-
-
-def _check_geometry(settings: Settings, joint: Joint) -> None:
-    """Raise ValueError for a geometry that cannot be meshed."""
-    if isinstance(settings.spacing, Uniform):
-        bore = socket_shape(joint, settings.cup).reach
-        _check_element_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
-    check_cup(settings.cup, joint)
 
 
 def check_cup(cup: Cup, joint: Joint) -> None:
@@ -304,7 +292,6 @@ def check_cup(cup: Cup, joint: Joint) -> None:
 
 
 def _check_element_size(size: float, joint: Joint, bore: float) -> None:
-    """Raise ValueError for an element size in mm that does not fit the layers or the length of the bore."""
     thicknesses = {"liner_thickness": joint.liner_thickness}
     thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
     for name, thickness in thicknesses.items():

@@ -112,7 +112,6 @@ class Uniform:
 
 
 def _check_growth(growth: float) -> None:
-    """Raise ValueError for a growth outside 1 to 2."""
     require("growth", growth, 1 <= growth <= 2, "growth must lie between 1 and 2")
 
 

@@ -104,11 +104,8 @@ def initial_displacement(bore: BoreSize, modulus: float, depth: Numbers, force: 
     return start
 
 
-_PATH_POINTS = 4
-"""Number of contacts on the way of a ball, at which the work of the load is integrated."""
-
-_BATCH_CELLS = 150_000
-"""Number of cells that are solved together: more exceed the processor's cache."""
+_PATH_POINTS = 4  # number of contacts on the way of a ball, at which the work of the load is integrated
+_BATCH_CELLS = 150_000  # number of cells that are solved together: more exceed the processor's cache
 
 
 class Equilibria(Protocol):

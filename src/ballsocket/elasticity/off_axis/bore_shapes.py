@@ -173,7 +173,6 @@ class DepthTable(InterpolatedDeviation):
 
     @cached_property
     def _interpolator(self) -> RegularGridInterpolator:
-        """Linear interpolator of the table, periodic over a full turn."""
         from scipy.interpolate import RegularGridInterpolator  # slow to import
 
         azimuth = numpy.concatenate([self.azimuth, [self.azimuth[0] + 2 * pi]])

@@ -41,7 +41,6 @@ class OffAxisContact(SolvedContact):
     _inside: ClassVar[str] = "pressure maps"
 
     def _joint_von_mises(self, indices: Numbers, contacts: JointContacts) -> Numbers:
-        """Estimate the largest von Mises stress in the liner in MPa from the axial contact of the same half angle."""
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
         ratio = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         if not joint.backing_ratio <= RIGID_BACKING.high:
@@ -185,7 +184,6 @@ class OffAxisContact(SolvedContact):
 
     @property
     def _patch(self) -> ContactPatch:
-        """Contact patch of a single contact."""
         state: ContactStates = self.single_state
         return state.patches[0]
 
@@ -262,6 +260,7 @@ class OffAxisContact(SolvedContact):
         summary = super().summary()
         summary["error"]["edge_margin_deg"] = arrays.to_list(self.error["edge_margin"] * degrees(1.0))
         del summary["error"]["edge_margin"]
+        in_body = arrays.to_numpy(self.force_vector) @ numpy.asarray(self.model.cup.frame)
         return {
             **summary,
             "status": names[0] if status.ndim == 0 else names,
@@ -274,19 +273,11 @@ class OffAxisContact(SolvedContact):
             "rim_distance": arrays.to_list(self.rim_distance),
             "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
             "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
-            **self._force_in_body(),
+            **({"force_vector_in_body": in_body.tolist()} if self.model.cup.oriented else {}),
         }
 
-    def _force_in_body(self) -> dict[str, Any]:
-        """Return the force vector in the body's frame for JSON; an empty dictionary without an orientation."""
-        cup = self.model.cup
-        if not cup.oriented:
-            return {}
-        return {"force_vector_in_body": (arrays.to_numpy(self.force_vector) @ numpy.asarray(cup.frame)).tolist()}
 
-
-_CUT_ERROR = 2.0
-"""Factor of the error of the margin of contacts that the rim cuts off, measured against rings of 0.75°."""
+_CUT_ERROR = 2.0  # factor of the error of the margin of contacts that the rim cuts off, measured against rings of 0.75°
 
 _REVERSED_NOTE = "; if it is the force on the ball, such as a measured joint reaction, give the opposite direction"
 _RIM_NOTE = "edge loading: the contact reaches the rim"

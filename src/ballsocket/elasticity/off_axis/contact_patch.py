@@ -29,8 +29,7 @@ from .patch_measures import (
 _EDGE_RINGS = numpy.array([2.0, 3.0, 4.0])
 """Distances from the edge in ring widths at which the rise of the pressure is fitted."""
 
-_MIN_EDGE_RINGS = 5.0
-"""Smallest distance from the centre to the edge in ring widths for a fit of the edge."""
+_MIN_EDGE_RINGS = 5.0  # smallest distance from the centre to the edge in ring widths for a fit of the edge
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,17 +57,14 @@ class ContactPatch:
 
     @cached_property
     def _cells(self) -> CellArrays:
-        """Arrays of the grid."""
         return make_cell_arrays(self.grid, self.inset)
 
     @cached_property
     def _patches(self) -> Patches:
-        """Batch of this patch alone."""
         return Patches(pressure=self.pressure[None], level=self.level[None], axis=self.axis[None])
 
     @cached_property
     def _table(self) -> Numbers:
-        """Pressures that `interpolate` reads."""
         table: Numbers = pressure_table(self._cells, self.pressure[None])
         return table
 
@@ -105,7 +101,6 @@ class ContactPatch:
 
     @property
     def _edge_angles(self) -> Numbers:
-        """Angles in rad from the centre to the edge along each ray."""
         angles: Numbers = self._edges[1][0]
         return angles
 

@@ -13,6 +13,7 @@ from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
 from .bore_contact import BoreContact, EquilibriumBatch
 from .contact_patch import ContactPatch
+from .directions import magnitudes_and_directions
 from .lane_solver import can_solve_lanes, solve_tangents
 from .patch_measures import (
     CellArrays,
@@ -47,14 +48,9 @@ _HALF_ANGLE_ERROR = 0.1
 Both were measured against the exact solution. A test repeats this for random contacts.
 """
 
-_MEASURED_CONTACTS = 8
-"""Number of contacts that are measured together."""
-
-_FRICTION_AXES = 4
-"""Number of axes around the load over which a friction torque is averaged."""
-
-_MIN_ERROR = 3e-4
-"""Relative error of all quantities that the finite elements of the cup leave."""
+_MEASURED_CONTACTS = 8  # number of contacts that are measured together
+_FRICTION_AXES = 4  # number of axes around the load over which a friction torque is averaged
+_MIN_ERROR = 3e-4  # relative error of all quantities that the finite elements of the cup leave
 
 LoadSolver = Callable[[BoreContact, Numbers, Numbers, EdgeRelation], "ContactStates"]
 """Function from a bore contact, loads (contacts,), axes (contacts, 3) and an edge relation to the contacts."""
@@ -136,7 +132,6 @@ class ContactStates:
 
     @cached_property
     def _cells(self) -> CellArrays:
-        """Arrays of the grid."""
         return make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
 
     def _measure(self, measure: Callable[..., Numbers], *values: Numbers) -> Numbers:
@@ -147,7 +142,6 @@ class ContactStates:
             return numpy.concatenate([measure(self._cells, *block) for block in blocks])
 
     def _measure_patches(self, measure: Callable[[CellArrays, Patches], Numbers]) -> Numbers:
-        """Measure all contacts by a function of cells and patches."""
         return self._measure(
             lambda cells, *block: measure(cells, Patches(*block)), self.equilibrium.pressure, self.levels, self.axes
         )
@@ -208,11 +202,9 @@ class ContactStates:
 
     @property
     def _preloaded(self) -> bool:
-        """True for a joint with an interference."""
         return self.bore.gap.clearance < 0
 
     def _project_on_axes(self, vectors: Numbers) -> Numbers:
-        """Compute the components of vectors (3, contacts) along the axes of the loads."""
         return numpy.einsum("kn,nk->n", vectors, self.axes)
 
     @cached_property
@@ -230,26 +222,21 @@ class ContactStates:
         )
         if can_solve_lanes(self.bore):
             return numpy.moveaxis(solve_tangents(self.bore, share, self.edges.compliance), 0, -1)
-        blocks = self.bore.split_into_blocks(numpy.arange(len(share)))
-        tangents = [self._solve_tangent(self.equilibrium.displacement[block], share[block]) for block in blocks]
-        return numpy.moveaxis(numpy.concatenate([numpy.zeros((0, 3, 3)), *tangents]), 0, -1)
-
-    def _solve_tangent(self, displacement: Numbers, share: Numbers) -> Numbers:
-        """Compute the tangent stiffness matrices of some contacts in N/mm: (contacts, 3, 3)."""
-        compliance = self.edges.compliance
-        return self.bore.tangent(
-            self.bore.pressure_sensitivity(displacement, share, tolerance=1e-6, edge_compliance=compliance)
-        )
+        tangents = [numpy.zeros((0, 3, 3))]
+        for block in self.bore.split_into_blocks(numpy.arange(len(share))):
+            displacement, compliance = self.equilibrium.displacement[block], self.edges.compliance
+            sensitivity = self.bore.pressure_sensitivity(displacement, share[block], None, 1e-6, compliance)
+            tangents.append(self.bore.tangent(sensitivity))
+        return numpy.moveaxis(numpy.concatenate(tangents), 0, -1)
 
     @property
     def stiffness(self) -> Numbers:
         """Tangent stiffness in N/mm, the derivative of the force by the indentation."""
         if self._preloaded:
             return numpy.einsum("nk,kln,nl->n", self.axes, self.tangent, self.axes)
-        force_direction, motion_direction = (
-            _unit_vectors_of(vectors) for vectors in (self.force_vector, self.displacement)
-        )
-        return numpy.einsum("kn,kln,ln->n", force_direction, self.tangent, motion_direction)
+        _, force_direction = magnitudes_and_directions(self.force_vector.T)
+        _, motion_direction = magnitudes_and_directions(self.displacement.T)
+        return numpy.einsum("nk,kln,nl->n", force_direction, self.tangent, motion_direction)
 
     @cached_property
     def energy(self) -> Numbers:
@@ -434,9 +421,3 @@ def _angle_exponents(half_angle: Numbers) -> dict[str, Numbers]:
     exponents = dict.fromkeys(QUANTITIES, growth)
     exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
     return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
-
-
-def _unit_vectors_of(vectors: Numbers) -> Numbers:
-    """Compute unit vectors of vectors (3, contacts); a zero vector stays zero."""
-    length = numpy.linalg.norm(vectors, axis=0)
-    return vectors / numpy.where(length > 0, length, 1.0)

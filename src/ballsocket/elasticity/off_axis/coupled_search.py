@@ -37,8 +37,7 @@ COARSE_ROUNDS = 4
 COARSE_ITERATIONS = 7
 """Number of iterations in a round."""
 
-_WARM_UP_ITERATIONS = 2
-"""Number of iterations at a fixed displacement before the first Newton step."""
+_WARM_UP_ITERATIONS = 2  # number of iterations at a fixed displacement before the first Newton step
 
 SENSITIVITY_ITERATIONS = 3
 """Number of iterations for the sensitivity of the pressures in wide cells, for Newton steps."""
@@ -49,8 +48,7 @@ TANGENT_ITERATIONS = 4
 _REGULARISATION = 1e-6
 """Fraction of the trace of a stiffness, added to each direction so that one without stiffness stays solvable."""
 
-_MAX_STEP = 0.5
-"""Largest Newton step, as a fraction of the largest overlap."""
+_MAX_STEP = 0.5  # largest Newton step, as a fraction of the largest overlap
 
 
 class BoreArrays(NamedTuple):
@@ -198,7 +196,6 @@ def apply_operator(bore: BoreArrays, matrices: Array, fields: Array) -> Array:
 
 
 def _apply_to_part(transform: Array, matrices: Array, part: Array) -> Array:
-    """Apply matrices for each harmonic to the even or odd part (half, rings, lanes) of fields."""
     half, rings, lanes = part.shape
     waves = (transform @ part.reshape(half, rings * lanes)).reshape(half, rings, lanes)
     return (transform.T @ (matrices @ waves).reshape(half, rings * lanes)).reshape(half, rings, lanes)
@@ -361,18 +358,15 @@ def solve_change(
     target = overlap * root
 
     def precondition(residual: Array) -> Array:
-        """Apply the stiffness of a bore under pressure everywhere."""
         return apply_operator(bore, bore.stiffness, residual * root) * root + open_stiffness * residual
 
     def respond(change: Array) -> Array:
-        """Compute the overlaps that changes cause."""
         return apply_operator(bore, bore.softness, change * root) * root + open_compliance * change
 
     change = precondition(target)
     residual = target - respond(change)
 
     def advance(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        """Make one iteration."""
         change, residual, direction, descent = state
         gradient = precondition(residual)
         next_descent = integrate(bore, residual, gradient)
@@ -387,13 +381,11 @@ def solve_change(
 
 
 def _forces_by_axis(bore: BoreArrays, change: Array) -> Array:
-    """Compute the forces of changes of pressure (meridians, rings, 3 * lanes): (lanes, 3, 3)."""
     components = len(bore.tether)
     return compute_force(bore, change).reshape(components, components, -1).transpose(2, 0, 1)
 
 
 def _symmetric(matrices: Array) -> Array:
-    """Return the symmetric parts of matrices (lanes, 3, 3)."""
     return (matrices + matrices.swapaxes(1, 2)) / 2
 
 

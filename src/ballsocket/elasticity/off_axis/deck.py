@@ -32,8 +32,7 @@ from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
 from .model import Sphere
 
-_CONTACT_STIFFNESS_FACTOR = 500.0
-"""Ratio of the contact stiffness to the largest pressure over the indentation."""
+_CONTACT_STIFFNESS_FACTOR = 500.0  # ratio of the contact stiffness to the largest pressure over the indentation
 
 _SKIN_THICKNESS = 0.1  # as a fraction of the ball's radius
 _INNER_FACE, _OUTER_FACE = "S1", "S2"
@@ -105,11 +104,6 @@ class SphericalBlock:
                 yield f"{number}, {x:.14g}, {y:.14g}, {z:.14g}"
 
 
-def _edge_middles(corners: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Compute the indices of the middles of edges between successive corners of a face."""
-    return [((a + c) // 2, (b + d) // 2) for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True)]
-
-
 def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
     """Return the indices of an element's nodes in CalculiX's order.
 
@@ -119,8 +113,7 @@ def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]
     return [(a, b, c) for row, c in rows for a, b in row]
 
 
-_SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
-_BRICK = _element_nodes(_SQUARE, _edge_middles(_SQUARE))
+_BRICK = _element_nodes([(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 0), (2, 1), (1, 2), (0, 1)])
 _WEDGE = _element_nodes([(0, 0), (2, 0), (2, 2)], [(1, 0), (2, 1), (1, 2)])
 
 
@@ -170,12 +163,10 @@ class TiltedDeck:
 
     @cached_property
     def _socket_shape(self) -> SocketShape:
-        """Meridian section of the cup, in units of its bore's radius."""
         return socket_shape(self.joint, self.cup)
 
     @cached_property
     def _layer_radii(self) -> list[Numbers]:
-        """Radii of the corners in each layer, in mm."""
         inner, first, radii = 1.0, self.element_size, []
         for outer, _, _ in self._socket_shape.layers:
             if outer == inf:
@@ -187,7 +178,6 @@ class TiltedDeck:
 
     @property
     def _bore_radius(self) -> float:
-        """Radius of the bore in mm."""
         return float(self.joint.socket_radius)
 
     @cached_property
@@ -219,7 +209,6 @@ class TiltedDeck:
 
     @property
     def _displacement_direction(self) -> Numbers:
-        """Unit vector of the displacement in the cup's frame."""
         return numpy.array([sin(self.tilt), 0.0, cos(self.tilt)])
 
     def text(self) -> str:
@@ -253,14 +242,12 @@ class TiltedDeck:
         }
 
     def _title_lines(self) -> Iterator[str]:
-        """Yield the comment lines at the top of the deck."""
         yield f"** {ascii_text(str(self.joint))}"[:200]
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
         yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
 
     def _mesh_lines(self) -> Iterator[str]:
-        """Yield the lines of nodes and elements of cup and ball."""
         yield "*NODE, NSET=ALL"
         for body in (self.socket, self.ball):
             yield from body.node_lines()

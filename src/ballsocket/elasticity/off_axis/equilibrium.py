@@ -23,32 +23,18 @@ _MAX_ITERATIONS = 80
 
 _MAX_COARSE_ITERATIONS = 15
 
-_FORCE_TOLERANCE = 1e-6
-"""Residual force at equilibrium, relative to the load."""
-
-_COARSE_FORCE_TOLERANCE = 1e-3
-"""Residual force at the end of the search in wide cells, relative to the load."""
-
-_MAX_PRESSURE_TOLERANCE = 1e-2
-"""Loosest tolerance of the pressures in an iteration."""
-
-_PRESSURE_TOLERANCE_FACTOR = 0.02
-"""Tolerance of the next pressures, relative to the residual force."""
-
-_MIN_GAIN = 0.2
-"""Ratio of residual forces after and before a step, above which the tangent is solved again."""
-
-_NOISE_FACTOR = 5.0
-"""Residual force that may come from inexact pressures alone, relative to their tolerance."""
+_FORCE_TOLERANCE = 1e-6  # residual force at equilibrium, relative to the load
+_COARSE_FORCE_TOLERANCE = 1e-3  # residual force at the end of the search in wide cells, relative to the load
+_MAX_PRESSURE_TOLERANCE = 1e-2  # loosest tolerance of the pressures in an iteration
+_PRESSURE_TOLERANCE_FACTOR = 0.02  # tolerance of the next pressures, relative to the residual force
+_MIN_GAIN = 0.2  # ratio of residual forces after and before a step, above which the tangent is solved again
+_NOISE_FACTOR = 5.0  # residual force that may come from inexact pressures alone, relative to their tolerance
 
 _REGULARISATION = 1e-12
 """Fraction of the trace of a stiffness, added to each direction so that one without stiffness stays solvable."""
 
-_MIN_DAMPING = 1e-6
-"""Fraction of the trace that shortens the step after the first rejected one."""
-
-_NEGLIGIBLE_DAMPING = 1e-10
-"""Fraction of the trace below which damping ends."""
+_MIN_DAMPING = 1e-6  # fraction of the trace that shortens the step after the first rejected one
+_NEGLIGIBLE_DAMPING = 1e-10  # fraction of the trace below which damping ends
 
 _STATE_NAMES = (
     *("load", "force_scale", "displacement", "pressure", "sensitivity", "force", "tangent", "residual", "potential"),
@@ -123,7 +109,6 @@ class _SearchResult:
 def _solve_block(
     bore: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers, pressure: Numbers | None
 ) -> _SearchResult:
-    """Solve the equilibrium of one block of balls; `force_scale` (batch,) in N scales the residual forces."""
     coarse = None
     if pressure is None and bore.coarser_bore is not None:
         coarse = _solve_coarse(bore, bore.coarser_bore, load, force_scale, start)
@@ -133,7 +118,6 @@ def _solve_block(
 def _solve_coarse(
     bore: BoreContact, coarser: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers
 ) -> _SearchResult:
-    """Solve the equilibrium in cells twice as wide, and transfer it to the cells of the bore."""
     search = _NewtonSearch(coarser, load, force_scale, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
     result = _iterate_search(search, _MAX_COARSE_ITERATIONS)
     pressure, sensitivity = (bore.refine(field) for field in (result.pressure, result.sensitivity))
@@ -142,7 +126,6 @@ def _solve_coarse(
 
 
 def _iterate_search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
-    """Iterate a search until all balls have converged, or up to a number of iterations."""
     result = _SearchResult(
         displacement=search.displacement.copy(),
         pressure=search.pressure.copy(),
@@ -189,13 +172,9 @@ class _NewtonSearch:
         self.separation, self.used_tolerance = numpy.zeros(count), numpy.full(count, _MAX_PRESSURE_TOLERANCE)
         self.converged, self.stale = numpy.zeros(count, dtype=bool), numpy.ones(count, dtype=bool)
         if coarse is not None:
-            self._start_from(coarse)
-
-    def _start_from(self, coarse: _SearchResult) -> None:
-        """Start from the displacements, pressures and tangents of the search in wide cells."""
-        self.trial, self.initial_pressure, self.stale = coarse.displacement, coarse.pressure, ~coarse.converged
-        self.sensitivity, self.tangent = coarse.sensitivity, coarse.tangent
-        self.tolerance = numpy.where(coarse.converged, _COARSE_FORCE_TOLERANCE, _MAX_PRESSURE_TOLERANCE)
+            self.trial, self.initial_pressure, self.stale = coarse.displacement, coarse.pressure, ~coarse.converged
+            self.sensitivity, self.tangent = coarse.sensitivity, coarse.tangent
+            self.tolerance = numpy.where(coarse.converged, _COARSE_FORCE_TOLERANCE, _MAX_PRESSURE_TOLERANCE)
 
     def evaluate_trial(self) -> None:
         """Solve the contacts at the trial displacements, and accept those that are closer to equilibrium."""
@@ -218,19 +197,10 @@ class _NewtonSearch:
         stronger = numpy.maximum(30 * self.damping, _MIN_DAMPING)
         weaker = numpy.where(self.damping > _NEGLIGIBLE_DAMPING, self.damping / 10, 0.0)
         self.damping = numpy.where(better, weaker, stronger)
-        self._accept_trials(
-            better,
-            force=force,
-            residual=residual,
-            potential=potential,
-            pressure=solution.pressure,
-            separation=separation,
-        )
-
-    def _accept_trials(self, mask: Numbers, **values: Numbers) -> None:
-        """Set the balls of a mask to their trial displacements, with the values computed there."""
-        for name, value in {**values, "displacement": self.trial, "used_tolerance": self.tolerance}.items():
-            getattr(self, name)[mask] = value[mask]
+        accepted = {"force": force, "residual": residual, "potential": potential, "pressure": solution.pressure}
+        accepted |= {"separation": separation, "displacement": self.trial, "used_tolerance": self.tolerance}
+        for name, value in accepted.items():
+            getattr(self, name)[better] = value[better]
 
     def _update_tangent(self, mask: Numbers, force: Numbers) -> None:
         """Update the tangents of the balls in a mask from the last step, by the BFGS formula."""

@@ -215,21 +215,16 @@ class Grid:
         return ring_sums @ cell_areas.astype(ring_sums.dtype)
 
 
-def graded_grid(reach: float, width: float) -> Grid:
-    """Make a grid up to the polar angle `reach`, with the last ring divided in three parts towards the rim.
+def rim_grid(reach: float, width: float) -> Grid:
+    """Make a grid up to the polar angle `reach`, with the last ring divided in five parts towards the rim."""
+    return graded_grid(reach, width, _FINE_RIM_WIDTHS)
+
+
+def graded_grid(reach: float, width: float, fractions: Numbers = _RIM_WIDTHS) -> Grid:
+    """Make a grid up to the polar angle `reach`, with the last ring divided into fractions, three by default.
 
     Rings are about `width` (rad) wide, and cells are square at a polar angle of 90°.
     """
-    return _make_graded_grid(reach, width, _RIM_WIDTHS)
-
-
-def rim_grid(reach: float, width: float) -> Grid:
-    """Make a grid up to the polar angle `reach`, with the last ring divided in five parts towards the rim."""
-    return _make_graded_grid(reach, width, _FINE_RIM_WIDTHS)
-
-
-def _make_graded_grid(reach: float, width: float, fractions: Numbers) -> Grid:
-    """Make a grid of equal rings with the last one divided into fractions."""
     rings = max(ceil(reach / width - 1e-9), 2)
     edges = numpy.linspace(0.0, reach, rings + 1)
     last = edges[-2] + numpy.append(0.0, numpy.cumsum(fractions)) * (reach - edges[-2])

@@ -70,13 +70,11 @@ class LinerCompliance:
         return _softness_slopes(self.surface, self._vary(liner), self.cup, self.ring_width)
 
     def _vary(self, liner: Numbers) -> Joint:
-        """Return the joint with another liner."""
         return vary_liner(self.joint, tuple(map(float, liner)))
 
 
 @lru_cache(maxsize=2)
 def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> tuple[Numbers, Numbers]:
-    """Compute the derivatives of both softnesses of a bore by the numbers of its liner."""
     grid = cached_compliance(surface, joint, cup, width).grid
     slopes = surface.ring_slopes(joint, cup, grid)
     return slopes, numpy.stack([grid.coarsen_matrices(slope) for slope in slopes])
@@ -90,7 +88,6 @@ def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Arr
     import jax
 
     def shapes_of(values: Any) -> Any:
-        """Return shapes and types of arrays."""
         return jax.tree.map(lambda array: jax.ShapeDtypeStruct(array.shape, dtype), values)
 
     def convert(compute: Callable[[Numbers], Any], liner: Array) -> Any:
@@ -105,7 +102,6 @@ def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Arr
 
     @jax.custom_jvp
     def operators(liner: Array) -> Operators:
-        """Compute the matrices of a liner."""
         matrices: Operators = jax.pure_callback(
             partial(convert, bore.operators), operator_shapes, liner, vmap_method="sequential"
         )
@@ -113,7 +109,6 @@ def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Arr
 
     @operators.defjvp
     def differentiate(primals: Any, tangents: Any) -> Any:
-        """Compute the derivatives of the matrices."""
         (liner,), (change,) = primals, tangents
         slopes = jax.pure_callback(
             partial(convert, bore.softness_slopes), slope_shapes, liner, vmap_method="sequential"

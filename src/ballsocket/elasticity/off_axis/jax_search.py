@@ -38,12 +38,10 @@ _MAX_ITERATIONS = 30
 _TOLERANCE_FACTOR = 0.8
 """Fraction of the tolerance to which lanes are iterated, before their residuals are computed anew."""
 
-_NEWTON_ITERATIONS = 20
-"""Number of conjugate-gradient iterations in the Newton step that carries derivatives."""
+_NEWTON_ITERATIONS = 20  # number of conjugate-gradient iterations in the Newton step that carries derivatives
 
 
-_REMAINING_FRACTION = 4
-"""Lanes are iterated together until one in so many has not converged."""
+_REMAINING_FRACTION = 4  # lanes are iterated together until one in so many has not converged
 
 
 class Grids(NamedTuple):
@@ -64,12 +62,10 @@ def differentiable_search() -> Any:
 
     @jax.custom_jvp
     def solve(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-        """Solve displacements and pressures."""
         return _search(grids, load, gap, start, tolerance)
 
     @solve.defjvp
     def differentiate(primals: Any, tangents: Any) -> Any:
-        """Compute the derivatives of displacements and pressures in the touching cells."""
         grids, _, gap, *_ = primals
         grids_change, load_change, gap_change, *_ = tangents
         displacement, pressure = solve(*primals)
@@ -93,12 +89,10 @@ def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overla
         return xp.where(touching, apply_operator(bore, bore.softness, change * touching), change)
 
     def solve(_: Any, overlap: Array) -> Array:
-        """Compute the pressures that displace touching cells; others are copied."""
         change = solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
         return xp.where(touching, change, overlap)
 
     def solve_transposed(_: Any, values: Array) -> Array:
-        """Solve the transposed system: the compliance is symmetric with the areas of the cells as weights."""
         return areas * solve(_, values / areas)
 
     fixed = jax.lax.custom_linear_solve(deform, overlap_change * touching, solve, solve_transposed)
@@ -109,7 +103,6 @@ def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overla
 
 
 def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-    """Search in wide cells, and in those of the bore."""
     import jax.numpy as xp
 
     scale = xp.sqrt(xp.sum(load * load, axis=0))
@@ -140,12 +133,10 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
     import jax.numpy as xp
 
     def is_unfinished(state: tuple[Array, Lanes, Predictor]) -> Array:
-        """Return True in the first round, and until all lanes have converged."""
         number, lanes, _ = state
         return (number == 0) | ((number < COARSE_ROUNDS) & ~xp.all(lanes.error <= COARSE_TOLERANCE))
 
     def run_round(state: tuple[Array, Lanes, Predictor]) -> tuple[Array, Lanes, Predictor]:
-        """Iterate with a new sensitivity."""
         number, lanes, predictor = state
         kept = (lanes.error <= COARSE_TOLERANCE) & (number > 0)
         renewed = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
@@ -193,13 +184,11 @@ def _iterate(
     import jax.numpy as xp
 
     def is_unfinished(state: tuple[Array, Lanes]) -> Array:
-        """Return True until few lanes are left."""
         number, lanes = state
         unconverged = ~(lanes.error <= tolerance)
         return (number < max_iterations) & (unconverged.sum() > few)
 
     def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
-        """Advance the lanes that have not converged."""
         number, lanes = state
         advanced = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
         converged = lanes.error <= tolerance

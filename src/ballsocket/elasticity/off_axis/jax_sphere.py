@@ -58,12 +58,10 @@ from .ring_matrices import liner_numbers
 _MIN_STEP = radians(2.0)
 """Width of the rings from which the number of steps along a ray follows; wider rings take fewer."""
 
-_MEASURED_CONTACTS = 64
-"""Number of contacts whose outlines are computed together."""
+_MEASURED_CONTACTS = 64  # number of contacts whose outlines are computed together
 
 
-_DTYPES = ("float32", "float64")
-"""Precisions of the solver."""
+_DTYPES = ("float32", "float64")  # precisions of the solver
 
 
 class JaxContacts(NamedTuple):
@@ -161,18 +159,17 @@ class JaxSphere:
     def __post_init__(self) -> None:
         """Validate model, joint, precision and tolerance."""
         _check_bore(self.model, self.joint)
-        _check_dtype(self.dtype)
+        if not (isinstance(self.dtype, str) and self.dtype in _DTYPES):
+            raise ValueError(f"dtype = {shown(self.dtype)} is not allowed: it is {' or '.join(map(repr, _DTYPES))}")
         value = check_number("tolerance", self.tolerance)
         require("tolerance", value, 1e-9 <= value <= 1e-2, "a tolerance is 1e-9 to 1e-2")
 
     @cached_property
     def _bore(self) -> BoreContact:
-        """Ball in the bore."""
         return self.model.bore_contact(self.joint)
 
     @cached_property
     def _bores(self) -> _Bores:
-        """Arrays of the bore on the device."""
         needs("jax", "jax")
         import jax
 
@@ -315,14 +312,7 @@ def _check_bore(model: Any, joint: Any) -> None:
     check_domain(model.domain, joint, model.name)
 
 
-def _check_dtype(dtype: Any) -> None:
-    """Check the name of a precision; raise ValueError for another."""
-    if not (isinstance(dtype, str) and dtype in _DTYPES):
-        raise ValueError(f"dtype = {shown(dtype)} is not allowed: it is {' or '.join(map(repr, _DTYPES))}")
-
-
 def _check_precision(dtype: str) -> None:
-    """Check that JAX has the precision that is asked for; raise ValueError otherwise."""
     import jax
 
     if jax.dtypes.canonicalize_dtype(dtype) != dtype:
@@ -351,12 +341,10 @@ def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
 
 @cache
 def _compiled_press() -> Any:
-    """Compile the solver, for each shape on its first call."""
     import jax
 
     @jax.jit
     def press(*inputs: Any) -> JaxContacts:
-        """Press in full precision of the products."""
         with jax.default_matmul_precision("highest"):
             return _press_loads(*inputs)
 
@@ -366,7 +354,6 @@ def _compiled_press() -> Any:
 def _press_loads(
     bores: _Bores, force: Array, direction: Array, clearance: Array, depth: Array, tolerance: Array
 ) -> JaxContacts:
-    """Press the ball by forces (loads,) along directions (loads, 3) of the body; see `JaxSphere.press`."""
     import jax
     import jax.numpy as xp
 
@@ -426,7 +413,6 @@ def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
     import jax.numpy as xp
 
     def mask(values: Array) -> Array:
-        """Set the values of unconverged loads to NaN."""
         converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
         return xp.where(converged, values, xp.nan)
 
@@ -465,7 +451,6 @@ def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges
     table, azimuths = level_table(level), ray_azimuths(level)
 
     def level_at(angle: Array) -> Array:
-        """Interpolate the level in mm at angles from the centres along the rays."""
         return interpolate(cells, table, ray_directions(centres[:, None], angle, azimuths))
 
     value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))

@@ -33,22 +33,16 @@ from .coupled_search import (
     unfold_fields,
 )
 
-_BLOCK_CELLS = 142_000
-"""Number of cells that are solved together: more exceed the processor's cache."""
+_BLOCK_CELLS = 142_000  # number of cells that are solved together: more exceed the processor's cache
 
 _MAX_ITERATIONS = 30
 
 _SINGLE_FACTOR = 0.8
 """Fraction of the tolerance to which lanes are solved in single precision, before their check in double."""
 
-_MAX_CHECKS = 3
-"""Number of checks in double precision; the search continues after a failed one."""
-
-_SYMMETRY = 1e-6
-"""Largest difference of the shares of two cells of a symmetric contact, by rounding."""
-
-_DROPPED_FRACTION = 0.25
-"""Fraction of converged lanes from which the others continue without them."""
+_MAX_CHECKS = 3  # number of checks in double precision; the search continues after a failed one
+_SYMMETRY = 1e-6  # largest difference of the shares of two cells of a symmetric contact, by rounding
+_DROPPED_FRACTION = 0.25  # fraction of converged lanes from which the others continue without them
 
 
 def can_solve_lanes(bore: BoreContact) -> bool:
@@ -121,13 +115,13 @@ def solve_lanes(
             with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
                 solved = _solve_block(bores, load[row].T, force_scale[block], start[row].T, tolerance)
             solution.displacement[row] = solved.displacement.T
-            solution.pressure[block] = _on_all_meridians(bore, solved.pressure).T
+            pressure = unfold_fields(solved.pressure) if components is _PLANE else solved.pressure
+            solution.pressure[block] = pressure.T
             solution.converged[block] = solved.error <= tolerance
     return solution
 
 
-_PLANE = numpy.array([0, 2])
-"""Components x and z of vectors in the plane of φ = 0."""
+_PLANE = numpy.array([0, 2])  # components x and z of vectors in the plane of φ = 0
 
 _PLANE_TOLERANCE = 1e-9
 """Component of a vector across the plane of φ = 0, relative to its length, below which it lies in the plane."""
@@ -142,11 +136,6 @@ def _are_symmetric(bore: BoreContact, vectors: Numbers) -> Numbers:
     return across
 
 
-def _on_all_meridians(bore: BoreContact, pressure: Numbers) -> Numbers:
-    """Return pressures (meridians, rings, lanes) of a bore that may have been folded."""
-    return pressure if len(pressure) == bore.compliance.grid.meridians else unfold_fields(pressure)
-
-
 class _LaneBores(NamedTuple):
     """Arrays of a bore in double and in single precision, and of the bore in wide cells in single precision."""
 
@@ -156,7 +145,6 @@ class _LaneBores(NamedTuple):
 
 
 def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _LaneBores:
-    """Make the arrays of a bore, on one side of the plane of φ = 0 if it is folded."""
     bores = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
     return _LaneBores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
 
@@ -188,7 +176,6 @@ def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: 
 
 
 def _solve_coarse(bore: BoreArrays, load: Numbers, force_scale: Numbers, start: Numbers) -> tuple[_Solution, Predictor]:
-    """Search in wide cells, in rounds; later rounds have only the lanes that did not converge."""
     lanes = start_coarse(bore, load, force_scale, start)
     predictor = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
     solved = _iterate(bore, lanes, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
@@ -208,7 +195,6 @@ def _solve_coarse(bore: BoreArrays, load: Numbers, force_scale: Numbers, start: 
 
 
 def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: float, max_iterations: int) -> _Solution:
-    """Iterate until all lanes are within a tolerance, or up to a number of iterations."""
     result = _Solution(lanes.displacement.copy(), lanes.pressure.copy(), lanes.error.copy())
     indices = numpy.arange(len(lanes.error))
     for number in range(max_iterations + 1):
@@ -216,17 +202,10 @@ def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: fl
         if active.mean() <= 1 - _DROPPED_FRACTION:
             for name, total in result._asdict().items():
                 total[..., indices] = getattr(lanes, name)
-            indices, lanes, predictor = (
-                indices[active],
-                _select_lanes(lanes, active),
-                predictor.take(numpy.flatnonzero(active)),
-            )
+            indices = indices[active]
+            lanes = Lanes(*(numpy.ascontiguousarray(array[..., active]) for array in lanes))
+            predictor = predictor.take(numpy.flatnonzero(active))
         if not len(indices):
             break
         lanes = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
     return result
-
-
-def _select_lanes(lanes: Lanes, mask: Numbers) -> Lanes:
-    """Return the lanes in a mask."""
-    return Lanes(*(numpy.ascontiguousarray(array[..., mask]) for array in lanes))

@@ -62,7 +62,6 @@ def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, 
 
 
 def _solve_forces(bore: BoreContact, force: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Solve the contacts of balls in equilibrium with forces (N) along axes."""
     reach = bore.compliance.grid.reach
     held = (polar_angle(axes.T) < reach) | (reach > pi / 2)
     start = initial_displacement(bore.gap, bore.compliance.uniform_stiffness, bore.gap.depth, force, axes)
@@ -89,8 +88,7 @@ _MAX_BRACKET_STEPS = 40
 _MIN_BRACKET = 1e-3
 """Width of a bracket, as a fraction of the indentation, that contains nothing but a jump of the half angle."""
 
-_ANGLE_TOLERANCE = 0.005
-"""Largest error of a half angle, as a fraction of a ring's width."""
+_ANGLE_TOLERANCE = 0.005  # largest error of a half angle, as a fraction of a ring's width
 
 _MAX_ANGLE_JUMP = 1.0
 """Largest error of a half angle at a jump, in widths of a ring: all cells of a ring may touch at once."""
@@ -196,11 +194,8 @@ def _read_curve(states: ContactStates | ContactSummaries, load: Numbers) -> Numb
     return make_curve(points, grid.reach, bore.gap.clearance, bore.gap.socket_radius).interpolate(load)
 
 
-_MAX_RIM_NODES = 8
-"""Number of loads from which the tilts of all others at first rim contact are interpolated."""
-
-_MIN_NODE_DISTANCE = 1e-3
-"""Difference of ln load below which two loads need not both be solved."""
+_MAX_RIM_NODES = 8  # number of loads from which the tilts of all others at first rim contact are interpolated
+_MIN_NODE_DISTANCE = 1e-3  # difference of ln load below which two loads need not both be solved
 
 
 def _interpolate_rim_contact(
@@ -249,7 +244,6 @@ def _solve_rim_contact(
     """
 
     def solve_tilted(indices: Numbers, tilt: Numbers) -> ContactStates:
-        """Solve the contacts of these indices at tilts in rad."""
         axes = unit_vectors(tilt, azimuth[indices]).T
         return states.solve(states.bore, load[indices], axes, states.edges)
 
@@ -295,14 +289,9 @@ def _overhang_angles(states: ContactStates) -> Numbers:
     return numpy.minimum(angle, -_POLE_TILT)
 
 
-_BLOCK_LOADS = 512
-"""Number of loads whose fields are in memory at once while summaries are computed."""
-
-_FIELD_COPIES = 4
-"""Number of fields per load at the peak: pressures, their copies in the solver, and levels."""
-
-_SUMMARY_NUMBERS = 100
-"""Number of values per load at the peak of a summary."""
+_BLOCK_LOADS = 512  # number of loads whose fields are in memory at once while summaries are computed
+_FIELD_COPIES = 4  # number of fields per load at the peak: pressures, their copies in the solver, and levels
+_SUMMARY_NUMBERS = 100  # number of values per load at the peak of a summary
 
 
 def check_contact_memory(*shapes: tuple[int, ...]) -> None:
@@ -332,7 +321,6 @@ KeepFunction = Callable[[LoadSolver, BoreContact, Numbers, Numbers, EdgeRelation
 def _keep_fields(
     solve: LoadSolver, bore: BoreContact, load: Numbers, axes: Numbers, edges: EdgeRelation
 ) -> ContactStates:
-    """Solve all loads, and keep their pressure fields."""
     subject = f'pressure fields of {count_text(len(load))} contacts (none with keep="summary")'
     check_memory(subject, _field_bytes(bore, len(load)))
     return solve(bore, load, axes, edges)

@@ -236,6 +236,8 @@ class Sphere(Model):
         TypeError
             Another type in place of a joint; a load without its keyword.
         """
+        from .load_cases import check_contact_memory  # slow to import
+
         reject_unnamed_loads(unnamed)
         if keep is not None and keep != self.keep:
             return replace(self, keep=keep).press(
@@ -251,7 +253,9 @@ class Sphere(Model):
                 anteversion=anteversion,
             )
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
-        _check_contact_memory((*load.values(), tilt, azimuth, inclination, anteversion), (displacement, direction))
+        numbers, vectors = (*load.values(), tilt, azimuth, inclination, anteversion), (displacement, direction)
+        shapes = [numpy.shape(number) for number in numbers if number is not None]
+        check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
         if inclination is not None or anteversion is not None:
             return (
                 self.with_direction(direction, tilt, azimuth)
@@ -276,7 +280,6 @@ class Sphere(Model):
         return replace(self, direction=direction)._press_along(joint, indentation=indentation)
 
     def _press_along(self, joint: Joint, **load: Array | None) -> Contact:
-        """Solve the contact under a load along the direction of this model."""
         return super().press(joint, **load)
 
     def with_direction(
@@ -305,7 +308,6 @@ class Sphere(Model):
         return self.cup.rim - self.cup.chamfer / joint.socket_radius
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of all joints and loads, and mark those that failed."""
         needs("fem", "skfem", "scipy")
         in_cup = self.direction @ numpy.array(self.cup.frame).T
         in_cup = in_cup / numpy.linalg.norm(in_cup, axis=-1, keepdims=True)
@@ -328,7 +330,6 @@ class Sphere(Model):
         )
 
     def _solve_joint(self, joint: Joint, kind: str, loads: Numbers, axes: Numbers) -> JointContacts:
-        """Solve the contacts of one joint under loads (n,) along unit vectors (n, 3) in the cup's frame."""
         from .contact_states import estimate_errors  # slow to import
         from .load_cases import KEEP_FUNCTIONS, LOAD_SOLVERS
 
@@ -377,14 +378,6 @@ class Sphere(Model):
             raise ValueError(f"worn depth of shape {depth.shape} is not allowed: give one depth (mm) per direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
         return numpy.broadcast_to(depth, directions.shape[1:])
-
-
-def _check_contact_memory(numbers: tuple[Array | None, ...], vectors: tuple[Array | None, ...]) -> None:
-    """Check that the numbers of all contacts fit into the memory, before loads and directions are copied."""
-    from .load_cases import check_contact_memory  # slow to import
-
-    shapes = [numpy.shape(number) for number in numbers if number is not None]
-    check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
 
 
 def check_sphere(model: Any) -> Sphere:

@@ -200,9 +200,9 @@ def orient(
     named_load: dict[str, Any] = {**load}
     for number, angle in enumerate(axes[0]):
         report_progress(f"inclination {number + 1} of {len(axes[0])}")
-        contacts.append(
-            _compute_quantities(model.press(joint, inclination=float(angle), anteversion=axes[1], **named_load))
-        )
+        contact: Any = model.press(joint, inclination=float(angle), anteversion=axes[1], **named_load)
+        _ = contact.max_pressure, contact.edge_margin, contact.half_angle  # cached: `seconds` includes them
+        contacts.append(contact)
     return Orientations(
         model=model,
         joint=joint,
@@ -215,7 +215,6 @@ def orient(
 
 
 def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
-    """Raise TypeError for another type than a joint, or for more than one joint or load."""
     check_joint(joint)
     if any(numpy.shape(arrays.to_numpy(number)) for number in joint.numbers()):
         raise TypeError("joint must be one joint, of plain numbers: arrays of joints are not allowed")
@@ -225,17 +224,9 @@ def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
 
 
 def _check_angles(name: str, values: Array) -> Numbers:
-    """Validate a row of ascending angles (n,) of a cup in rad."""
     angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
     if angles.ndim != 1 or angles.size == 0:
         raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
     rising = bool((numpy.diff(angles) > 0).all())
     require(f"{name} from {angles[0]:.4g} to", angles[-1], rising, "angles (rad) rise from one to the next")
     return angles
-
-
-def _compute_quantities(contact: Any) -> OffAxisContact:
-    """Compute and cache some quantities of a contact, so that `seconds` includes them."""
-    _ = contact.max_pressure, contact.edge_margin, contact.half_angle
-    completed: OffAxisContact = contact
-    return completed

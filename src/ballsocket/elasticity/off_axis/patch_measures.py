@@ -19,26 +19,16 @@ from .grid import Grid
 RAYS = 90
 """Number of rays from the centre of a contact to its outline."""
 
-_SECANTS = 5
-"""Number of secants that locate the edge in a step of half a ring's width: half angles within 3e-7 rad."""
-
-_FIT_RADIUS = 2.2
-"""Radius of the quadratic fit around the largest pressure, in widths of a ring."""
-
-_FLAT = 2e-5
-"""Relative difference of two pressures of the fit that the points of the lattice do not resolve."""
+_SECANTS = 5  # number of secants that locate the edge in a step of half a ring's width: half angles within 3e-7 rad
+_FIT_RADIUS = 2.2  # radius of the quadratic fit around the largest pressure, in widths of a ring
+_FLAT = 2e-5  # relative difference of two pressures of the fit that the points of the lattice do not resolve
 
 _FIT_RINGS = 8
 """Number of rings on each side of the largest pressure that the radius can reach: those at the rim are narrow."""
 
-_LATTICE_POINTS = 25
-"""Number of points in each direction at which the fit is evaluated."""
-
-_ROUNDING = 1e-6
-"""Relative error of a polar angle by rounding: directions at the end of the bore belong to it."""
-
-_MIN_MARGIN = 1e-6
-"""Margin in rad of a contact that comes to the end of the bore without reaching it."""
+_LATTICE_POINTS = 25  # number of points in each direction at which the fit is evaluated
+_ROUNDING = 1e-6  # relative error of a polar angle by rounding: directions at the end of the bore belong to it
+_MIN_MARGIN = 1e-6  # margin in rad of a contact that comes to the end of the bore without reaching it
 
 
 class CellArrays(NamedTuple):
@@ -220,12 +210,10 @@ def _project(points: Array, first: Array, second: Array, radius: Array) -> tuple
 
 
 def _quadratic_terms(s: Array, t: Array) -> Array:
-    """Compute the terms 1, s, t, s², s t, t² of a quadratic polynomial: (..., 6)."""
     return arrays.namespace(s).stack([1.0 + 0.0 * s, s, t, s * s, s * t, t * t], axis=-1)
 
 
 def _fit_quadratic(s: Array, t: Array, values: Array, weights: Array) -> Array:
-    """Fit the coefficients (contacts, 6, 1) of a quadratic polynomial to points of weight 1, by least squares."""
     xp = arrays.namespace(s)
     terms = _quadratic_terms(s, t) * weights[..., None]
     normal = terms.swapaxes(1, 2) @ terms
@@ -257,7 +245,6 @@ def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> range:
 
 
 def _angle(cosine: Numbers) -> float:
-    """Compute the angle in rad of a cosine."""
     return float(numpy.arccos(numpy.clip(cosine, -1.0, 1.0)))
 
 
@@ -281,7 +268,6 @@ def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: range) -
     high = xp.where(end_in_bore, end_angle, xp.minimum(end_angle, rim))
 
     def level_at(angle: Array) -> Array:
-        """Interpolate the level in mm at angles along the rays."""
         return interpolate(cells, table, ray_directions(centre, angle, azimuths))
 
     end_level = level_at(high)
@@ -295,7 +281,6 @@ def _find_zero(function: Callable[[Array], Array], low: Array, high: Array, high
     xp = arrays.namespace(low)
 
     def halve(bounds: tuple[Array, ...]) -> tuple[Array, ...]:
-        """Replace one end by the zero of the secant; the value at an end that stays twice is halved."""
         low, high, low_value, high_value, stayed = bounds
         middle = _secant_zero(low, high, low_value, high_value)
         value = function(middle)
@@ -311,7 +296,6 @@ def _find_zero(function: Callable[[Array], Array], low: Array, high: Array, high
 
 
 def _secant_zero(low: Array, high: Array, low_value: Array, high_value: Array) -> Array:
-    """Compute the zero of the secant of two values, or the middle of their arguments if their signs are equal."""
     xp = arrays.namespace(low)
     fall = low_value - high_value
     crosses = (low_value > 0) & (high_value <= 0)

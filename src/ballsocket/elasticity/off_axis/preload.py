@@ -26,8 +26,7 @@ _MAX_BISECTIONS = 40
 
 _RELATIVE_TOLERANCE = 1e-4
 
-_MAX_INTERFERENCES = 4.0
-"""Displacement, as a multiple of the interference, at which a part of every contact is open."""
+_MAX_INTERFERENCES = 4.0  # displacement, as a multiple of the interference, at which a part of every contact is open
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,8 +110,8 @@ class Preload:
         start = self.equilibrium.displacement @ numpy.array(self.model.cup.frame)
 
         def is_closed(distance: float) -> bool:
-            """Check if the bore touches the ball everywhere at a distance in mm from equilibrium."""
-            return _touches_everywhere(self.displace(start + distance * vector / numpy.linalg.norm(vector)))
+            contact = self.displace(start + distance * vector / numpy.linalg.norm(vector))
+            return bool((contact.pressure_map[2] > 0).all())
 
         return self._bisect_length(is_closed)
 
@@ -149,16 +148,10 @@ class Preload:
         return low
 
 
-def _touches_everywhere(contact: OffAxisContact) -> bool:
-    """Return True if every cell of a single contact is loaded."""
-    return bool((contact.pressure_map[2] > 0).all())
-
-
 MAX_RIM_STRAIN = 0.1
 """Largest compression of the liner at its rim over its thickness, up to which a pull-out force is reported."""
 
-_PULL_OUT_STEPS = 25
-"""Number of displacements of the ball on its way out."""
+_PULL_OUT_STEPS = 25  # number of displacements of the ball on its way out
 
 PULL_OUT_LIMITS = (
     "pull-out: quasi-static, along the cup's axis; linear elasticity of the liner on its backing, without yield or "
@@ -283,7 +276,6 @@ def pull_out(model: Sphere, joint: Joint, friction: float = 0.0) -> PullOut:
 
 
 def _contact_outwards(model: Sphere, joint: Joint, displacements: Numbers) -> OffAxisContact:
-    """Solve the contacts of a ball at displacements (steps,) in mm out of its socket."""
     opening = numpy.array(model.cup.opening)
     contact: OffAxisContact = model.press(joint, displacement=displacements[:, None] * opening)  # type: ignore[assignment]
     return contact

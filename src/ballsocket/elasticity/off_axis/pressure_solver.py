@@ -20,11 +20,8 @@ TOLERANCE = 1e-6
 
 _MAX_ITERATIONS = 200
 
-_MIN_SINGLE_RESIDUAL = 1e-5
-"""Tolerance of the overlap below which convergence is checked in double precision."""
-
-_MIN_SINGLE_TOLERANCE = 1e-3
-"""Tolerance of pressure changes below which they are computed in double precision."""
+_MIN_SINGLE_RESIDUAL = 1e-5  # tolerance of the overlap below which convergence is checked in double precision
+_MIN_SINGLE_TOLERANCE = 1e-3  # tolerance of pressure changes below which they are computed in double precision
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,13 +61,15 @@ def solve_pressure(
     tolerance : float or array (batch,)
         Largest relative complementarity residual.
     """
-    initial = _estimate_pressure(compliance, overlap) if start is None else start
+    if start is None:
+        stiff = compliance.pressure(numpy.maximum(overlap, 0.0))
+        start = numpy.where(overlap > 0, numpy.maximum(stiff, 0.0), 0.0)
     tolerances = numpy.broadcast_to(tolerance, len(overlap))
     pressure, converged = numpy.zeros_like(overlap), numpy.zeros(len(overlap), dtype=bool)
     energy = numpy.zeros(len(overlap))
     active = numpy.flatnonzero(overlap.max(axis=(1, 2)) > 0)
     converged[overlap.max(axis=(1, 2)) <= 0] = True
-    iteration = _ConjugateGradients(compliance, overlap[active], initial[active])
+    iteration = _ConjugateGradients(compliance, overlap[active], start[active])
     for number in range(_MAX_ITERATIONS):
         finished = iteration.check_convergence(tolerances[active])
         if finished.any() or number == _MAX_ITERATIONS - 1:
@@ -81,12 +80,6 @@ def solve_pressure(
             break
         iteration.advance_pressures()
     return PressureSolution(pressure=pressure, converged=converged, energy=energy, iterations=number)
-
-
-def _estimate_pressure(compliance: Compliance, overlap: Numbers) -> Numbers:
-    """Estimate the pressures from the stiffness of a bore under pressure everywhere; 0 outside the overlap."""
-    positive = numpy.maximum(overlap, 0.0)
-    return numpy.where(positive > 0, numpy.maximum(compliance.pressure(positive), 0.0), 0.0)
 
 
 class _ConjugateGradients:
@@ -146,12 +139,8 @@ class _ConjugateGradients:
         self.descent = integrate(self.residual, gradient)
         self.direction = numpy.where(self.residual != 0, gradient + factor[:, None, None] * self.direction, 0)
         response = self.compliance.displacement_in_single_precision(self.direction)
-        length = integrate(self.residual, self.direction) / integrate(self.direction, response)
+        length = (integrate(self.residual, self.direction) / integrate(self.direction, response))[:, None, None]
         self.previous_residual = self.residual
-        self._change_pressures(length[:, None, None], response)
-
-    def _change_pressures(self, length: Numbers, response: Numbers) -> None:
-        """Change the pressures along the search direction by a length, and set negative ones to 0."""
         pressure = self.pressure + length * self.direction
         self.displacement = self.displacement + length * response
         pulling = (pressure < 0).any(axis=(1, 2))
@@ -200,7 +189,6 @@ def solve_pressure_change(
     target = overlap * root
 
     def precondition(residual: Numbers) -> Numbers:
-        """Apply the stiffness of a bore under pressure everywhere."""
         return root * compliance.pressure(root * residual) + open_stiffness * residual
 
     change = precondition(target) if start is None else root * start
@@ -220,6 +208,5 @@ def solve_pressure_change(
 
 
 def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
-    """Divide two arrays; the quotient is 0 where the denominator is not positive."""
     quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
     return quotient

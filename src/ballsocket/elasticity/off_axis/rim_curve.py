@@ -32,8 +32,7 @@ from .coupled_search import (
 from .grid import Grid
 from .patch_measures import make_cell_arrays
 
-_POINTS = 9
-"""Number of contacts of a curve."""
+_POINTS = 9  # number of contacts of a curve
 
 _MIN_RINGS, _MAX_BORE_SHARE, _MAX_RIM_ANGLE = 3.0, 0.95, 1.1
 """Range of angles from the displacement to the rim: three rings, up to a share of the bore, and to 1.1 rad."""
@@ -41,26 +40,13 @@ _MIN_RINGS, _MAX_BORE_SHARE, _MAX_RIM_ANGLE = 3.0, 0.95, 1.1
 _COARSE_TARGETS, _COARSE_ITERATIONS = (0.15, 0.15, 0.15, 0.15, 0.15), 9
 """Margins in ring widths that are approached in wide cells one after the other, and iterations for each."""
 
-_FINE_TARGETS, _FINE_ITERATIONS = (0.05, 0.02, 0.01, 0.0, 0.0), 12
-"""The same in the cells of the bore."""
-
-_FIRST_RATIO = 2.0
-"""Increase of the half angle of a rigid overlap by decrease of the margin, before it is known."""
-
-_MIN_FACTOR, _MAX_FACTOR = 0.5, 2.5
-"""Limits of the known increase, relative to the first one."""
-
-_MAX_STEP = 0.5
-"""Largest step of the logarithm of an indentation."""
-
-_NEGATIVE_FACTOR = 3.0
-"""Factor of negative margins, which change more slowly with the overlap."""
-
-_FORCE_SCALE = 1e20
-"""Force in N that makes the residual of the force negligible: the displacement is prescribed."""
-
-_MAX_ERROR = 1e-4
-"""Largest residual of the overlaps of a contact of the curve."""
+_FINE_TARGETS, _FINE_ITERATIONS = (0.05, 0.02, 0.01, 0.0, 0.0), 12  # the same in the cells of the bore
+_FIRST_RATIO = 2.0  # increase of the half angle of a rigid overlap by decrease of the margin, before it is known
+_MIN_FACTOR, _MAX_FACTOR = 0.5, 2.5  # limits of the known increase, relative to the first one
+_MAX_STEP = 0.5  # largest step of the logarithm of an indentation
+_NEGATIVE_FACTOR = 3.0  # factor of negative margins, which change more slowly with the overlap
+_FORCE_SCALE = 1e20  # force in N that makes the residual of the force negligible: the displacement is prescribed
+_MAX_ERROR = 1e-4  # largest residual of the overlaps of a contact of the curve
 
 _MAX_MARGIN, _MAX_BRACKET = 0.05, 0.15
 """Largest margin in ring widths at the end of a search, and the same if the last two margins have opposite signs."""
@@ -168,19 +154,15 @@ def cached_rim_points(compliance: Compliance, edge_softness: float, inset: float
     if coarser is None:
         raise ValueError("contacts at the rim need a grid with a coarser one")
     wide, fine = (_make_rim_cells(part, edge_softness, inset) for part in (coarser, compliance))
-    rim_angle = _spread_rim_angles(compliance.grid)
+    grid = compliance.grid
+    largest = min(_MAX_BORE_SHARE * grid.reach, _MAX_RIM_ANGLE)
+    rim_angle = numpy.linspace(min(_MIN_RINGS * grid.width, largest / 2), largest, _POINTS)
     with numpy.errstate(all="ignore"):  # a contact that diverges is left out
         search = _RimSearch(wide, rim_angle)
         search.approach_rim(_COARSE_TARGETS, _COARSE_ITERATIONS)
         search.continue_in(fine)
         search.approach_rim(_FINE_TARGETS, _FINE_ITERATIONS)
         return search.touching_points()
-
-
-def _spread_rim_angles(grid: Grid) -> Numbers:
-    """Choose the angles in rad from displacements to the rim."""
-    largest = min(_MAX_BORE_SHARE * grid.reach, _MAX_RIM_ANGLE)
-    return numpy.linspace(min(_MIN_RINGS * grid.width, largest / 2), largest, _POINTS)
 
 
 def _make_rim_cells(compliance: Compliance, edge_softness: float, inset: float) -> _RimCells:
@@ -217,7 +199,6 @@ class _RimSearch:
 
     @property
     def _displacement(self) -> Numbers:
-        """Displacements of the balls towards the rim and the dome in mm: (2, contacts)."""
         polar = self.cells.grid.reach - self.rim_angle
         axes = numpy.stack([numpy.sin(polar), numpy.cos(polar)])
         displacement: Numbers = (axes * (1 + numpy.exp(self.log_indentation))).astype(numpy.float32)
@@ -243,13 +224,10 @@ class _RimSearch:
         decrease = self.previous.margin - self.points.margin
         factor = numpy.where(decrease == 0, 1.0, change / decrease / self.first_ratio)
         lowest = numpy.minimum(self.previous.margin, self.points.margin)
-        factor = numpy.where(lowest > -self._max_overlap, factor, 1.0)
+        # size of a negative margin from which it no longer changes
+        max_overlap = 0.9 * _NEGATIVE_FACTOR * float(self.cells.edge_nodes[-1] - self.cells.edge_nodes[-2])
+        factor = numpy.where(lowest > -max_overlap, factor, 1.0)
         return self.first_ratio * numpy.clip(factor, _MIN_FACTOR, _MAX_FACTOR)
-
-    @property
-    def _max_overlap(self) -> float:
-        """Size of a negative margin in rad from which it no longer changes."""
-        return 0.9 * _NEGATIVE_FACTOR * float(self.cells.edge_nodes[-1] - self.cells.edge_nodes[-2])
 
     def _press(self, iterations: int) -> RimPoints:
         """Solve the contacts of the displaced balls with the last ring open."""

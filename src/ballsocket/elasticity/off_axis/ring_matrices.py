@@ -38,11 +38,8 @@ class RingGrid(Protocol):
     def max_harmonic(self) -> int: ...
 
 
-_MAX_CONSECUTIVE_HARMONIC = 6
-"""Largest m up to which every harmonic is computed."""
-
-_STEP_GROWTH = 1.15
-"""Ratio of the steps between the harmonics that are computed beyond."""
+_MAX_CONSECUTIVE_HARMONIC = 6  # largest m up to which every harmonic is computed
+_STEP_GROWTH = 1.15  # ratio of the steps between the harmonics that are computed beyond
 
 _MODES_PER_RING = 6  # multiple of the number of modes that the rings resolve
 _POINTS_PER_RING = 8  # Gauss points
@@ -102,7 +99,6 @@ def sphere_rings(compliance: ModalCompliance, grid: RingGrid) -> Numbers:
     limit = modal[-1]  # compliance of all higher modes
 
     def compute_harmonics(m: Numbers) -> Numbers:
-        """Compute the compliance matrices between rings for harmonics m."""
         integrals = legendre_ring_integrals(grid, m, count)
         return 2 * pi * (integrals * (modal - limit)) @ integrals.swapaxes(1, 2) + limit * numpy.diag(grid.ring_areas)
 
@@ -177,7 +173,6 @@ def _unit_cup_rings(shape: SocketShape, edges: tuple[float, ...], max_harmonic: 
     rings = numpy.array(edges)
 
     def compute_matrices() -> Numbers:
-        """Compute the compliance matrices between rings of all harmonics by finite elements."""
         from ..finite_elements.harmonics import socket_harmonics  # slow to import
 
         meridian = socket_harmonics(shape, rings)
@@ -229,12 +224,10 @@ def cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
 
 
 def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
-    """Compute derivatives of `cup_rings` by the numbers of the liner, without a cache."""
     from ..finite_elements.harmonics import socket_harmonics  # slow to import
 
     @cache
     def mesh(shape: SocketShape) -> Harmonics:
-        """Mesh a shape once."""
         return socket_harmonics(shape, grid.edges)
 
     middle, stiffness_slopes = mesh(socket_shape(joint, cup)), []

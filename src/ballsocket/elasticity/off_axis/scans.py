@@ -16,18 +16,14 @@ from ...core.mesh_files import read_mesh_file
 from ...core.quantities import AIM
 from .bore_shapes import InterpolatedDeviation
 
-_NEIGHBOURS = 24
-"""Number of nearest points that the local plane is fitted to."""
-
-_SLOPE_PENALTY = 1e-3
-"""Regularisation of the slope of the local plane."""
+_NEIGHBOURS = 24  # number of nearest points that the local plane is fitted to
+_SLOPE_PENALTY = 1e-3  # regularisation of the slope of the local plane
 
 _MIN_POINTS = 200
 _MAX_COORDINATE = 1e6  # mm
 _MIN_REACH = radians(25.0)
 
-_MAX_ROUGHNESS = 0.03
-"""Root mean square deviation of a bore, as a fraction of its radius."""
+_MAX_ROUGHNESS = 0.03  # root mean square deviation of a bore, as a fraction of its radius
 
 _MAX_AVERAGING_ANGLE = 0.35
 _AVERAGING_ANGLE = radians(4.0)
@@ -81,7 +77,6 @@ class Scan(InterpolatedDeviation):
 
     @cached_property
     def _search_tree(self) -> Any:
-        """Search tree for the nearest measured directions."""
         from scipy.spatial import cKDTree  # slow to import
 
         return cKDTree(self.directions.T)
@@ -165,7 +160,6 @@ def _cup_axes(axis: Numbers, azimuth: float) -> Numbers:
 
 
 def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> tuple[Numbers, Numbers]:
-    """Average directions (3, points) and deviations (points,) in boxes of this size around the unit sphere."""
     boxes = numpy.round(directions.T / size).astype(int)
     _, box, count = numpy.unique(boxes, axis=0, return_inverse=True, return_counts=True)
     sums = numpy.stack([numpy.bincount(box.ravel(), component) for component in directions])
@@ -173,7 +167,6 @@ def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> t
 
 
 def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
-    """Fit centre and radius of a sphere in mm to points, by least squares of the distances."""
     from scipy.optimize import least_squares  # slow to import
 
     rows = numpy.hstack([2 * points, numpy.ones((len(points), 1))])
@@ -181,7 +174,6 @@ def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
     start = numpy.append(linear[:3], numpy.sqrt(max(linear[3] + linear[:3] @ linear[:3], 1e-12)))
 
     def distance_residuals(x: Numbers) -> Numbers:
-        """Compute the distances of the points from the sphere with centre x[:3] and radius x[3]."""
         residuals: Numbers = numpy.linalg.norm(points - x[:3], axis=1) - x[3]
         return residuals
 

@@ -17,8 +17,7 @@ from .directions import unit_vectors
 BORE, BALL, EDGE = 0, 1, 2
 """Numbers of the bodies in the cell data `part`."""
 
-_BALL_RINGS = 90
-"""Number of rings in which the ball is drawn."""
+_BALL_RINGS = 90  # number of rings in which the ball is drawn
 
 
 def write_vtk(contact: OffAxisContact, path: Path) -> None:
@@ -65,7 +64,6 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
 
 
 def _surface_gap(contact: OffAxisContact) -> Numbers:
-    """Compute the gap between the deformed surfaces in mm, (rings, meridians); 0 in the contact."""
     state = contact.single_state
     pressure = state.equilibrium.pressure
     deformation = state.bore.compliance.displacement(pressure)

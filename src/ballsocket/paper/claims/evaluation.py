@@ -168,7 +168,6 @@ class Claim:
         return self.name.replace("-", "_").replace(".", "_")
 
     def __call__(self, reference: Model) -> Finding:
-        """Judge the claim with a reference model."""
         return judge(self, reference)
 
 

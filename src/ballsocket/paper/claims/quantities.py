@@ -53,7 +53,7 @@ def unbounded_moduli(_: Model) -> Computed:
 def errors_of_linear_kinematics(_: Model) -> Computed:
     """Compute the errors of Eq. (6) against Eq. (5), both with Bartel's modulus, over the joints of Table 1."""
     joints = cases.outline()[-1]
-    families = (cases.with_clearance(joints, cases.CLEARANCES[index]) for index in (0, -1))
+    families = (replace(joints, clearance=cases.CLEARANCES[index]) for index in (0, -1))
     pairs = ((Vessel().press(f, force=cases.LOAD), Bartel().press(f, force=cases.LOAD)) for f in families)
     worst = _largest_errors(pairs, COMPARED)
     return {f"{quantity_title(name)}, worst, %": value for name, value in worst.items()}
@@ -102,7 +102,7 @@ def stiffening_by_confinement(reference: Model) -> Evaluation:
         cases.joint(head_radius=17.9, clearance=clearance, liner_thickness=6.75, poisson=poisson)
         for clearance in (0.05, 0.2)
     )
-    thick, thin = (cases.by_ratio(numpy.array([ratio, ratio]), poisson) for ratio in (1.2, 7.5))
+    thick, thin = (cases.paper_joint(poisson, numpy.array([ratio, ratio])) for ratio in (1.2, 7.5))
     rise = {}
     for name, joints in (("c 0.05 mm", tight), ("c 0.2 mm", loose), ("R2/L 1.2", thick), ("R2/L 7.5", thin)):
         contact = reference.press(joints, force=cases.LOAD)
@@ -228,9 +228,9 @@ def _contacts_above_0_45(reference: Model) -> list[tuple[str, Joint, Contact]]:
     """Return name, joints and contacts at 1 and 3 kN of families with ν above 0.45, from thick to thin liners."""
     thick, thin = numpy.array([0.8, 1.2, 1.8, 2.8, 4.1]), numpy.array([5.8, 7.5])
     families = {
-        "ν 0.46": cases.by_ratio(numpy.append(thick, thin), 0.46),
-        "ν 0.49, R2/L up to 4.1": cases.by_ratio(thick, 0.49),
-        "ν 0.49, thinner liners": cases.by_ratio(thin, 0.49),
+        "ν 0.46": cases.paper_joint(0.46, numpy.append(thick, thin)),
+        "ν 0.49, R2/L up to 4.1": cases.paper_joint(0.49, thick),
+        "ν 0.49, thinner liners": cases.paper_joint(0.49, thin),
     }
     return [(name, family, reference.press(family, force=_TWO_FORCES)) for name, family in families.items()]
 
@@ -256,7 +256,6 @@ def dense_elements(size: float = 0.05) -> FiniteElement:
 
 
 def _element_count(contact: Contact) -> float:
-    """Return the number of elements of a meshed contact."""
     assert isinstance(contact, MeshedContact)
     return float(contact.mesh.elements)
 
@@ -335,15 +334,13 @@ def _errors_in_table(model: Model, table: Numbers) -> dict[str, float]:
 
 def half_angles_of_jin(reference: Model) -> Computed:
     """Compute the half angles in degrees of Jin et al. 1999: 2.5 kN, 1000 MPa, ν 0.4."""
-    angles = {}
-    for name, (radius, thickness) in cases.JIN_HEADS.items():
-        joints = Joint(
-            ball_radius=radius, clearance=cases.JIN_CLEARANCES, liner_thickness=thickness, liner=UHMWPE, ball=COCR
-        )
-        half_angle = numpy.degrees(reference.press(joints, force=cases.JIN_FORCE).half_angle)
-        for clearance, angle in zip(cases.JIN_CLEARANCES, half_angle, strict=True):
-            angles[f"{name}, L {thickness:g}, c {clearance:g}, °"] = float(angle)
-    return angles
+    joints, force = cases.jin_joints()
+    half_angles = numpy.degrees(reference.press(joints, force=force).half_angle)
+    return {
+        f"{name}, L {thickness:g}, c {clearance:g}, °": float(angle)
+        for (name, (_, thickness)), row in zip(cases.JIN_HEADS.items(), half_angles, strict=True)
+        for clearance, angle in zip(cases.JIN_CLEARANCES, row, strict=True)
+    }
 
 
 def stresses_of_plank(_: Model) -> Evaluation:

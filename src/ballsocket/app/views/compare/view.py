@@ -60,7 +60,9 @@ class Compare(View):
             self.page.ask(base=str(value))
         elif key == "remove":
             check_names([value], list(compared_files(screen))[1:], "among the compared designs")
-            self.page.ask(**_without_compared(screen, list(compared_files(screen)).index(value)))
+            column = list(compared_files(screen)).index(value)
+            base = int(screen.base) - (column < int(screen.base))  # the same design unless that is removed
+            self.page.ask(beside=(*screen.beside[: column - 1], *screen.beside[column:]), base=str(base))
 
     def show(self, screen: Screen) -> None:
         files = compared_files(screen)
@@ -111,16 +113,12 @@ def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
     return (*screen.beside, file)
 
 
-def _without_compared(screen: Screen, column: int) -> dict[str, Any]:
-    """Return the changes that remove the design of a column; the base stays the same design unless that is removed."""
-    base = int(screen.base) - (column < int(screen.base))
-    return {"beside": (*screen.beside[: column - 1], *screen.beside[column:]), "base": str(base)}
-
-
 def compared_files(screen: Screen) -> dict[str, JointFile]:
     """Name the designs uniquely, all under the load on the screen; a preset is the example of an empty comparison."""
     files = {_PRESENT: screen.file}
-    for file in screen.beside or _example(screen):
+    preset = next(joints[name] for name in _EXAMPLES if joints[name] != screen.file.joint)
+    example = JointFile(preset, screen.file.load, screen.file.cup)
+    for file in screen.beside or (example,):
         base = name = file.joint.name or "added design"
         number = 2
         while name in files:
@@ -134,11 +132,6 @@ def base_of(files: Mapping[str, JointFile], screen: Screen) -> str:
     return list(files)[min(int(screen.base), len(files) - 1)]
 
 
-def _example(screen: Screen) -> tuple[JointFile, ...]:
-    preset = next(joints[name] for name in _EXAMPLES if joints[name] != screen.file.joint)
-    return (JointFile(preset, screen.file.load, screen.file.cup),)
-
-
 def _table(designs: Designs, base: str, screen: Screen) -> str:
     return design_table(with_drawings(designs), base, screen)
 
@@ -150,7 +143,6 @@ def _pressed(files: Mapping[str, JointFile], screen: Screen) -> Designs:
 
 
 def _heading(name: str, file: JointFile, screen: Screen) -> str:
-    """Write the sizes of a design, with a button that removes an added one."""
     head, liner = (
         screen.reading.with_unit(JOINT[key], float(getattr(file.joint, key)))
         for key in ("head_diameter", "liner_thickness")
@@ -186,5 +178,4 @@ def _contacts(designs: Designs) -> dict[str, Contact]:
 
 
 def _lines(files: Mapping[str, JointFile]) -> dict[str, LineStyle]:
-    """Return the line style of each design by its position."""
     return {name: numbered(index) for index, name in enumerate(files)}

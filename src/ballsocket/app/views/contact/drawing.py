@@ -22,8 +22,7 @@ Aim = tuple[float, Unit]
 _WIDTH, _HEIGHT = 624.0, 486.0
 _MIDDLE = (300.0, 238.0)
 _REACH = 168.0  # pixels from the centre to the outermost layer
-_STEEP_TILT = radians(40.0)
-"""Tilt from which the label of the load is to the left of its arrow."""
+_STEEP_TILT = radians(40.0)  # tilt from which the label of the load is to the left of its arrow
 _ARROW_GAP, _MIN_ARROW, _ARROW_GROWTH = 8.0, 26.0, 54.0
 """Pixels of the load's arrow: gap to the ball, length without load, and the most that the load adds."""
 
@@ -60,7 +59,6 @@ def frame_of(file: JointFile) -> DrawingFrame:
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float, kind: str, size: float = 7.0) -> str:
-    """Draw a line with an arrow head at its end."""
     away = atan2(y2 - y1, x2 - x1)
     wings = [(x2 - size * cos(away + angle), y2 - size * sin(away + angle)) for angle in (0.4, -0.4)]
     head = " ".join(f"{x:.1f},{y:.1f}" for x, y in ((x2, y2), *wings))
@@ -73,7 +71,6 @@ def _both_ways(x1: float, y1: float, x2: float, y2: float) -> str:
 
 
 def _labelled_value(lines: tuple[str, str], x: float, y: float, anchor: str) -> str:
-    """Write a name and its value below it."""
     return svg.text(x, y, lines[0], "quiet", anchor) + svg.text(x, y + 17, lines[1], "value", anchor)
 
 
@@ -127,7 +124,6 @@ def _leader(x1: float, y1: float, x2: float, y2: float) -> str:
 
 
 def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
-    """Draw the outer diameter below the cup."""
     x_left, x_right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
     for x in (x_left, x_right):
         yield svg.line(x, frame.y + 4, x, low + 5, "thin")
@@ -136,7 +132,6 @@ def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
 
 
 def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
-    """Label ball and layers with their materials."""
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]

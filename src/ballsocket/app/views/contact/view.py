@@ -38,6 +38,8 @@ _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
+_NO_STRESSES = "this model has no stresses inside the liner"
+_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
 class Press(LongView):
@@ -205,7 +207,6 @@ class Press(LongView):
         )
 
     def _real_document(self, screen: Screen, comparison: Comparison, limit: AxialLimit) -> Document:
-        """Return the content for a load that needs the real cup."""
         if not is_prepared(screen.file):
             raise ValueError("the real cup is still being prepared: wait until its pressure is there")
         contact, units = pressed_in_cup(screen.file), screen.reading.units
@@ -223,10 +224,6 @@ class Press(LongView):
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
         first = (screen.answered_by, *screen.shown)
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
-
-
-_NO_STRESSES = "this model has no stresses inside the liner"
-_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
 def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
@@ -250,7 +247,6 @@ def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
 
 
 def _fields(screen: Screen) -> dict[str, Any]:
-    """Return the inputs of the view."""
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
         "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
@@ -260,7 +256,6 @@ def _fields(screen: Screen) -> dict[str, Any]:
 
 
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
-    """Tabulate the contacts with their notes."""
     heads, *rows = number_rows("model", comparison, screen.reading)
     return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import degrees
 
 import numpy
@@ -16,8 +15,7 @@ from ...pictures.contour_map import MapPlane, contour_map, outlined
 from ...widgets.reading import Reading
 from .worker import LEWINNEK, OrientationMap
 
-_MIN_POINTS, _FINE_POINTS = 4, 61
-"""Values an axis: least for a cubic spline, and of a smooth contour."""
+_MIN_POINTS, _FINE_POINTS = 4, 61  # values an axis: least for a cubic spline, and of a smooth contour
 
 
 def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
@@ -27,22 +25,22 @@ def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Re
     x, y, (values, edge_distance) = _refined(
         numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion), fields
     )
-    plane = MapPlane(
-        x=x,
-        y=y,
-        x_label=CUP["inclination"].label(),
-        y_label=CUP["anteversion"].label(),
-    )
+    plane = MapPlane(x=x, y=y, x_label=CUP["inclination"].label(), y_label=CUP["anteversion"].label())
     values = numpy.where(numpy.isfinite(values), values, numpy.nan) * reading.unit(QUANTITIES[quantity]).factor
     rim = plane.contours(edge_distance)
     label = reading.label(QUANTITIES[quantity])
+    high = float(numpy.nanmax(values, initial=0.0))
+    low = float(numpy.nanmin(values, initial=high if quantity == "max_pressure" else 0.0))  # 0 is the rim
+    left, right, bottom, top = LEWINNEK
+    corner = f'x="{plane.across(left):.1f}" y="{plane.up(top):.1f}"'
+    size = f'width="{plane.across(right) - plane.across(left):.1f}" height="{plane.up(bottom) - plane.up(top):.1f}"'
     marks = [
         *(outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in rim.lines(0.0)),
-        *_lewinnek_zone(plane),
+        outlined("rect", "zone", f"{corner} {size}"),
         *plane.ring(degrees(cup.inclination), degrees(cup.anteversion), "here"),
     ]
     labels = label, _map_description(orientations, label, reading)
-    return contour_map(plane, values, _levels(quantity, values), labels, marks, "cup.pick")
+    return contour_map(plane, values, svg.levels_between(low, high, 7), labels, marks, "cup.pick")
 
 
 def _refined(
@@ -55,22 +53,7 @@ def _refined(
     return fine_x, fine_y, [RectBivariateSpline(y, x, field)(fine_y, fine_x) for field in fields]
 
 
-def _levels(quantity: str, values: numpy.ndarray) -> list[float]:
-    """Return round levels around the values; those of an edge distance include 0."""
-    high = float(numpy.nanmax(values, initial=0.0))
-    low = float(numpy.nanmin(values, initial=high if quantity == "max_pressure" else 0.0))
-    return svg.levels_between(low, high, 7)
-
-
-def _lewinnek_zone(plane: MapPlane) -> Iterator[str]:
-    x_low, x_high, low, high = LEWINNEK
-    position = f'x="{plane.across(x_low):.1f}" y="{plane.up(high):.1f}"'
-    size = f'width="{plane.across(x_high) - plane.across(x_low):.1f}" height="{plane.up(low) - plane.up(high):.1f}"'
-    yield outlined("rect", "zone", f"{position} {size}")
-
-
 def _map_description(orientations: OrientationMap, label: str, reading: Reading) -> str:
-    """Describe the map in a sentence for screen readers."""
     free = orientations.held & (orientations.edge_distance > 0)
     if not free.any():
         return f"{label}: in every orientation of the map the contact reaches the rim"

@@ -32,14 +32,14 @@ from ...widgets.words import VERDICT_KINDS, checked, column_of, number_cell, tru
 from .charts import angle_map
 from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
 
-_FIELDS = (
-    *("inclination", "anteversion", "tilt", "inwards", "forwards"),
-    *("arc_of_cover", "chamfer", "aim", "side"),
-)
+_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
 <figure><figcaption>In three dimensions</figcaption><div id="cup-viewer"></div></figure></div>"""
+
+_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
+_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 
 
 class CupView(LongView):
@@ -89,7 +89,6 @@ class CupView(LongView):
             self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
 
     def _ask_map(self, screen: Screen) -> None:
-        """Show the map of orientations, or the reason why there is none."""
         if "tilt" not in screen.file.aim:
             self.orientations.show(screen)
             return
@@ -154,7 +153,6 @@ _KEY = (
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
-    """Press the load, and return the HTML of its numbers and pictures by their element."""
     contact, reading = pressed_in_cup(screen.file), screen.reading
     if not float(contact.half_angle) > 0:
         return {"numbers": _verdict(contact, reading), "map": "", "viewer": ""}
@@ -163,9 +161,6 @@ def _drawn(screen: Screen) -> dict[str, str]:
         "map": pressed_bore(contact, reading),
         "viewer": pressed_viewer(contact, reading),
     }
-
-
-_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
 
 
 def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
@@ -180,16 +175,12 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
 
 
 def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
-    """Yield title and value of each quantity of a contact, for readers."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
             internal = value / quantity.written.factor
             yield [_TITLES.get(name, quantity.title), reading.with_unit(quantity, internal)]
     yield ["contact at the rim", value_text(bool(contact.edge_loaded))]
-
-
-_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
@@ -214,7 +205,6 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
-    """State in words if the contact stays on the bore."""
     if contact.status.failed:
         verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
         return _verdict_html(verdict, f"No contact on the bore: {contact.status.sentence}")

@@ -12,7 +12,7 @@ import numpy
 
 from ....elasticity.finite_elements.mesh import socket_shape
 from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis import Orientations, Sphere, orient
+from ....elasticity.off_axis import Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....elasticity.off_axis.grid import rim_grid
 from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
@@ -25,8 +25,7 @@ from ...results import RESULTS, without_name
 from ...running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
-ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
-"""Orientations of the map."""
+ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))  # orientations of the map
 
 LEWINNEK = (30.0, 50.0, 5.0, 25.0)
 """Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""
@@ -43,13 +42,8 @@ def is_prepared(file: JointFile) -> bool:
     """Return True if the ring matrices of a bore are known, in memory or on disk: a press then takes a moment."""
     bore = bore_of(file)
     if RESULTS.get(("cup", bore)) is None and _are_rings_cached(*bore):
-        store_prepared(bore)
+        RESULTS.put(("cup", bore), True)
     return RESULTS.get(("cup", bore)) is not None
-
-
-def store_prepared(bore: tuple[Joint, Cup]) -> None:
-    """Store that the ring matrices of a bore are known."""
-    RESULTS.put(("cup", bore), True)
 
 
 def _are_rings_cached(joint: Joint, cup: Cup) -> bool:
@@ -113,10 +107,6 @@ def map_orientations(file: JointFile, report: Report) -> OrientationMap:
 
     with progress_to(heard):
         orientations = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
-    return _as_map(orientations)
-
-
-def _as_map(orientations: Orientations) -> OrientationMap:
     return OrientationMap(
         inclination=orientations.inclination,
         anteversion=orientations.anteversion,

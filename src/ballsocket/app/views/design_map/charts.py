@@ -9,13 +9,13 @@ from typing import Any
 import numpy
 
 from ....core.quantities import QUANTITIES
-from ....studies.limits import Limit, margin_on_plane
+from ....studies.limits import Limit, margin_on_plane, relative_margins
 from ...pictures import svg
 from ...pictures.contour_map import MapPlane, contour_map, outlined
 from ...state.screen import Screen
 from ...widgets.limit_rows import limit_text, present_value
 from ...widgets.reading import Reading
-from .worker import allowed_points, axis_label, limits_of, margins
+from .worker import allowed_points, axis_label, limits_of
 
 _BELOW_ZERO = -1e300
 _MAX_LEVELS = 12
@@ -49,7 +49,7 @@ def map_picture(results: Any, screen: Screen) -> str:
 
 def _veil(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
     """Fade the part of the map that is undecided, and once more the part that exceeds a limit."""
-    for values in margins(results, screen):
+    for values in relative_margins(results, limits_of(screen), screen.across.name, screen.up.name):
         if outline := plane.contours(values).area(_BELOW_ZERO, 0.0):
             yield f'<path class="veil" fill-rule="evenodd" d="{outline}"/>'
 

@@ -41,9 +41,7 @@ from .worker import (
     picked_point,
 )
 
-_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
-"""Quantities that the rows of limits offer."""
-
+_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
 _AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
@@ -74,7 +72,6 @@ def _axis_setting(which: str) -> Setting:
 
 
 def _end_setting(key: str) -> Setting:
-    """Return the box of one end of an axis."""
     which, end = _ENDS[key]
     label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
 
@@ -157,7 +154,7 @@ class DesignMap(View):
             screen.limits,
             screen.reading,
             self._present_value,
-            lambda limits: allowed_points(_map_of(screen), replace(screen, limits=limits)),
+            lambda limits: allowed_points(mapped(screen), replace(screen, limits=limits)),
         )
         self._put_fields()
         if limits is not None:
@@ -165,16 +162,14 @@ class DesignMap(View):
 
     def _present_value(self, name: str) -> float:
         """Return a number of the design on the screen by the model of the map."""
-        design = press_designs({_PRESENT: self.page.screen.file}, _map_of(self.page.screen).attrs["model"], {})[
-            _PRESENT
-        ]
-        return present_value(self.page.screen.file, name, design.contact)
+        screen = self.page.screen
+        designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+        return present_value(screen.file, name, designs[_PRESENT].contact)
 
     def _edit_drag(self, value: Any) -> None:
-        """Move a limit to the new position of its line."""
         number, x, y = read_point(value, 3)
         point = self._in_study(x, y)
-        self.page.ask(limits=move_limit(_map_of(self.page.screen), self.page.screen, int(number), point))
+        self.page.ask(limits=move_limit(mapped(self.page.screen), self.page.screen, int(number), point))
 
     def _in_study(self, x: float, y: float) -> tuple[float, float]:
         """Convert a point in the units of the axes to those of a study."""
@@ -189,7 +184,7 @@ class DesignMap(View):
         self._show_point({self.page.screen.across.name: x, self.page.screen.up.name: y})
 
     def _pick_best(self, value: Any) -> None:
-        point = best_point(_map_of(self.page.screen), self.page.screen)
+        point = best_point(mapped(self.page.screen), self.page.screen)
         if point is None:
             raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
         self._show_point(point)
@@ -206,7 +201,7 @@ class DesignMap(View):
         return joint_at(self.page.screen.file, picked)
 
     def document(self, screen: Screen) -> Document:
-        results = _map_of(screen)
+        results = mapped(screen)
         limits = list(limits_of(screen))
         return Document(
             picture=lambda form: figure_bytes(design_map(results, limits), form),
@@ -227,13 +222,11 @@ _ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
-    """Compute the HTML of the map, its summary and the picked design."""
-    results = _map_of(screen)
+    results = mapped(screen)
     return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point_html(screen)}
 
 
 def _point_html(screen: Screen) -> str:
-    """Return the design at the picked point beside the present one."""
     picked = picked_point(screen)
     if picked is None:
         return _HINT
@@ -242,12 +235,11 @@ def _point_html(screen: Screen) -> str:
     except ValueError as error:
         return alert(f"the point of the map: {error}")
     files = {_PRESENT: screen.file, _PICKED: file}
-    designs = with_drawings(with_stresses(press_designs(files, _map_of(screen).attrs["model"], {})))
+    designs = with_drawings(with_stresses(press_designs(files, mapped(screen).attrs["model"], {})))
     return f"<p>{_BUTTONS}</p>{design_table(designs, _PRESENT, screen, MAPPED)}"
 
 
 def _rows(results: Any, reading: Reading) -> list[list[Any]]:
-    """Tabulate the joints in rows, with numbers under names with units."""
     flat, heads = results.to_dataframe().reset_index(), []
     for name in flat.columns:
         quantity = BOUNDS.get(name) or QUANTITIES.get(name)
@@ -256,7 +248,3 @@ def _rows(results: Any, reading: Reading) -> list[list[Any]]:
             flat[name] = flat[name] * unit.factor
         heads.append(name if quantity is None else column_of(quantity, unit))
     return [heads, *flat.to_numpy(dtype=object).tolist()]
-
-
-def _map_of(screen: Screen) -> Any:
-    return mapped(screen.file, screen.across, screen.up, screen.map_model)

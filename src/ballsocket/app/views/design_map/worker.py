@@ -21,7 +21,7 @@ from ....model_catalogue import catalogue
 from ....problem import Joint
 from ....problem.dimensions import DIAMETERS, give
 from ....studies.design import Span, grid
-from ....studies.limits import Limit, allowed, count_verdicts, relative_margins, undecided_reason
+from ....studies.limits import Limit, allowed, count_verdicts, undecided_reason
 from ....studies.metadata import held_in
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
@@ -31,8 +31,7 @@ from ...widgets.numbers import NUMBERS
 from ...widgets.reading import Reading
 
 _POINTS = 61
-_SOLVED_POINTS = 17
-"""Values along an axis where every joint is solved: a second in all."""
+_SOLVED_POINTS = 17  # values along an axis where every joint is solved: a second in all
 
 
 @lru_cache(maxsize=16)
@@ -79,10 +78,10 @@ def _in_domain(name: str, joint: Joint) -> bool:
         return False
 
 
-def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
+def mapped(screen: Screen) -> Any:
     """Compute the study behind a map."""
-    joint = _joint_on(file.joint, (across.name, up.name))
-    return _mapped(joint, joint.given, tuple(file.load.items()), across, up, model)
+    joint = _joint_on(screen.file.joint, (screen.across.name, screen.up.name))
+    return _mapped(joint, joint.given, tuple(screen.file.load.items()), screen.across, screen.up, screen.map_model)
 
 
 def _joint_on(joint: Joint, names: Iterable[str]) -> Joint:
@@ -101,11 +100,6 @@ def limits_of(screen: Screen) -> tuple[Limit, ...]:
 def allowed_points(results: Any, screen: Screen) -> Any:
     """Return True at points with a result that no limit forbids."""
     return allowed(results, limits_of(screen)).broadcast_like(results.max_pressure)
-
-
-def margins(results: Any, screen: Screen) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Compute the relative distance of each point inside the nearest limit, for the ends of its error bar."""
-    return relative_margins(results, limits_of(screen), screen.across.name, screen.up.name)
 
 
 def axis_label(name: str, screen: Screen) -> tuple[str, float]:
@@ -178,10 +172,7 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     return replace(file, joint=plain, load={name: float(value) for name, value in load.items()} or file.load)
 
 
-MapPoint = tuple[float, float]
-
-
-def move_limit(results: Any, screen: Screen, number: int, point: MapPoint) -> tuple[Limit, ...]:
+def move_limit(results: Any, screen: Screen, number: int, point: tuple[float, float]) -> tuple[Limit, ...]:
     """Change one limit of the screen so that its line runs through a point of the map."""
     limit = limits_of(screen)[number]
     across, up = screen.across, screen.up

@@ -35,6 +35,7 @@ from .worker import EVIDENCE_SECONDS, EvidencePack, axes_of, gather_pack, phrase
 _NO_YES = ("no", "yes")
 _INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
+_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 
 
 class Evidence(LongView):
@@ -94,7 +95,9 @@ class Evidence(LongView):
     def _edit_limits(self, value: Any) -> None:
         """Take the rows of limits, or show which row is wrong."""
         screen = self.page.screen
-        limits = self._rows.read(value, _limits(screen.asked), screen.reading, lambda name: _present(screen, name))
+        contact = pressed(screen.file, (reference.name,)).contacts.get(reference.name)
+        present = partial(present_value, screen.file, contact=contact)
+        limits = self._rows.read(value, _limits(screen.asked), screen.reading, present)
         self.show_inputs(screen)
         if limits is not None:
             phrases = "; ".join(phrase for limit in limits for phrase in phrases_of(limit))
@@ -114,11 +117,7 @@ class Evidence(LongView):
             self._folder.cleanup()
 
 
-_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
-
-
 def _allowable_limit(screen: Screen) -> str:
-    """Return the limit of the largest pressure by the allowable pressure of the liner."""
     pressure = screen.file.joint.liner.allowable_pressure
     if pressure is None:
         raise ValueError("the liner has no allowable pressure: enter it beside the liner")
@@ -131,11 +130,6 @@ def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
         return tuple(map(parse_limit, phrases_in(question.limits)))
     except ValueError:
         return ()
-
-
-def _present(screen: Screen, name: str) -> float:
-    contacts = pressed(screen.file, (reference.name,)).contacts
-    return present_value(screen.file, name, contacts.get(reference.name))
 
 
 def _case_table(screen: Screen) -> str:
@@ -178,14 +172,12 @@ def _verdict(limit: Mapping[str, Any]) -> Verdict:
 
 
 def _decision(limit: Mapping[str, Any]) -> str:
-    """Return the decision on one limit with its sign, word and colour."""
     verdict = _verdict(limit)
     words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
     return f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>"
 
 
 def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:
-    """Tabulate the worst case of each quantity."""
     worst = pack.record["worst"].items()
     rows = [[title_of(name), value_text(name, row), case_text(row["case"])] for name, row in worst]
     return ["worst", "value", "case"], rows

@@ -29,6 +29,8 @@ from ...state.evidence_question import EvidenceQuestion
 from ...state.use import Use
 
 _HIP, _QUESTION = "hip.toml", "question.toml"
+EVIDENCE_SECONDS = 600.0  # seconds that a pack may take
+_WORST_CASE_STEPS = 6  # approximate steps of the worst cases
 
 
 def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: Path) -> Question:
@@ -39,7 +41,8 @@ def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: 
     tables = {_QUESTION: _tables(inputs, file)} | ({_HIP: _hip(file, use)} if inputs.wear == "yes" else {})
     for name, content in tables.items():
         for text in _texts(content):
-            _check_no_path(text)
+            if Path(text).is_absolute() or ".." in Path(text).parts:  # a pack includes every file that is named
+                raise ValueError(f"{shown(text)} is a path, and words are needed")
         (folder / name).write_text(tomli_w.dumps(content), encoding="utf-8")
     return read_question(folder / _QUESTION)
 
@@ -63,7 +66,6 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
 
 
 def _hip(file: JointFile, use: Use) -> Tables:
-    """Return the tables of the hip file for the settings of the wear view."""
     return {
         **_joint(file),
         **({"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}),
@@ -115,18 +117,6 @@ def _texts(part: Any) -> Iterator[str]:
         yield from [entry] if isinstance(entry, str) else _texts(entry)
 
 
-def _check_no_path(text: str) -> None:
-    """Refuse paths: a pack includes every file that its question names."""
-    if Path(text).is_absolute() or ".." in Path(text).parts:
-        raise ValueError(f"{shown(text)} is a path, and words are needed")
-
-
-EVIDENCE_SECONDS = 600.0
-"""Seconds that a pack may take."""
-
-_WORST_CASE_STEPS = 6  # approximate steps of the worst cases
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EvidencePack:
     """Conclusions in sentences, the record, and the folder as a ZIP file."""
@@ -161,7 +151,6 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
 
 
 def _zipped(folder: Path, names: Sequence[str]) -> bytes:
-    """Return the files of a pack as a ZIP file."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
         for name in sorted({*names, SUMS}):

@@ -21,14 +21,12 @@ from ...widgets.reading import Reading
 
 _WIDTH, _MIDDLE, _REACH = 480.0, 240.0, 225.0
 _TOP = 34.0
-_MAX_EXTENT = 40.0
-"""Largest distance (mm) behind the bore that is drawn; a massive socket has no end."""
+_MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
 
 _MAX_SHARE = 99.5
 """Percentile of the stresses in ball or backing at the end of the colours, which leaves out sharp corners."""
 
-_MOVE, _CLOSE = 1, 79
-"""Codes of a path in matplotlib."""
+_MOVE, _CLOSE = 1, 79  # codes of a path in matplotlib
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -80,7 +80,6 @@ class ElementCheck(LongView):
 
 
 def _preview(file: JointFile) -> str:
-    """Show the section that a run will mesh."""
     drawing = section(file, None, extent_of(file), 1.0)
     return f"<div class='beside'><figure>{drawing}</figure><p class='quiet'>{_TO_COME}</p></div>"
 
@@ -101,7 +100,6 @@ def _pictures(result: ElementResult, screen: Screen) -> str:
 
 
 def _numbers(result: ElementResult, screen: Screen) -> str:
-    """Tabulate the numbers with mesh errors beside the exact ones."""
     rows = []
     for column in distinct_columns(screen.reading, result.numbers[CONTACT["max_pressure_angle"].key]):
         factor = column.factor / column.quantity.written.factor  # the numbers are those of JSON

@@ -43,11 +43,9 @@ class Course:
         return self.own_unit if self.quantity is None else reading.unit(self.quantity)
 
     def label(self, reading: Reading) -> str:
-        """Return the label of the axis."""
         return f"{self.name}{self.unit(reading).text_in_brackets}"
 
     def of(self, result: GaitResult | GaitFilm, reading: Reading) -> numpy.ndarray:
-        """Return the values over the instants of a cycle."""
         return numpy.asarray(getattr(result, self.field)) * self.unit(reading).factor
 
 

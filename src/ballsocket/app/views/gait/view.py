@@ -44,6 +44,8 @@ _SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
 <div data-field="gait-film.run"></div><div id="gait-film-trouble" role="alert"></div></div>
 <div id="gait-courses" class="courses"></div></div></div>"""
 
+_TILES = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
+
 
 class Gait(LongView):
     """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
@@ -147,7 +149,6 @@ class Gait(LongView):
 
 
 def _read_upload(value: Any) -> UploadedCycle:
-    """Read an uploaded table."""
     upload = value if isinstance(value, dict) else {}
     name, text, size = str(upload.get("name", "")), upload.get("text"), upload.get("size")
     if not isinstance(text, str):
@@ -172,9 +173,6 @@ def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str
     checks = checked(result.checks, reading)
     rim = rim_sentence(result, reading)
     return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes)}"
-
-
-_TILES = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
 
 
 def _film_cells(film: GaitFilm) -> list[str]:

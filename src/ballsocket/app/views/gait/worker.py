@@ -21,8 +21,8 @@ from ...results import without_name
 from ...running import Reached, Report
 from ...state.use import UploadedCycle, Use, hip_of
 
-RINGS, MERIDIANS = 30, 90
-"""Rings and meridians of the field that moves on the page."""
+RINGS, MERIDIANS = 30, 90  # rings and meridians of the field that moves on the page
+_INSIDE = 0.5  # share of the neighbouring cells with a value, from which a node has one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -174,7 +174,3 @@ def _frames(hip: HipSimulation, fields: numpy.ndarray, highest: float) -> Frames
         scaled = numpy.where(share >= _INSIDE, relative_bytes(values, highest), 0)
         cells[instant] = scaled.reshape(RINGS + 1, MERIDIANS)
     return Frames(cells=cells, highest=highest)
-
-
-_INSIDE = 0.5
-"""Share of the neighbouring cells with a value, from which a node has one."""

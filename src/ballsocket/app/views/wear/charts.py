@@ -19,9 +19,7 @@ from ...widgets.reading import Reading
 from ...widgets.words import checked, doubt, notes_list, number_text, percent
 from .worker import WearResult
 
-_DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]
-"""Quantities whose units depths and pressures have."""
-
+_DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]  # quantities whose units depths and pressures have
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 

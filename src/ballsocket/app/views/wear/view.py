@@ -112,12 +112,10 @@ class Wear(LongView):
         return tuple(_files_by_key(screen))
 
     def work(self, screen: Screen) -> Work:
-        return partial(simulate_designs, _files_by_key(screen), screen.use, self._known(screen))
-
-    def _known(self, screen: Screen) -> dict[Hashable, WearResult]:
-        """Return the results of single designs that are stored."""
-        singles = {key: RESULTS.get((self.name, (key,))) for key in _files_by_key(screen)}
-        return {key: result[key] for key, result in singles.items() if result is not None}
+        files = _files_by_key(screen)
+        singles = {key: RESULTS.get((self.name, (key,))) for key in files}
+        known = {key: result[key] for key, result in singles.items() if result is not None}
+        return partial(simulate_designs, files, screen.use, known)
 
     def show_result(self, screen: Screen, result: dict[Hashable, WearResult] | None) -> None:
         parts = {"numbers": _NOTHING, "curve": empty_chart(screen.use.millions, screen.reading), "maps": ""}

@@ -23,9 +23,7 @@ from ...running import Reached, Report
 from ...state.use import Use, hip_of
 from ..gait.worker import checks_in_use
 
-WEAR_SECONDS = 300.0
-"""Seconds that a run of wear may take."""
-
+WEAR_SECONDS = 300.0  # seconds that a run of wear may take
 _REPORTS = 10
 _PATIENTS = 64
 
@@ -128,7 +126,6 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
 
 
 def _checks(hip: HipSimulation, history: History) -> tuple[Check, ...]:
-    """List the checks of the bore after the last cycle, and that of the deepest wear."""
     last = history.last
     worn = worn_rim_rows(hip, last.edge_distance, last.edge_loaded)
     rows = [*checks_in_use(hip, history.contact_checks[-1], last.edge_distance[: 0 if worn else None]), *worn]

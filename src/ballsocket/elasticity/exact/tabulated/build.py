@@ -126,13 +126,11 @@ def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _poisson_at(coordinate: Numbers) -> Numbers:
-    """Compute Poisson's ratio ν from its table coordinate."""
     low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
     return (1 - numpy.exp((high + low - coordinate * (high - low)) / 2)) / 2
 
 
 def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
-    """Compute the ball's share of the compliance from its table coordinate."""
     scale = chebyshev.ball_scale(poisson, ratio)
     return float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
 
@@ -151,7 +149,6 @@ def _solve_state(
 
 
 def _tabulated_functions(state: AbelState) -> Numbers:
-    """Compute the three tabulated functions of contacts: opening, force and pole pressure."""
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     opening = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
     load, pole = state.force / angle**3, state.pole_pressure / angle
@@ -210,27 +207,22 @@ class _TableSpec:
 
         `map_function` applies a function to all liners.
         """
-        poisson, ratio = (
-            _poisson_at(chebyshev_points(self.counts[0])),
-            chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1])),
-        )
+        poisson = _poisson_at(chebyshev_points(self.counts[0]))
+        ratio = chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1]))
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))
         values = sampled.reshape(*self.counts, *((1, 1) if not self.balls else ()), *sampled.shape[1:])
         for axis in (0, 1, 2, 5):
             values = chebyshev_coefficients(values, axis)
         if self.balls:
-            values = numpy.moveaxis(_shrinkage_coefficients(self.balls, numpy.moveaxis(values, 3, 0)), 0, 3)
+            shrinkage = chebyshev.ball_shrinkage(numpy.array(self.balls))
+            basis = numpy.polynomial.chebyshev.chebvander(shrinkage, len(self.balls) - 1)
+            coefficients = numpy.tensordot(numpy.linalg.inv(basis), numpy.moveaxis(values, 3, 0), 1)
+            values = numpy.moveaxis(coefficients, 0, 3)
         orders = numpy.ogrid[tuple(slice(n) for n in values.shape[:4])]
         total = orders[0] + orders[1] + 2 * orders[2] + 2 * orders[3]
         values = numpy.where((total <= self.order)[..., None, None], values, 0.0)
         return values.astype(numpy.float32 if self.single else numpy.float64)
-
-
-def _shrinkage_coefficients(balls: tuple[float, ...], values: Numbers) -> Numbers:
-    """Compute the Chebyshev coefficients in the ball's shrinkage, from values (balls, ...)."""
-    basis = numpy.polynomial.chebyshev.chebvander(chebyshev.ball_shrinkage(numpy.array(balls)), len(balls) - 1)
-    return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
 
 
 _TABLE_SPECS = {
@@ -306,7 +298,6 @@ def make_joints(
 
 
 def _solve_exact(numbers: tuple[float, ...]) -> list[float]:
-    """Compute the checked quantities of one contact from the contact equation, with R2 = E = 1."""
     angle, poisson, ratio, softness, ball_poisson = map(float, numbers)
     plane = (1 - ball_poisson**2) / (1 - poisson**2) * softness * (1 - _CLEARANCE)
     state = _solve_state((poisson, ratio), numpy.array([angle]), 40, plane / (1 + plane), ball_poisson)
@@ -315,7 +306,6 @@ def _solve_exact(numbers: tuple[float, ...]) -> list[float]:
 
 
 def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers) -> tuple[LargestError, ...]:
-    """Find the largest errors of a model against exact values, by half angle and by force."""
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
     joint = make_joints(*numbers[1:])

@@ -134,7 +134,6 @@ def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
 
 @cache
 def _polynomial_orders(count: int) -> numpy.ndarray:
-    """Return the orders of the Chebyshev polynomials, 0 to count - 1, as floats."""
     return numpy.arange(count, dtype=float)
 
 

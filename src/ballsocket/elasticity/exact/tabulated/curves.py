@@ -219,7 +219,6 @@ class JointCurves:
         return coefficients
 
     def _ball_series(self, name: str, coordinates: list[Array]) -> Array:
-        """Compute coefficients (functions, angles, joints) of the table `name` of elastic balls."""
         table = load_tables(self.file)[name]
         if self.has_plain_joint:
             return table.coefficients_of_one([*self.coordinates, *coordinates])
@@ -283,12 +282,8 @@ class JointCurves:
         """Compute the quantities of `contact_quantities` at half angles above 0."""
         return contact_quantities(tabulated_state(angle, self.curve), self.scale)
 
-    def scaled_load(self, kind: str, load: Array) -> Array:
-        """Compute the dimensionless load: F C/(R2² c) of a force, d/c of an indentation."""
-        return load * self.load_scale(kind)
-
     def load_scale(self, kind: str) -> Array:
-        """Compute the ratio of the dimensionless load to a force in N or an indentation in mm."""
+        """Compute the ratio of the dimensionless load, F C/(R2² c) or d/c, to a force in N or an indentation in mm."""
         c, area, compliance = self.scale
         return compliance / (area * c) if kind == "force" else 1 / c
 

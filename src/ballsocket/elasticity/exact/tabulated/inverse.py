@@ -41,33 +41,25 @@ from .curves import (
     tabulated_state,
 )
 
-_LOG_OFFSET = -1.0
-"""Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
-
-_END = _LOG_OFFSET + 1e-12
-"""Upper end of the unknown, which includes the widest contact itself."""
+_LOG_OFFSET = -1.0  # value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero
+_END = _LOG_OFFSET + 1e-12  # upper end of the unknown, which includes the widest contact itself
 
 RIGID_STEPS, ELASTIC_STEPS = 1, 3
 """Newton steps from the start to errors below 1e-6, with a rigid ball and with an elastic one; the start has none."""
 
-_START_COUNTS = (12, 13, 20)
-"""Numbers of Chebyshev polynomials of ν, R2/L and half angle in the start."""
-
-_FIT_STEPS = 8
-"""Newton steps to the half angles that the start is fitted to."""
+_START_COUNTS = (12, 13, 20)  # numbers of Chebyshev polynomials of ν, R2/L and half angle in the start
+_FIT_STEPS = 8  # Newton steps to the half angles that the start is fitted to
 
 
 def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedState, Array]:
     """Solve for the dimensionless contact under a positive load, and its last correction; NaN beyond the tables."""
-    inverse, scaled = INVERSES[kind], curves.scaled_load(kind, load)
+    inverse, scaled = INVERSES[kind], load * curves.load_scale(kind)
     steps = RIGID_STEPS if curves.joint.ball is None else ELASTIC_STEPS
 
     def residual(root: Array) -> Pair:
-        """Compute the residual of the load at a trial value of the unknown, and its slope."""
         return inverse.residual(root, scaled, curves.curve)
 
     def solve(root: Array) -> Array:
-        """Take the Newton steps from a first value of the unknown."""
         for _ in range(steps):
             root = limited_newton_step(root, *residual(root))
         return root
@@ -82,11 +74,8 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
     return shift_state(state, shift), shift
 
 
-_SCALAR_STEPS = 16
-"""Largest number of Newton steps from the estimate for a single press."""
-
-_SCALAR_TOLERANCE = 1e-4
-"""Newton step of a single press after which its error is below 1e-7."""
+_SCALAR_STEPS = 16  # largest number of Newton steps from the estimate for a single press
+_SCALAR_TOLERANCE = 1e-4  # Newton step of a single press after which its error is below 1e-7
 
 
 def half_angle_of_root(root: Array) -> Array:

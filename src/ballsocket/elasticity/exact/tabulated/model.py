@@ -135,7 +135,6 @@ def _evaluate_series(series: Array, x: Array) -> Array:
 
 
 def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
-    """Compute the Chebyshev coefficients of the pressure profile at half angles."""
     series = curves.table_series("profile")
     if series.ndim == 2:
         return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
@@ -198,12 +197,10 @@ def curve_reader(kind: str) -> CurveReader:
     """Return a function that computes ε, d, F, p0, dF/dd and the last change of ε from curves and loads of one kind."""
 
     def read_half_angle(curves: JointCurves, load: Array) -> tuple[Array, ...]:
-        """Compute the quantities at half angles."""
         angle = where(load <= LIMIT, load, math.nan)
         return (angle, *curves.contact_quantities(angle)[:4], 0.0 * angle)
 
     def solve_load(curves: JointCurves, load: Array) -> tuple[Array, ...]:
-        """Compute the quantities under forces or indentations."""
         state, shift = solve_state(curves, kind, load)
         return (state.angle, *contact_quantities(state, curves.scale)[:4], shift)
 
@@ -260,7 +257,6 @@ def _map_blocks_in_jax(
     """
 
     def compute_block(*parts: Array) -> tuple[Array, ...]:
-        """Compute the quantities of one block."""
         return compute_quantities(JointCurves(file, joint.with_numbers(list(parts[:-1]))), parts[-1])
 
     if all(row.shape[0] == 1 for row in rows[:-1]):
@@ -293,7 +289,6 @@ def _ball_poisson(contact: Any) -> Array:
 
 
 def _backing_count(contact: Any) -> Array:
-    """Return the number of backing layers behind the liner."""
     return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
 
 

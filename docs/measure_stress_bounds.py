@@ -1,6 +1,6 @@
 """Stress in the liner against its stated bounds: random axial joints by `Exact`, tilted cups by meridian harmonics.
 
-Run `python -m benchmarks.stress_bounds [joints]`; the table of docs/explanation/valid.md has the numbers.
+Run `python docs/measure_stress_bounds.py [joints]`; the table of docs/explanation/valid.md has the numbers.
 """
 
 from __future__ import annotations
