@@ -60,7 +60,7 @@ FORMS = [  # text, encoding, number of lines that are left out
     ('time_s,force_N,indentation_um\n"0","300","10"\n"0,25","1250,5","25,5"\n"0,5","2000","40"\n', "utf-8", 0),
     (HEADS + "0e0,3E+2,1.e1\n25e-2,1.2505e3,+25.5\n.5,2000.,40\n", "utf-8", 0),
     ("# made by hand\n\n" + HEADS + "0,300,10\n# a pause\n0.25,1250.5,25.5\n\n,,\n0.5,2000,40\n", "utf-8", 3),
-    (HEADS + POINTS + "\n# end\n,,\n", "utf-8", 0),
+    (HEADS + POINTS + "\n# end\n,,\n-,-,n/a\n", "utf-8", 1),
     (HEADS + POINTS + "\nmean of all,see page 2,\n1,2,3\n", "utf-8", 2),
     ("Name: A, B\nDate 2024-05-06 10:00\n\n" + HEADS + POINTS, "utf-8", 2),
     ("Test 7\nspecimen,area\n1,2\n" + HEADS + POINTS, "utf-8", 3),

@@ -555,7 +555,7 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
     The other table has fewer rows, and a blank line above it.
     """
     body: list[NumberedRow] = []
-    n_text = n_blank = n_pending = n_other = 0
+    n_text = n_missing = n_blank = n_pending = n_other = 0
     for index in range(start, len(rows)):
         cells = rows[index][1]
         if is_data(cells):
@@ -566,9 +566,16 @@ def _select_rows(rows: Sequence[NumberedRow], start: int) -> tuple[list[Numbered
                 raise ValueError(f"line {rows[index][0]} has text between numbers: cut the lines above or below it")
             n_other = sum(bool(count_words(cells)) for _, cells in rows[index:])
             break
+        elif n_words == 0 and any(cells):
+            n_missing += 1
         else:
             n_text, n_pending = n_text + n_words, n_pending + (not n_words)
-    return body, {"of text": n_text, "of another table below": n_other, "blank or with a comment": n_blank}
+    return body, {
+        "of text": n_text,
+        "of signs for missing numbers": n_missing,
+        "of another table below": n_other,
+        "blank or with a comment": n_blank,
+    }
 
 
 def _parse_opensim(title: str, lines: Sequence[str], end: int) -> NumberTable:

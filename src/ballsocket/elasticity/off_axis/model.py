@@ -163,8 +163,8 @@ class Sphere(Model):
             quantity=lambda _: abs(self.cup.inclination) or inf,
             symbol="inclination",
             low=radians(pi / 2),
-            why=f"the cup's inclination is {degrees(self.cup.inclination):.3g}°, as if radians were given as degrees: "
-            f"{degrees(self.cup.inclination):.3g} rad are {degrees(degrees(self.cup.inclination)):.3g}°",
+            why=f"the cup's inclination or tilt is {degrees(self.cup.inclination):.3g}°, as if radians were given as "
+            f"degrees: {degrees(self.cup.inclination):.3g} rad are {degrees(degrees(self.cup.inclination)):.3g}°",
         )
         return (*gap_remarks(self.gap), small_inclination)
 
