@@ -152,7 +152,8 @@ def _hint(key: str, keys: Mapping[str, Any], root: _Location, table: str) -> str
     """Format a hint for an unknown key of a table ("" at the top): longer keys, other tables, or a similar key."""
     longer = [name for name in keys if name.endswith(f"_{key}") or (table and name.startswith(f"{key}_"))]
     if len(longer) > 1:
-        return f"; did you mean {' or '.join(map(repr, longer[:_MAX_HINTS]))}?"
+        separate = [f", or the table {head}" for head, _ in tables_of(root.type) if head.strip("[]") == key != table]
+        return f"; did you mean {' or '.join(map(repr, longer[:_MAX_HINTS]))}{''.join(separate)}?"
     heads = {head: {field.encode_name for field in struct.fields} for head, struct in tables_of(root.type)}
     names = {head: head.strip("[]") for head in heads}
     struct = struct_in(root.type)
@@ -162,7 +163,7 @@ def _hint(key: str, keys: Mapping[str, Any], root: _Location, table: str) -> str
         return f"; it belongs in {' or '.join(tables[:_MAX_HINTS])}"
     for head, fields in heads.items():
         if key.startswith(f"{names[head]}_") and (field := key.removeprefix(f"{names[head]}_")) in fields:
-            return f"; it is {field!r} in this table" if field in keys else f"; it is {field!r} in {head}"
+            return f"; it is {field!r} in {'this table' if field in keys else head}"
         if names[head] == key != table:
             shared = [name for name in keys if name in fields and not choices_in(keys[name].type)]
             of_table = f"; of its keys this table has {' and '.join(map(repr, shared))}" if shared else ""
