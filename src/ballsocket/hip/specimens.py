@@ -51,7 +51,7 @@ def mean_of_specimens(values: Numbers, variances: Numbers, min_ratio: float) -> 
         return float(weights @ (values - weights @ values / weights.sum()) ** 2) / freedom
 
     squares = float(((values - values.mean()) ** 2).sum())
-    negligible = 1e-12 * squares + 1e-300
+    negligible = 1e-12 * squares + 1e-30 * float((values**2).max()) + 1e-300  # at least the rounding of the mean
     between, observed = negligible, ratio(negligible)
     if observed > 1:
         between, observed = float(brentq(lambda v: ratio(v) - 1, negligible, 2 * squares, xtol=negligible)), 1.0

@@ -189,7 +189,7 @@ def solve_with_tables(
     loads = broadcast(load, values[1])
     is_loaded = loads > 0
     if arrays.all_true(fits & is_loaded) is not True:
-        rest = where(loads == 0, 0.0, math.nan)  # where values cannot be refused, a load below 0 has no solution
+        rest = where(loads == 0, 0.0 * loads, math.nan)  # no solution for a traced load below 0
         values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
     angle, d, F, p0, stiffness = values
     return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness)), shift
