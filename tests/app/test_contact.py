@@ -26,11 +26,11 @@ from ballsocket.app.views.cup.view import _hint
 from ballsocket.app.views.cup.worker import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
+from ballsocket.core.unit_systems import Units
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.section_plots import gap_factor
-from ballsocket.reports.unit_systems import Units
 
 from ..extent import either
 from .asking import does, edits, opened, saved, told, trouble

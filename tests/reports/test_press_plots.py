@@ -12,6 +12,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import read_joint
+from ballsocket.core.unit_systems import Units
 from ballsocket.dynamics import Damping, Prony, Viscoelastic, simulate
 from ballsocket.elasticity.off_axis.vtk import BALL, BORE, write_vtk
 from ballsocket.evidence.matrix import NAMES, WEAR
@@ -21,7 +22,6 @@ from ballsocket.reports.cup_map import on_page, shown_maximum, shown_pressure
 from ballsocket.reports.cup_plots import cup_figure, save_view
 from ballsocket.reports.figure_files import save
 from ballsocket.reports.press_plots import energy_balance, loop_figure, motion_figure, press_figure
-from ballsocket.reports.unit_systems import Units
 
 from ..joints import HIP
 from ..places import EXAMPLES

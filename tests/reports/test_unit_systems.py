@@ -5,13 +5,13 @@ from io import StringIO
 from math import degrees
 
 import pytest
+from ballsocket.reports.hip_tables import table_with_units
 
 import ballsocket as bs
+from ballsocket.core.unit_systems import Units
 from ballsocket.reports import study_plots
-from ballsocket.reports.hip_tables import table_with_units
 from ballsocket.reports.study_tables import print_optimum, print_study
 from ballsocket.reports.terminal import Terminal, print_columns
-from ballsocket.reports.unit_systems import Units
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit
