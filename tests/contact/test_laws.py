@@ -14,7 +14,7 @@ from ..joints import HIP
 
 WIDE = bs.Joint(ball_radius=16.0, clearance=0.5, liner_thickness=3.0, liner=bs.Material(young=700.0, poisson=0.3))
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
-LONG = {("wide", "exact")}
+LONG = {("wide", "exact"), ("wide", "plane-layer")}
 LAWS = [
     pytest.param(model, joint, id=f"{name}-{key}", marks=[pytest.mark.long] * ((name, key) in LONG))
     for name, joint in {"hip": HIP, "wide": WIDE}.items()
