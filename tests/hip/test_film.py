@@ -14,6 +14,7 @@ from ballsocket.hip.hamrock_dowson import film_thickness
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear
 
 from ..cli.command import run
+from ..extent import some
 from .hips import QUICK, SHORT, TEXT, K, hip, history, report_after, write_edited_file
 
 
@@ -206,7 +207,7 @@ AREA = ContactAreaWear(coefficient=1e-9)
 LAWS = [{}, {"wear": AREA}, {"wear": CrossShear(straight=K, circular=2 * K, exponent=-0.3)}, {"ball_wear": AREA}]
 
 
-@pytest.mark.parametrize("words", LAWS)
+@pytest.mark.parametrize("words", some(LAWS, 2))
 def test_an_infinite_limit_wears_as_none_and_a_limit_of_zero_wears_nothing(words):
     uses = hip(**QUICK, **words), limited(inf, **words), limited(0.0, **words)
     free, unlimited, nothing = (report_after(use, 2e5) for use in uses)

@@ -67,6 +67,7 @@ force = ["4.4482216152605 N", "2 kN"]
 """
 
 
+@pytest.mark.long
 def test_a_study_prints_and_draws_in_inches_and_pounds(tmp_path):
     (tmp_path / "study.toml").write_text(STUDY)
     done = run("study", "study.toml", "--units", "imperial", "--figure", "study.svg", folder=tmp_path)
