@@ -46,23 +46,12 @@ class CohortRun:
     """Simulation of a sampled patient cohort, divided into groups ("pieces") of a few patients.
 
     A call with the number of a piece simulates its patients.
-
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients.
-    counts : tuple of float
-        Cycles of the nominal patient at the reports, in ascending order.
-    values : mapping of str to array (patients,)
-        Sampled quantities by name of `SAMPLED_QUANTITIES`.
-    code : str
-        Fingerprint of the code that the workers must have.
     """
 
-    variability: PatientVariability
-    counts: tuple[float, ...]
-    values: Mapping[str, Numbers]
-    code: str = field(default_factory=fingerprint)
+    variability: PatientVariability  # distributions of the patients
+    counts: tuple[float, ...]  # cycles of the nominal patient at the reports, in ascending order
+    values: Mapping[str, Numbers]  # (patients,), sampled quantities by name of `SAMPLED_QUANTITIES`
+    code: str = field(default_factory=fingerprint)  # fingerprint of the code that the workers must have
 
     def __len__(self) -> int:
         return len(next(iter(self.values.values())))

@@ -56,23 +56,13 @@ METHODS = ("series", "runs")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortSolution:
-    """Results of a cohort, with the accuracy of the series that they come from.
-
-    Attributes
-    ----------
-    result : CohortResult
-    accuracy : SeriesAccuracy, optional
-        None if each patient was simulated.
-    indices : mapping of str to array, optional
-        Sobol indices; see `Bands`. None without a series, or if it does not cover the orientations of the cup.
-    obstacle : str
-        Reason in one clause why there is no series; empty if there is one, or none was needed.
-    """
+    """Results of a cohort, with the accuracy of the series that they come from."""
 
     result: CohortResult
-    accuracy: SeriesAccuracy | None = None
+    accuracy: SeriesAccuracy | None = None  # None if each patient was simulated
+    # Sobol indices; see `Bands`. None without a series, or if it does not cover the orientations of the cup.
     indices: Mapping[str, Numbers] | None = None
-    obstacle: str = ""
+    obstacle: str = ""  # reason in one clause why there is no series; empty if there is one, or none was needed
 
     @property
     def is_acceptable(self) -> bool:
@@ -127,24 +117,12 @@ def solve_cohort(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortSeries:
-    """Series for the patients of a cohort.
+    """Series for the patients of a cohort."""
 
-    Attributes
-    ----------
-    run : CohortRun
-        Patients.
-    seed : int
-        Seed of the samples.
-    engine : Engine
-        Executor of the simulations.
-    store : CohortStore, optional
-        Store of the simulations.
-    """
-
-    run: CohortRun
-    seed: int
-    engine: Engine
-    store: CohortStore | None = None
+    run: CohortRun  # patients
+    seed: int  # seed of the samples
+    engine: Engine  # executor of the simulations
+    store: CohortStore | None = None  # store of the simulations
 
     @cached_property
     def family(self) -> FamilyRun:

@@ -62,23 +62,13 @@ _OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipColumns:
-    """Columns of time (s), force (N) and angles (rad) of one hip.
+    """Columns of time (s), force (N) and angles (rad) of one hip."""
 
-    Attributes
-    ----------
-    columns : dict of arrays
-        "time" in s or "phase", "force" or "force_x", "force_y", "force_z" in N, angles in rad.
-    force_on : str, optional
-        Body that the force acts on, "ball" or "socket", if the column names state it.
-    frame : str, optional
-        Frame of the force, "body" or "femur", if the column names state it.
-    orthoload : bool
-        True for forces Fx, Fy, Fz, which are taken for OrthoLoad's: on the ball, in the frame of the femur.
-    """
-
+    # "time" in s or "phase", "force" or "force_x", "force_y", "force_z" in N, angles in rad
     columns: dict[str, Numbers] = field(default_factory=dict)
-    force_on: str | None = None
-    frame: str | None = None
+    force_on: str | None = None  # body that the force acts on, "ball" or "socket", if the column names state it
+    frame: str | None = None  # frame of the force, "body" or "femur", if the column names state it
+    # True for forces Fx, Fy, Fz, which are taken for OrthoLoad's: on the ball, in the frame of the femur
     orthoload: bool = False
 
 

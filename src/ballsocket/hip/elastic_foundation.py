@@ -30,17 +30,11 @@ _PARALLEL_TOLERANCE = 1e-9  # relative tolerance for loads of one direction, and
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadInterpolation:
-    """Interpolation of results between a few solved loads ("levels") to all loads.
+    """Interpolation of results between a few solved loads ("levels") to all loads."""
 
-    Attributes
-    ----------
-    loads : array (levels, 3)
-        Forces in N.
-    weights : array (loads, levels)
-        Weight of each level in each load. They add up to 1, and they interpolate the loads themselves exactly.
-    """
-
-    loads: Numbers
+    loads: Numbers  # (levels, 3), forces in N
+    # (loads, levels), weight of each level in each load. They add up to 1, and they interpolate the loads
+    # themselves exactly.
     weights: Numbers
 
     def interpolate(self, level_results: Numbers) -> Numbers:
@@ -86,10 +80,6 @@ class GridSmoothing:
     An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
     shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is wider
     in proportion.
-
-    Attributes
-    ----------
-    grid : Grid
     """
 
     grid: Grid
@@ -114,21 +104,13 @@ class GridSmoothing:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticFoundation:
-    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells; its gap is linear.
-
-    Attributes
-    ----------
-    compliance : Compliance
-    clearance, socket_radius : float
-        Lengths in mm.
-    edges : EdgeRelation
-        Relation of pressure and gap at the edge of a contact.
-    """
+    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells; its gap is linear."""
 
     compliance: Compliance
+    # lengths in mm
     clearance: float
     socket_radius: float
-    edges: EdgeRelation
+    edges: EdgeRelation  # relation of pressure and gap at the edge of a contact
 
     @property
     def grid(self) -> Grid:

@@ -67,33 +67,21 @@ def _degree(use: HipSimulation) -> float | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FamilyMember:
-    """Dimensionless results of one simulation of a family.
+    """Dimensionless results of one simulation of a family."""
 
-    Attributes
-    ----------
-    unworn : array (numbers,)
-        `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the worst contact of each
-        activity.
-    worn : array (exposures, numbers)
-        Logarithms of `Similarity.results` over their units, `RIM_NUMBERS`, then the same three numbers of each
-        activity.
-    """
-
+    # (numbers,), `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the worst
+    # contact of each activity
     unworn: Numbers
+    # (exposures, numbers), logarithms of `Similarity.results` over their units, `RIM_NUMBERS`, then the same
+    # three numbers of each activity
     worn: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Similarity:
-    """Dimensionless numbers of patients, and the simulation of a family member with given numbers.
+    """Dimensionless numbers of patients, and the simulation of a family member with given numbers."""
 
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients. `find_obstacle` states whether they are similar.
-    """
-
-    variability: PatientVariability
+    variability: PatientVariability  # distributions of the patients. `find_obstacle` states whether they are similar.
 
     @cached_property
     def setup(self) -> HipSimulation:

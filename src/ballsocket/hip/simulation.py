@@ -36,18 +36,10 @@ _CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field;
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """File on disk that stores the state and the reports of one wear simulation.
+    """File on disk that stores the state and the reports of one wear simulation."""
 
-    Attributes
-    ----------
-    folder : Path
-        Folder of the file.
-    identity : str
-        Digest of the joint, the cycle, the wear laws and the discretization.
-    """
-
-    folder: Path
-    identity: str
+    folder: Path  # folder of the file
+    identity: str  # digest of the joint, the cycle, the wear laws and the discretization
 
     @property
     def path(self) -> Path:

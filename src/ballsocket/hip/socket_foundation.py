@@ -21,23 +21,12 @@ _CONTACT_STEP = 1e-3  # step of a ball without contact beyond the clearance, rel
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleEquilibrium:
-    """Displacements and pressures of the ball under all loads of a cycle.
+    """Displacements and pressures of the ball under all loads of a cycle."""
 
-    Attributes
-    ----------
-    displacement : array (loads, 3)
-        Displacement of the ball's centre in mm, in the cup's frame.
-    pressure : array (loads, cells)
-        Pressure in MPa.
-    converged : bool
-        True if every load is balanced.
-    levels : pair of arrays, optional
-        Displacements and pressures of the solved load levels, if the loads are interpolated between levels.
-    """
-
-    displacement: Numbers
-    pressure: Numbers
-    converged: bool
+    displacement: Numbers  # (loads, 3), displacement of the ball's centre in mm, in the cup's frame
+    pressure: Numbers  # (loads, cells), pressure in MPa
+    converged: bool  # True if every load is balanced
+    # displacements and pressures of the solved load levels, if the loads are interpolated between levels
     levels: tuple[Numbers, Numbers] | None = None
 
 
@@ -119,29 +108,18 @@ def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radiu
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpringFoundation:
-    """Foundation of independent radial springs, whose pressure is modulus times overlap.
+    """Foundation of independent radial springs, whose pressure is modulus times overlap."""
 
-    Attributes
-    ----------
-    directions, normals : array (3, cells)
-        Unit vectors to the centres of the cells, and means of the outward normal over them, in the cup's frame.
-    areas : array (cells,)
-        Areas in mm².
-    modulus : float
-        Foundation modulus K in MPa/mm.
-    clearance, socket_radius : float
-        Lengths in mm.
-    neighbours : array (2, 2, cells)
-        Numbers of the neighbouring cells; see `grid_neighbours`.
-    """
-
+    # (3, cells), unit vectors to the centres of the cells, and means of the outward normal over them, in the
+    # cup's frame
     directions: Numbers
     normals: Numbers
-    areas: Numbers
-    modulus: float
+    areas: Numbers  # (cells,), areas in mm²
+    modulus: float  # foundation modulus K in MPa/mm
+    # lengths in mm
     clearance: float
     socket_radius: float
-    neighbours: Numbers
+    neighbours: Numbers  # (2, 2, cells), numbers of the neighbouring cells; see `grid_neighbours`
 
     def select_cells(self, cells: Numbers) -> SpringFoundation:
         """Return the foundation for a subset of the cells."""

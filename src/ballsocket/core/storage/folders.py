@@ -196,21 +196,11 @@ class RemoteFolder(ResultFolder):
 
 @dataclass(frozen=True, kw_only=True)
 class ArrayPieceStore(PieceStore):
-    """Base class of stores with one npz file for each piece, which carries the identity of its run.
+    """Base class of stores with one npz file for each piece, which carries the identity of its run."""
 
-    Attributes
-    ----------
-    folder : ResultFolder
-        Local or remote folder.
-    identity : str
-        Digest of the run.
-    prefix : str
-        Beginning of the file names.
-    """
-
-    folder: ResultFolder
-    identity: str
-    prefix: str
+    folder: ResultFolder  # local or remote folder
+    identity: str  # digest of the run
+    prefix: str  # beginning of the file names
 
     @abstractmethod
     def to_arrays(self, result: Any) -> Mapping[str, Any]:

@@ -86,20 +86,11 @@ class PieceStore(ABC):
 
 @dataclass(frozen=True, eq=False)
 class PieceRun:
-    """Resumable run of numbered pieces of work: only pieces without a stored result are computed.
+    """Resumable run of numbered pieces of work: only pieces without a stored result are computed."""
 
-    Parameters
-    ----------
-    work : function
-        Computes the result of a piece from its number. Worker processes must be able to import it.
-    numbers : sequence of int
-        Numbers of the pieces.
-    store : PieceStore, optional
-        Each result is stored by the process that computed it. A killed run loses only unfinished pieces.
-    """
-
-    work: Work
-    numbers: Sequence[int]
+    work: Work  # computes the result of a piece from its number. Worker processes must be able to import it.
+    numbers: Sequence[int]  # numbers of the pieces
+    # each result is stored by the process that computed it. A killed run loses only unfinished pieces.
     store: PieceStore | None = None
 
     @cached_property
@@ -133,18 +124,10 @@ _SERIAL = Serial()
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """Named pieces of work in named parts.
+    """Named pieces of work in named parts."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the plan, which is the name of its folder of stored results.
-    parts : mapping of str to mapping of str to callable
-        Pieces by part and name.
-    """
-
-    name: str
-    parts: Mapping[str, Mapping[str, Piece]]
+    name: str  # name of the plan, which is the name of its folder of stored results
+    parts: Mapping[str, Mapping[str, Piece]]  # pieces by part and name
 
     def __len__(self) -> int:
         return sum(map(len, self.parts.values()))
