@@ -83,10 +83,7 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
     Joint, array
         The joint and the load of arrays.
 
-    Raises
-    ------
-    ValueError
-        Arrays whose shapes do not broadcast.
+    Raises ValueError: arrays whose shapes do not broadcast.
     """
     numbers = (*joint.numbers(), load)
     all_plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))

@@ -69,10 +69,7 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
     *parameters : array
         Arrays that broadcast against joint and load; `solve` gets them after the loads.
 
-    Raises
-    ------
-    TypeError
-        Traced numbers without a value (inside `jax.jit`, `jax.grad`).
+    Raises TypeError: traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
     numbers = [_to_concrete_array(model, number) for number in joint.numbers()]
@@ -249,10 +246,7 @@ class SolvedContact(Contact):
     def single_state(self) -> Any:
         """Solved state of a single contact; the ball must touch the socket.
 
-        Raises
-        ------
-        ValueError
-            More than one contact; a contact that does not touch or has no result.
+        Raises ValueError: more than one contact; a contact that does not touch or has no result.
         """
         if prod(self.laws.shape) != 1:
             raise ValueError(f"{self._inside} are for one contact, got the shape {self.laws.shape}: press one load")

@@ -305,10 +305,7 @@ def as_array_like(position: Any, value: Any) -> Any:
 def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vector, Vector]:
     """Split states of a ball, arrays (..., 3), into components in arrays of the position's library.
 
-    Raises
-    ------
-    ValueError
-        A vector without three components.
+    Raises ValueError: a vector without three components.
     """
     names = ("position", "velocity", "spin")
     axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")

@@ -105,10 +105,7 @@ class PreloadTable:
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
 
-    Raises
-    ------
-    ValueError
-        A joint without an interference; a socket that does not hold its ball.
+    Raises ValueError: a joint without an interference; a socket that does not hold its ball.
     """
     equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:

@@ -90,12 +90,8 @@ def solve_cohort(
     progress : function
         Called with the number of finished patients; a series counts them in proportion to its simulations.
 
-    Raises
-    ------
-    ValueError
-        An unknown method, or a series of patients that are not similar.
-    OSError
-        The store is not writable or the disk is full.
+    Raises ValueError: an unknown method, or a series of patients that are not similar.
+    Raises OSError: the store is not writable or the disk is full.
     """
     method = None if method is None else known_name("method", method, METHODS)
     obstacle = "" if method == "runs" else find_obstacle(run.variability, run.counts)
@@ -151,12 +147,8 @@ class CohortSeries:
     def solve(self, progress: ProgressCallback) -> CohortSolution:
         """Fit a series, estimate its error, refine it, and compute the results of all patients.
 
-        Raises
-        ------
-        NoSeriesError
-            The series has no result.
-        OSError
-            The store is not writable or the disk is full.
+        Raises NoSeriesError: the series has no result.
+        Raises OSError: the store is not writable or the disk is full.
         """
         held_out = self._select(numpy.arange(min(N_HELD_OUT, len(self.run))))
         expected = held_out.simulate(self.engine, self.store)
@@ -254,10 +246,7 @@ def cover_orientations(
 ) -> dict[str, tuple[float, float]]:
     """Reduce ranges of the cup's angles in rad about a centre until no load in them points to the rim.
 
-    Raises
-    ------
-    NoSeriesError
-        A load at the centre points to the rim.
+    Raises NoSeriesError: a load at the centre points to the rim.
     """
     if not similarity.keeps_loads_inside(centre):
         raise NoSeriesError("a load of the median patient points to the rim")

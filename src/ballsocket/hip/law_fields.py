@@ -89,12 +89,8 @@ class LawField:
     def check(self, value: Any) -> None:
         """Check type and limits of a value of this field; TypeError or ValueError otherwise.
 
-        Raises
-        ------
-        TypeError
-            The value is not a number (or, for a list, not a tuple of numbers).
-        ValueError
-            The value is outside the limits.
+        Raises TypeError: the value is not a number (or, for a list, not a tuple of numbers).
+        Raises ValueError: the value is outside the limits.
         """
         for number in value if self.is_list else (value,):
             if not isinstance(number, Real) or isinstance(number, bool):
@@ -217,10 +213,7 @@ def read_law(
     **values
         Further values of fields that files do not have.
 
-    Raises
-    ------
-    ValueError
-        A missing key, a key of another law, or a value that is not allowed.
+    Raises ValueError: a missing key, a key of another law, or a value that is not allowed.
     """
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):

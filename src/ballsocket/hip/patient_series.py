@@ -53,10 +53,7 @@ class FamilyRun:
     def __call__(self, piece: int) -> dict[str, Numbers]:
         """Simulate the members of a piece; those without a result are NaN.
 
-        Raises
-        ------
-        ValueError
-            This worker has another version of the package than the process that started the run.
+        Raises ValueError: this worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
         first = piece * MEMBERS_PER_PIECE
@@ -199,10 +196,7 @@ class PatientSeries:
 def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:
     """Fit polynomials of a degree to the simulated members of a family by least squares.
 
-    Raises
-    ------
-    NoSeriesError
-        Too many members have no result.
+    Raises NoSeriesError: too many members have no result.
     """
     unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))

@@ -188,10 +188,7 @@ class Similarity:
     def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> FamilyMember:
         """Simulate the family member with given numbers up to each of several logarithms of exposures.
 
-        Raises
-        ------
-        ValueError
-            A contact did not balance its load.
+        Raises ValueError: a contact did not balance its load.
         """
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)

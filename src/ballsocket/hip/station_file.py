@@ -52,12 +52,8 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
     choice : HeadChoice
         Columns of the file that get another name, or that are not used.
 
-    Raises
-    ------
-    ValueError
-        A column is missing, unknown or without a unit, or a cell is not a number.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a column is missing, unknown or without a unit, or a cell is not a number.
+    Raises OSError: the file cannot be read.
     """
     table = read_cells(path, (*_CYCLES, quantity), choice, texts=(_STATION,))
     try:

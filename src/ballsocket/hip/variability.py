@@ -219,10 +219,7 @@ class Patient:
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
         """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts.
 
-        Raises
-        ------
-        ValueError
-            A contact did not balance its load, or the liner would be worn through many times.
+        Raises ValueError: a contact did not balance its load, or the liner would be worn through many times.
         """
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
         integrator = WearIntegrator(setup=self.use)

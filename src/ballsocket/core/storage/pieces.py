@@ -46,10 +46,7 @@ def check_worker_code(code: str) -> None:
     code : str
         `fingerprint` of the process that started the run.
 
-    Raises
-    ------
-    ValueError
-        This process runs another code.
+    Raises ValueError: this process runs another code.
     """
     if fingerprint() != code:
         raise ValueError(f"this worker has ballsocket {fingerprint()}, but the run was started by {code}")
@@ -77,10 +74,7 @@ class PieceStore(ABC):
     def save(self, number: int, result: Any) -> Any:
         """Store the result of a piece of work; return the value to send back to the calling process.
 
-        Raises
-        ------
-        OSError
-            The store is not writable or the disk is full.
+        Raises OSError: the store is not writable or the disk is full.
         """
 
 
@@ -137,10 +131,7 @@ class Plan:
 
         Results are stored in a subfolder with the plan's name.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
+        Raises OSError: the folder is not writable or the disk is full.
         """
         folder = folder / self.name
         make_folder(folder)
@@ -193,10 +184,7 @@ class _ResultFiles(PieceStore):
     def save(self, number: int, result: Any) -> Any:
         """Write the result of a piece, and return it.
 
-        Raises
-        ------
-        ValueError
-            The result has a number that is NaN or infinite.
+        Raises ValueError: the result has a number that is NaN or infinite.
         """
         try:
             record = json.dumps({"key": self.keys[number], "result": result}, allow_nan=False)

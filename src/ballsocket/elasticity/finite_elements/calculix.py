@@ -68,10 +68,7 @@ def run(out: Path, *, threads: int = 1) -> CcxAnswer:
 def run_calculix(out: Path, threads: int) -> subprocess.CompletedProcess[str]:
     """Run CalculiX on a deck, or the deck in a folder, until it ends; the results of an earlier run are deleted.
 
-    Raises
-    ------
-    FileNotFoundError
-        The command `ccx` is not installed, or there is no deck in the folder.
+    Raises FileNotFoundError: the command `ccx` is not installed, or there is no deck in the folder.
     """
     command = shutil.which("ccx")
     if command is None:

@@ -112,10 +112,7 @@ _WEDGE = _element_nodes([(0, 0), (2, 0), (2, 2)], [(1, 0), (2, 1), (1, 2)])
 class TiltedDeck:
     """Input deck of a rigid ball that is displaced into a cup at a tilt.
 
-    Raises
-    ------
-    ValueError
-        An elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
+    Raises ValueError: an elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
     """
 
     joint: Joint  # one joint with a rigid ball and a liner that is bonded to rigid ground or layers
