@@ -24,17 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Column:
-    """Column of a table of contacts: a quantity in a unit.
-
-    Attributes
-    ----------
-    quantity : Quantity
-    reading : Unit
-        Unit of the column.
-    """
+    """Column of a table of contacts: a quantity in a unit."""
 
     quantity: Quantity
-    reading: Unit
+    reading: Unit  # unit of the column
 
     @property
     def name(self) -> str:

@@ -76,24 +76,12 @@ def rim_verdict(contact: Contact) -> Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class StrengthUse:
-    """Comparison of a contact's stress with one strength of the liner or the ball.
+    """Comparison of a contact's stress with one strength of the liner or the ball."""
 
-    Attributes
-    ----------
-    part : str
-        "liner" or "ball".
-    strength : str
-        Name of the strength.
-    stress : Bounded
-        Stress of the contact in MPa with its error bar.
-    allowed : float
-        Strength in MPa.
-    """
-
-    part: str
-    strength: str
-    stress: Bounded
-    allowed: float
+    part: str  # "liner" or "ball"
+    strength: str  # name of the strength
+    stress: Bounded  # stress of the contact in MPa with its error bar
+    allowed: float  # strength in MPa
 
     @property
     def ratio(self) -> Bounded:

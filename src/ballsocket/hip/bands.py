@@ -31,18 +31,11 @@ CONVERTED = ("volume", "depth", "penetration")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SharedCoefficient:
-    """Results of a cohort whose patients all have the same wear coefficient: low, median or high.
+    """Results of a cohort whose patients all have the same wear coefficient: low, median or high."""
 
-    Attributes
-    ----------
-    values : mapping of str to float
-        Coefficients at the lower end, the middle and the upper end of the band of the coefficient.
-    results : mapping of str to array (patients, reports, results)
-        Results of `CONVERTED`, by the names in `values`.
-    """
-
+    # coefficients at the lower end, the middle and the upper end of the band of the coefficient
     values: Mapping[str, float]
-    results: Mapping[str, Numbers]
+    results: Mapping[str, Numbers]  # (patients, reports, results), results of `CONVERTED`, by the names in `values`
 
     def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
         """Compute a quantile of a result over the patients at each report, for one wear coefficient."""
