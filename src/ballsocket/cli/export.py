@@ -16,7 +16,7 @@ from ..core.checks import known_name, shown
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
-from ..elasticity.off_axis import Sphere
+from ..elasticity.off_axis.model import Sphere
 from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import convert, parse, parse_units, split_quantity

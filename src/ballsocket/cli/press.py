@@ -57,7 +57,7 @@ from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
-    from ..elasticity.off_axis import PullOut
+    from ..elasticity.off_axis.preload import PullOut
 
 DEFAULT_MODEL = "hess-forsbach"
 
@@ -295,13 +295,13 @@ def press(
         remarks += assumptions
         wear_depth = None
         if OFF_AXIS in comparison and file.joint.clearance < 0 and held_cup.arc_of_cover > pi:
-            from ..elasticity.off_axis import Preload
+            from ..elasticity.off_axis.preload import Preload
 
             wear_depth = Preload(model=timed.model, joint=file.joint).wear_depth_to_loosen()
             remarks.append(f"uniform wear of the bore by {units.length(wear_depth)} ends the preload")
         pulled = None
         if friction_options.pull_out:
-            from ..elasticity.off_axis import pull_out
+            from ..elasticity.off_axis.preload import pull_out
 
             pulled = pull_out(timed.model, file.joint, friction_options.friction or 0.0)
             remarks += _pull_out_remarks(pulled, units)
