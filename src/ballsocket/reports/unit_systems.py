@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from enum import StrEnum
-from functools import reduce
+from functools import cached_property, reduce
 from math import isinf, nan
 from types import MappingProxyType
 from typing import Any
@@ -175,7 +175,7 @@ class Units(StrEnum):
         ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
         return (*self.columns[:-1], *(column for name, column in ratios.items() if name in known))
 
-    @property
+    @cached_property
     def columns(self) -> tuple[Column, ...]:
         """Columns of a contact, each with its unit."""
         return (*(Column(quantity, self.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)

@@ -19,8 +19,8 @@ import numpy
 
 from ....contact.coordinates import LIMIT, angle_root, log_angle_derivative
 from ....core import arrays
-from ....core.arrays import Array, exp, short_sine, sqrt
-from ....core.chebyshev import Pair, chebyshev_polynomials, convert_like, derivative_matrix, sum_series, traced_series
+from ....core.arrays import Array, convert_like, exp, short_sine, sqrt
+from ....core.chebyshev import Pair, chebyshev_polynomials, derivative_matrix, sum_series, traced_series
 from ....core.lazy import cached_property
 from ....problem import Joint
 from .chebyshev import (
