@@ -17,12 +17,12 @@ from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
+from ..core.unit_systems import Units
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
 from ..model_catalogue import JUDGE, OFF_AXIS
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
-from ..reports.unit_systems import Units
 from .options import ArcOfCover, drop_missing
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
+from ..core.unit_systems import Units
 from ..core.validity import Status
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, reference, with_gap
@@ -24,7 +25,6 @@ from ..problem import Joint
 from ..problem.cup import UP, Cup
 from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
     CupOptions,
