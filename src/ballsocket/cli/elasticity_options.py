@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import degrees, isfinite, pi
 from time import perf_counter
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
 
 from ..contact import Contact
 from ..contact.describe import COLUMNS
@@ -19,18 +18,18 @@ from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
 from ..core.unit_systems import Units
-from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
-from ..elasticity.finite_elements.progress import progress_to
-from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
-from ..elasticity.off_axis.contact import OffAxisContact
-from ..elasticity.off_axis.directions import polar_angle
-from ..elasticity.off_axis.model import Sphere
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
-from ..model_catalogue import judge, off_axis
+from ..model_catalogue import JUDGE, OFF_AXIS
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from .options import ArcOfCover, drop_missing
+
+if TYPE_CHECKING:
+    from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
+    from ..elasticity.finite_elements.spacing import Spacing
+    from ..elasticity.off_axis.contact import OffAxisContact
+    from ..elasticity.off_axis.model import Sphere
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +64,9 @@ class MeshOptions:
 
     def model(self, cup: Cup, meshes: int) -> FiniteElement:
         """Return the finite-element model of a cup, on one mesh or on two for error estimates."""
+        from ..elasticity.finite_elements.model import FiniteElement
+        from ..elasticity.finite_elements.spacing import Adapted, Element, Uniform
+
         known = {element.name.lower(): element for element in Element}
         element = Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
         spacing: Spacing = Adapted() if self.size is None else Uniform(size=self.size)
@@ -84,11 +86,15 @@ def refuse_mesh_options(options: Mapping[str, Any]) -> None:
     """Raise ValueError for options of the finite elements that are used without this model."""
     for name, value in options.items():
         if value is not None:
-            raise ValueError(f"--{name.replace('_', '-')} is for the finite elements: add --model {judge.name}")
+            raise ValueError(f"--{name.replace('_', '-')} is for the finite elements: add --model {JUDGE}")
 
 
 def solve_mesh(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[MeshedContact, float]:
     """Press a joint by finite elements with progress on stderr; return the contact and the time in s."""
+    from rich.console import Console
+
+    from ..elasticity.finite_elements.progress import progress_to
+
     start = perf_counter()
     status = Console(stderr=True).status("finite elements")
     with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
@@ -146,10 +152,12 @@ class DirectionOptions:
     def refuse(self) -> None:
         """Raise ValueError for options of `sphere` that are used without this model."""
         if self.ring_width is not None:
-            raise ValueError(f"--ring-width is for contact on the sphere: add --model {off_axis.name}, or a --tilt")
+            raise ValueError(f"--ring-width is for contact on the sphere: add --model {OFF_AXIS}, or a --tilt")
 
     def model(self) -> Sphere:
         """Return the model `sphere` with the ring width of the options."""
+        from ..elasticity.off_axis.model import Sphere
+
         if self.ring_width is None:
             return Sphere()
         return Sphere(ring_width=parse("ring_width", self.ring_width, Kind.ANGLE))
@@ -201,12 +209,14 @@ def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
     """Return one line with the place of the contact in its cup, the rings, the time and the estimated errors."""
     cost = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
     if contact.status.failed or contact.indentation == 0:
-        return f"{off_axis.name}: {cost}"
+        return f"{OFF_AXIS}: {cost}"
+    from ..elasticity.off_axis.directions import polar_angle
+
     peak = "pressure unbounded there"
     if isfinite(contact.max_pressure):
         peak = f"largest pressure {degrees(polar_angle(contact.max_pressure_at)):.3g}° from the axis"
     position = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {peak}"
-    return f"{off_axis.name}: {position}; {cost}; error of the rings: {_error_text(contact)}"
+    return f"{OFF_AXIS}: {position}; {cost}; error of the rings: {_error_text(contact)}"
 
 
 def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:

@@ -16,12 +16,12 @@ from ..core.checks import known_name, shown
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
-from ..elasticity.off_axis import Sphere
+from ..elasticity.off_axis.model import Sphere
 from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant
-from ..model_catalogue import off_axis, reference, with_gap
+from ..model_catalogue import OFF_AXIS, reference, with_gap
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
@@ -98,8 +98,8 @@ class ForceElementOptions:
 
     def _preloaded_element(self, joint: Joint, stated_cup: Cup, friction: Friction | None) -> PreloadedElement:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
-        if self.model not in (None, off_axis.name):
-            raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {off_axis.name}")
+        if self.model not in (None, OFF_AXIS):
+            raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {OFF_AXIS}")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
         cup = stated_cup.around_ball(joint.clearance)

@@ -20,7 +20,7 @@ from ..files.units import parse
 from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
-from ..model_catalogue import off_axis, with_gap
+from ..model_catalogue import OFF_AXIS, with_gap
 from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
 from ..version import __version__
@@ -176,11 +176,11 @@ def _contacts(
     """
     direction = direction_options.read(file)
     cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    default = off_axis.name if direction or cup.tilt(UP) > 0 else DEFAULT_MODEL
+    default = OFF_AXIS if direction or cup.tilt(UP) > 0 else DEFAULT_MODEL
     contacts = []
     for name in options.model or [default]:
         model = requested_model(name)
-        if model.name == off_axis.name:
+        if model.name == OFF_AXIS:
             model = replace(direction_options.model(), cup=cup).with_direction(**direction)
         model = with_gap(model, options.gap)
         contact = model.press(file.joint, **load)

@@ -143,11 +143,11 @@ def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
 
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
-    from ..hip.wear_uncertainty import uncertainty
-
     scatter = hip_file.uncertain
     if scatter is None:
         return None
+    from ..hip.wear_uncertainty import uncertainty
+
     samples, noun = scatter.count * (len(scatter.variability.distributions) + 2), scatter.variability.noun
     with _progress_bar(f"other {noun}", samples, noun) as progress:
         return uncertainty(

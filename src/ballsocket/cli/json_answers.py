@@ -17,11 +17,10 @@ import typer
 from ..contact.closed_sphere import NOTED_CHANGE
 from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
-from ..model_catalogue import judge, listed_models, off_axis, reference
+from ..model_catalogue import JUDGE, OFF_AXIS, listed_models, reference
 from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS, LENGTHS
 from ..problem.presets import joints, materials
-from ..reports.catalogue_lists import source_summary
 
 Answer = Mapping[str, Any]
 """JSON answer of a command."""
@@ -65,7 +64,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         "valid": answer.get("valid", all(result["valid"] for result in requested) if results else None),
         "error": answer.get("error", _errors(results)),
         "notes": answer.get("notes", notes),
-        "sources": [source_summary(source) for source in dict.fromkeys(_sources(answer))],
+        "sources": [source.summary() for source in dict.fromkeys(_sources(answer))],
     }
     return {**full, "next": [step.summary() for step in next_steps(full, arguments)]}
 
@@ -154,16 +153,16 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         why = f"{invalid[0]} is outside its valid range here, {valid_models[0]} is valid: see the notes"
         yield NextStep((*bare, "--model", valid_models[0]), why)
     if not valid_models:
-        alternatives = [name for name in (reference.name, off_axis.name, judge.name) if name not in results]
+        alternatives = [name for name in (reference.name, OFF_AXIS, JUDGE) if name not in results]
         why = "no model of this answer is valid here"
         yield from (NextStep((*bare, "--model", name), why) for name in alternatives)
-    elif not {judge.name, off_axis.name} & set(results):
+    elif not {JUDGE, OFF_AXIS} & set(results):
         changes = chain(*(result.get("hemisphere", {}).values() for result in answer["results"]))
         if (abs(numpy.hstack([0.0, *changes]).astype(float)) > NOTED_CHANGE).any():
             why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
-            yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
+            yield from (NextStep((*bare, "--model", name), why) for name in (JUDGE, OFF_AXIS))
         else:
-            yield NextStep((*bare, "--model", judge.name), "check by finite elements, with estimated errors")
+            yield NextStep((*bare, "--model", JUDGE), "check by finite elements, with estimated errors")
     cited = [name for name in valid_models[:1] if name in requested and name in listed_models]
     yield from (NextStep(("cite", name), "references of the model") for name in cited)
 

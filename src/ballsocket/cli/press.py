@@ -19,10 +19,8 @@ from ..core.checks import known_name
 from ..core.quantities import CONTACT
 from ..core.unit_systems import Units
 from ..core.validity import Status
-from ..elasticity.off_axis import Preload, PullOut
-from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
-from ..model_catalogue import catalogue, judge, off_axis, reference, with_gap
+from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, reference, with_gap
 from ..problem import Joint
 from ..problem.cup import UP, Cup
 from ..problem.presets import long_term_note
@@ -59,6 +57,7 @@ from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
+    from ..elasticity.off_axis.preload import PullOut
 
 DEFAULT_MODEL = "hess-forsbach"
 
@@ -81,13 +80,13 @@ class ModelOptions:
     @property
     def names(self) -> list[str]:
         """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
-        known = (*catalogue, judge.name, off_axis.name)
+        known = (*catalogue, JUDGE, OFF_AXIS)
         return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
         """True if the finite elements are requested."""
-        return judge.name in self.names
+        return JUDGE in self.names
 
     def choose_gaps(self, models: Mapping[str, Model]) -> dict[str, Model]:
         """Return the models and the exact one, with the requested gap where they have a choice."""
@@ -141,8 +140,8 @@ class FrictionOptions:
 
     def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
         """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
-        if self.pull_out and off_axis.name not in models:
-            raise ValueError(f"--pull-out is solved by the model {off_axis.name}: add --model {off_axis.name}")
+        if self.pull_out and OFF_AXIS not in models:
+            raise ValueError(f"--pull-out is solved by the model {OFF_AXIS}: add --model {OFF_AXIS}")
         if self.pull_out and assumed_arc:
             raise ValueError(
                 "--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file"
@@ -272,35 +271,39 @@ def press(
         remarks += [orientation_remark(stated_cup)] if orientation and joint_options.orients else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
-        models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
+        models = model_options.models(OFF_AXIS if needs_sphere else DEFAULT_MODEL)
         if model_options.has_finite_elements and direction:
             raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
         files.check_models(models)
         friction_options.check_pull_out(models, assumed_arc)
-        if off_axis.name not in models:
+        if OFF_AXIS not in models:
             direction_options.refuse()
         else:
             sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
             timed: Any = TimedModel(with_gap(sphere, model_options.gap))
-            models[off_axis.name] = timed
+            models[OFF_AXIS] = timed
         if model_options.has_finite_elements:
             fem: Any = with_gap(mesh.model(cup, meshes or 2), model_options.gap)
-            models[judge.name] = fem
+            models[JUDGE] = fem
             remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
         comparison = _compare(replace(file, cup=cup), load, models, model_options.choose_gaps(models))
-        if off_axis.name in comparison:
-            remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
+        if OFF_AXIS in comparison:
+            remarks.append(sphere_remark(comparison[OFF_AXIS], timed.seconds, units))
         if friction_options.friction is not None:
             contacts = successful_contacts(comparison)
             remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
         remarks += assumptions
         wear_depth = None
-        if off_axis.name in comparison and file.joint.clearance < 0 and held_cup.arc_of_cover > pi:
+        if OFF_AXIS in comparison and file.joint.clearance < 0 and held_cup.arc_of_cover > pi:
+            from ..elasticity.off_axis.preload import Preload
+
             wear_depth = Preload(model=timed.model, joint=file.joint).wear_depth_to_loosen()
             remarks.append(f"uniform wear of the bore by {units.length(wear_depth)} ends the preload")
         pulled = None
         if friction_options.pull_out:
-            pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
+            from ..elasticity.off_axis.preload import pull_out
+
+            pulled = pull_out(timed.model, file.joint, friction_options.friction or 0.0)
             remarks += _pull_out_remarks(pulled, units)
         return PressedJoint(
             file=replace(file, cup=held_cup, load=load, aim=direction),

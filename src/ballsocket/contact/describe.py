@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 from html import escape
 from math import nan
 from typing import TYPE_CHECKING, Any
@@ -29,42 +29,42 @@ class Column:
     quantity: Quantity
     reading: Unit  # unit of the column
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Key of the quantity in JSON, such as "max_pressure"."""
         return self.quantity.key
 
-    @property
+    @cached_property
     def attribute(self) -> str:
         """Name of the `Contact` attribute that has the quantity."""
         return self.quantity.name
 
-    @property
+    @cached_property
     def symbol(self) -> str:
         """Symbol of the quantity, such as "pmax"."""
         return self.quantity.symbol
 
-    @property
+    @cached_property
     def title(self) -> str:
         """Name of the quantity in words."""
         return self.quantity.title
 
-    @property
+    @cached_property
     def unit(self) -> str:
         """Unit of the column as text, such as "MPa"."""
         return self.reading.text
 
-    @property
+    @cached_property
     def factor(self) -> float:
         """Factor from the internal unit to the unit of the column."""
         return self.reading.factor
 
-    @property
+    @cached_property
     def head(self) -> str:
         """Heading of the column: symbol and unit, such as "pmax [MPa]"."""
         return self.quantity.head(self.reading)
 
-    @property
+    @cached_property
     def label(self) -> str:
         """Axis label of a plot: title, symbol and unit of the quantity."""
         return self.quantity.label(self.reading)
@@ -175,6 +175,8 @@ def count_text(valid: Array) -> str:
 
 def number_text(value: Array, digits: int, gap: str) -> str:
     """Format a number, or the range of an array, such as "3 to 5"; `gap` if all are NaN."""
+    if type(value) is float:
+        return gap if value != value else f"{value:.{digits}g}"
     values = arrays.to_numpy(value)
     numbers = values[~numpy.isnan(values)]
     if not numbers.size:

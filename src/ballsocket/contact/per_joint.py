@@ -156,9 +156,7 @@ class CombinedSolution:
 
     def _match_load_array(self, values: numpy.ndarray, leading_shape: tuple[int, ...] = ()) -> Array:
         """Convert NumPy values to the shape, library, data type and device of the load."""
-        values = values.reshape((*leading_shape, *self.shape))
-        xp = arrays.namespace(self.like)
-        return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
+        return arrays.convert_like(values.reshape((*leading_shape, *self.shape)), self.like)
 
     def _combine_relative_error(self, name: str) -> Array:
         return self.combine(lambda contacts: contacts.error[name])

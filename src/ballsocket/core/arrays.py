@@ -217,6 +217,14 @@ def device(x: Array) -> Any:
     return array_api_compat.device(x)
 
 
+def convert_like(values: numpy.ndarray, like: Array) -> Array:
+    """Convert NumPy values to the library, dtype and device of another array."""
+    xp = namespace(like)
+    if xp is numpy and like.dtype == values.dtype:
+        return values
+    return xp.asarray(values, dtype=like.dtype, device=device(like))
+
+
 def machine_epsilon(x: Array) -> float:
     """Return the relative rounding error of the dtype of `x`."""
     if type(x) is float:

@@ -22,7 +22,8 @@ from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, where
 from ..core.checks import shown
 from ..core.display import OneLine
-from ..elasticity.off_axis import Preload, Sphere
+from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.preload import Preload
 from ..problem import Joint
 from .ball_centre import Constants, Vector
 from .bristles import Bristles

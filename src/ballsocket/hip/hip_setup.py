@@ -29,9 +29,9 @@ from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
-from .film import CYCLES as FILM_CYCLES
 from .film import METHODS as FILM_METHODS
 from .film import Film, film
+from .film_limit import CYCLES as FILM_CYCLES
 from .film_limit import FilmLimit
 from .kinematics import SurfaceSliding
 from .mix import Mix

@@ -15,7 +15,7 @@ from ..core.checks import known_name
 from ..core.quantities import QUANTITIES
 from ..files.schema import Table
 from ..files.schema_keys import json_schema
-from ..model_catalogue import off_axis
+from ..model_catalogue import OFF_AXIS
 from ..problem.dimensions import DIAMETERS
 
 FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -83,7 +83,7 @@ TOOLS: Mapping[str, Tool] = MappingProxyType(
             command="press",
             description="Press a ball by a load at an angle to the cup's axis: contact, rim and largest pressure in "
             "three dimensions.",
-            fixed=(f"--model={off_axis.name}",),
+            fixed=(f"--model={OFF_AXIS}",),
             hidden=("model", "every", *_MESH),
         ),
         "curve": Tool(command="curve", description="Press a joint by one model in equal steps from zero to a load."),

@@ -14,7 +14,6 @@ from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
 from ..hip.variability import INFLUENCED_RESULTS
-from .study_plots import draw_indices
 from .style import BLUE, finish, new_figure, single_axes
 
 if TYPE_CHECKING:
@@ -219,6 +218,8 @@ def share_figure(bands: Bands) -> Figure:
         }
         for number, result in enumerate(INFLUENCED_RESULTS)
     }
+    from .study_plots import draw_indices  # loads the studies
+
     return draw_indices(panels, [name.replace("_", " ") for name in bands.variability.distributions])
 
 

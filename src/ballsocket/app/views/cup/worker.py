@@ -12,9 +12,10 @@ import numpy
 
 from ....elasticity.finite_elements.mesh import socket_shape
 from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis import Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....elasticity.off_axis.grid import rim_grid
+from ....elasticity.off_axis.model import Sphere
+from ....elasticity.off_axis.orientations import orient
 from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
 from ....files.joint_file import JointFile
 from ....problem import Joint

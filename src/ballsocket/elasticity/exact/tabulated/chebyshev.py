@@ -14,9 +14,9 @@ import numpy
 
 from ....contact.coordinates import RATIO_SHIFT, angle_root
 from ....core import arrays
-from ....core.arrays import Array, exp, sqrt
+from ....core.arrays import Array, convert_like, exp, sqrt
 from ....core.arrays import log as ln
-from ....core.chebyshev import chebyshev_polynomials, contract_factors, convert_like
+from ....core.chebyshev import chebyshev_polynomials, contract_factors
 from ....core.input_files import open_input
 
 POISSON = (-0.5, 0.4993)
