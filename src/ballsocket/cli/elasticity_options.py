@@ -24,32 +24,11 @@ from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Unif
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..elasticity.off_axis.model import Sphere
-from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
 from ..model_catalogue import judge, off_axis
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units
-from .options import ArcOfCover, drop_missing
-
-
-@dataclass(frozen=True, kw_only=True)
-class CupOptions:
-    """Options of a cup; they replace single values of the cup in the joint file."""
-
-    arc_of_cover: ArcOfCover = None
-    chamfer: Annotated[
-        str | None,
-        typer.Option(help="Width of the chamfer on the rim's inner edge in mm. Default: as in the file, or 0."),
-    ] = None
-    interface: Annotated[
-        str | None,
-        typer.Option(help="Liner on its backing: 'bonded' or 'sliding'. Default: as in the file, or bonded."),
-    ] = None
-
-    def apply_to(self, cup: Cup) -> Cup:
-        """Return a cup with the values that the options replace."""
-        return read_cup(drop_missing(vars(self)), cup)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,31 +96,13 @@ def _error_text(contact: SolvedContact) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DirectionOptions:
-    """Options of the load's direction, and of the rings of the model `sphere`."""
+class RingOptions:
+    """Options of the rings of the model `sphere`."""
 
-    tilt: Annotated[
-        str | None,
-        typer.Option(
-            help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere. "
-            "Default: as in the file, or 0 deg."
-        ),
-    ] = None
-    direction: Annotated[
-        str | None,
-        typer.Option(
-            help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere. "
-            "Default: as in the file."
-        ),
-    ] = None
     ring_width: Annotated[
         str | None,
         typer.Option(help="sphere: width of its rings in degrees. Default: 2 deg; finer is slower and more exact."),
     ] = None
-
-    def read(self, file: JointFile) -> dict[str, Any]:
-        """Read the direction from the options or the joint file; empty if there is none."""
-        return read_aim(drop_missing({"tilt": self.tilt, "direction": self.direction})) or file.aim
 
     def refuse(self) -> None:
         """Raise ValueError for options of `sphere` that are used without this model."""

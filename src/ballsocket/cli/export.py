@@ -18,7 +18,8 @@ from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
-from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.inputs import JOINT, LOAD, PARTS
+from ..files.joint_file import JointFile, read_aim
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant
 from ..model_catalogue import off_axis, reference, with_gap
@@ -26,9 +27,9 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .elasticity_options import MeshOptions, solve_mesh
 from .model_file import requested_model
-from .options import ArcOfCover, GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
+from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)
@@ -68,7 +69,6 @@ class ForceElementOptions:
         str | None,
         typer.Option(help="Combined roughness, the least film of --viscosity. Default: 0.001 mm."),
     ] = None
-    arc_of_cover: ArcOfCover = None
 
     def element(self, file: JointFile) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
@@ -81,15 +81,12 @@ class ForceElementOptions:
             The model has no force law, or a value is not allowed.
         """
         friction = None if self.friction is None else Friction(coefficient=self.friction)
-        stated_cup = file.cup
-        if self.arc_of_cover is not None:
-            stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
         if file.joint.clearance < 0:
-            return self._preloaded_element(file.joint, stated_cup, friction)
+            return self._preloaded_element(file.joint, file.cup, friction)
         default = default_model(file.joint, {}) if self.gap is None else reference
         model = with_gap(default if self.model is None else requested_model(self.model), self.gap)
         lubricant = self._lubricant()
-        cup = None if stated_cup == Cup() and lubricant is None else stated_cup
+        cup = None if file.cup == Cup() and lubricant is None else file.cup
         damping = self._damping()
         try:
             return ForceElement(model, file.joint, damping, friction, cup, lubricant=lubricant)
@@ -155,7 +152,7 @@ def export(
     *,
     target: Annotated[str, typer.Argument(help=f"Program: {', '.join(TARGETS)}.")],
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover")],
     element_options: ForceElementOptions,
     out: Annotated[
         Path,
@@ -189,7 +186,7 @@ def export(
 def fmu(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover")],
     element_options: ForceElementOptions,
     out: Annotated[Path, typer.Option(help="File to write (.fmu); files of the FMI cross-check are put beside it.")],
     fmi: Annotated[int, typer.Option(help="Version of the FMI standard: 2 or 3.")] = 3,
@@ -234,9 +231,8 @@ _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 def deck(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", *LOAD)],
     out: Annotated[Path, typer.Option(help="Output folder, or the deck itself (.inp); created if it does not exist.")],
-    load_options: LoadOptions,
     steps: Annotated[
         int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
     ] = 8,
@@ -253,7 +249,6 @@ def deck(
             "Default: 0 deg."
         ),
     ] = None,
-    cup: CupOptions,
     mesh: MeshOptions,
     run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
 ) -> None:
@@ -269,12 +264,12 @@ def deck(
             f"a deck needs a clearance of 0 or more, got interference = {file.joint.interference:g} mm: press solves a "
             "preloaded joint (model sphere), and export table has its forces"
         )
-    load = load_options.read(file)
+    load = needed_load(file)
     if tilt is not None:
         angle = read_aim({"tilt": tilt})["tilt"]
-        _write_tilted(replace(file, cup=cup.apply_to(file.cup)), load, angle, out, mesh, run)
+        _write_tilted(file, load, angle, out, mesh, run)
         return
-    contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
+    contact, _ = solve_mesh(mesh.model(file.cup, meshes=1), file.joint, load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.calculix import run as run_ccx

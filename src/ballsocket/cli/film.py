@@ -14,6 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.contact import OffAxisContact
+from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..files.units import parse
 from ..lubrication.film import METHODS
@@ -24,17 +25,17 @@ from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import CupOptions, DirectionOptions, tilted_cup
+from .elasticity_options import RingOptions, tilted_cup
 from .model_file import requested_model
 from .options import (
     GapName,
     JointName,
     JointOptions,
-    LoadOptions,
     OutputOptions,
     UnitSystem,
     complete_model,
     expand_groups,
+    needed_load,
 )
 from .press import DEFAULT_MODEL
 from .root import app, fail
@@ -123,11 +124,9 @@ _NEARLY_PARALLEL = 0.99
 def film(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
-    load: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     film_options: FilmOptions,
-    direction_options: DirectionOptions,
-    cup_options: CupOptions,
+    rings: RingOptions,
     units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:
@@ -148,7 +147,7 @@ def film(
             lubricant=film_options.lubricant(),
             method=film_options.method,
         )
-        for contact in _contacts(film_options, file, load.read(file), direction_options, cup_options)
+        for contact in _contacts(film_options, file, rings)
     ]
     output.print(
         lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
@@ -160,13 +159,7 @@ def film(
         fail(f"the film of {failed[0].contact.model.name} did not converge")
 
 
-def _contacts(
-    options: FilmOptions,
-    file: JointFile,
-    load: dict[str, float],
-    direction_options: DirectionOptions,
-    cup_options: CupOptions,
-) -> list[Contact]:
+def _contacts(options: FilmOptions, file: JointFile, rings: RingOptions) -> list[Contact]:
     """Press the joint by the requested models.
 
     Raises
@@ -174,14 +167,13 @@ def _contacts(
     typer.Exit
         A model has no result.
     """
-    direction = direction_options.read(file)
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    default = off_axis.name if direction or cup.tilt(UP) > 0 else DEFAULT_MODEL
+    cup, load = tilted_cup(file.cup, file.aim), needed_load(file)
+    default = off_axis.name if file.aim or cup.tilt(UP) > 0 else DEFAULT_MODEL
     contacts = []
     for name in options.model or [default]:
         model = requested_model(name)
         if model.name == off_axis.name:
-            model = replace(direction_options.model(), cup=cup).with_direction(**direction)
+            model = replace(rings.model(), cup=cup).with_direction(**file.aim)
         model = with_gap(model, options.gap)
         contact = model.press(file.joint, **load)
         if contact.status.failed:

@@ -20,6 +20,7 @@ from ..core.quantities import CONTACT
 from ..core.validity import Status
 from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
+from ..files.inputs import LOAD, PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue, judge, off_axis, reference, with_gap
 from ..problem import Joint
@@ -29,9 +30,8 @@ from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
-    CupOptions,
-    DirectionOptions,
     MeshOptions,
+    RingOptions,
     TimedModel,
     mesh_remark,
     orientation_remark,
@@ -49,10 +49,10 @@ from .options import (
     JointName,
     JointNames,
     JointOptions,
-    LoadOptions,
     UnitSystem,
     complete_model,
     expand_groups,
+    needed_load,
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import app, fail
@@ -225,16 +225,14 @@ def _strength_summary(contact: Contact | None) -> dict[str, Any]:
 def press(
     *,
     joint: JointNames = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     friction_options: FrictionOptions,
     model_options: ModelOptions,
     units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
-    direction_options: DirectionOptions,
-    cup_options: CupOptions,
+    rings: RingOptions,
     mesh: Annotated[MeshOptions, "fem"],
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
@@ -260,10 +258,9 @@ def press(
     def press_joint(name: str | None) -> PressedJoint:
         """Press one joint by the requested models."""
         file = joint_options.read(name)
-        is_at_rest = file.joint.clearance < 0 and load_options.are_missing(file)
-        load = {"force": 0.0} if is_at_rest else load_options.read(file)
-        direction, remarks = direction_options.read(file), []
-        stated_cup = cup_options.apply_to(file.cup)
+        is_at_rest = file.joint.clearance < 0 and not file.load
+        load = {"force": 0.0} if is_at_rest else needed_load(file)
+        direction, stated_cup, remarks = file.aim, file.cup, []
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
         assumptions = ["force 0 assumed, the ball is at rest in its socket; set --force"] if is_at_rest else []
@@ -278,9 +275,9 @@ def press(
         files.check_models(models)
         friction_options.check_pull_out(models, assumed_arc)
         if off_axis.name not in models:
-            direction_options.refuse()
+            rings.refuse()
         else:
-            sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
+            sphere = replace(rings.model(), cup=cup).with_direction(**direction)
             timed: Any = TimedModel(with_gap(sphere, model_options.gap))
             models[off_axis.name] = timed
         if model_options.has_finite_elements:
@@ -378,14 +375,12 @@ def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
 def curve(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", *LOAD)],
     model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     gap: GapName = None,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
-    cup: CupOptions,
     as_json: AsJson = False,
 ) -> None:
     """Press a joint in equal steps from zero to a load.
@@ -396,8 +391,8 @@ def curve(
     """
     file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
     fractions = numpy.linspace(0.0, 1.0, points)
-    steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
-    contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
+    steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
+    contact = named.in_cup(file.cup).press(file.joint, **steps)
     if as_json:
         summary: Any = contact.summary()
         valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}

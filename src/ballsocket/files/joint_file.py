@@ -40,7 +40,7 @@ class LengthsTable(Table, frozen=True, kw_only=True):
     outer_radius: Length | None = None
     outer_diameter: Length | None = None
     interference: Length | None = None
-    support: Annotated[Support, meaning("outermost surface behind the liner: fixed or free")] = Support.FIXED
+    support: Annotated[Support, meaning("outermost surface behind the liner")] = Support.FIXED
 
 
 class MaterialName(Text):
@@ -86,10 +86,10 @@ class CupTable(Table, frozen=True, kw_only=True):
     chamfer: Length | None = None
     inclination: Angle | None = None
     anteversion: Angle | None = None
-    interface: Annotated[Interface | None, meaning("interface of liner and backing: bonded or sliding")] = None
-    side: Annotated[Side | None, meaning("side of the body: right or left")] = None
+    interface: Annotated[Interface | None, meaning("interface of liner and backing")] = None
+    side: Annotated[Side | None, meaning("side of the body")] = None
     orientation: Annotated[
-        AngleDefinition | None, meaning("definition of inclination and anteversion; radiographic by default")
+        AngleDefinition | None, meaning("definition of inclination and anteversion (radiographic by default)")
     ] = None
     pelvic_tilt: Annotated[
         Angle | None, meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front")
@@ -120,7 +120,7 @@ class LoadTable(Table, frozen=True, kw_only=True):
     indentation: Length | None = None
     half_angle: Angle | None = None
     tilt: Angle | None = None
-    direction: Annotated[Direction | None, meaning("direction to the right, to the front and upwards")] = None
+    direction: Annotated[Direction | None, meaning("direction of the load: to the right, to the front, upwards")] = None
 
 
 class JointTables(Table, frozen=True, kw_only=True):
@@ -276,16 +276,21 @@ def describe_joint(tables: JointTables, name: str = "", source: str = "") -> Joi
 
 
 def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
-    """Replace lengths and materials of a joint file by those of tables as in a joint file.
+    """Replace values of a joint file by those of tables as in a joint file.
+
+    The name of a material replaces all its numbers. A length, a load or a direction replaces the one that excludes it;
+    `Joint.replace` holds the other lengths that the file gives, and names those that change.
 
     Raises
     ------
     ValueError
-        As of `read_joint`; numbers of a ball that is rigid, without a material.
+        As of `read_joint`; keys of the tables that exclude each other; a length that would change another one.
     """
     tables, joint = read_table(content, JointFileTable), file.joint
-    lengths = tables.joint or LengthsTable()
+    lengths, load = tables.joint or LengthsTable(), tables.load or LoadTable()
     changes: dict[str, Any] = dict(quantities_of(lengths))
+    if "support" in content.get("joint", {}):
+        changes["support"] = lengths.support
     if tables.shell is not None:
         if joint.backing:
             raise ValueError("the joint has layers behind its liner already; change them in its file")
@@ -295,16 +300,13 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
         if material is not None:
             changes[part] = _material(part, material, getattr(joint, part))
     with as_given(written_in(lengths)):
-        return replace(file, joint=joint.replace(**changes))
-
-
-def read_load(content: Mapping[str, Any]) -> dict[str, float]:
-    """Read at most one of force, indentation and half_angle, as the keyword of a press."""
-    return _load_of(read_table(content, LoadTable))
+        joint = joint.replace(**changes) if changes else joint
+    cup = cup_of(tables.cup or CupTable(), file.cup)
+    return replace(file, joint=joint, load=_load_of(load) or file.load, cup=cup, aim=_aim_of(load) or file.aim)
 
 
 def _load_of(table: LoadTable) -> dict[str, float]:
-    """Return the load of a table as the keyword of a press; empty without a load."""
+    """Return at most one of force, indentation and half_angle as the keyword of a press; empty without a load."""
     load = quantities_of(table, "force", "indentation", "half_angle")
     if len(load) > 1:
         raise ValueError(f"one load is needed, got {', '.join(load)}")
