@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
+from math import inf
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -33,7 +34,7 @@ class Typical(NamedTuple):
     ends: tuple[float, float]
     step: float
     example: str
-    bounds: tuple[float, float] | None = None
+    bounds: tuple[float, float] = (-inf, inf)
     reason: str = ""  # of the bounds
     sizes: tuple[float, ...] = ()  # of manufacturers
 

@@ -9,10 +9,10 @@ from typing import Any
 from ...core.checks import check_names
 from ...files.joint_file import JointFile, read_aim, read_cup
 from ...files.joint_toml import cup_table
-from ...problem.cup import UP, Interface, Side
+from ...problem.cup import UP, Side
 from ..state.screen import Screen
 from .fields import Field, segments
-from .numbers import CUP_NUMBERS
+from .numbers import CUP_NUMBERS, choice_of
 
 _BODY, _AXIS = "body", "axis"
 _LEANS = ("inwards", "forwards")
@@ -36,10 +36,8 @@ def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
             for name, (value, hidden) in numbers.items()
         ),
         segments("aim", "Load direction given", aims, _AXIS if tilted else _BODY),
-        segments("side", "Side of the body", [side.value for side in Side], cup.side.value),
-        segments(
-            "interface", "Liner on its backing", [interface.value for interface in Interface], cup.interface.value
-        ),
+        choice_of("cup.side", cup.side.value),
+        choice_of("cup.interface", cup.interface.value),
     ]
     return {f"{view}.{field['name']}": {**field, "name": f"{view}.{field['name']}"} for field in listed}
 

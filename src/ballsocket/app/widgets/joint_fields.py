@@ -20,7 +20,7 @@ from ...problem.presets import joints, materials
 from ..pressing import same_load, tilt_of
 from ..state.screen import Screen
 from .fields import Field, Options, choice, segments, tick, words
-from .numbers import ALLOWABLE, THICKNESS, TILT, Number, load_of, number_of
+from .numbers import ALLOWABLE, THICKNESS, TILT, Number, choice_of, load_of, number_of
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
@@ -75,7 +75,7 @@ def _preset_input(file: JointFile) -> JointInput:
 def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list[JointInput]:
     values = _numbers_of(screen.file.joint, tables)
     specs = {name: number_of(name, screen.size) for name in names}
-    known = {name: (spec, values.get(spec.table, {}).get(spec.key)) for name, spec in specs.items()}
+    known = {name: (spec, values.get(spec.entry.part, {}).get(spec.entry.key)) for name, spec in specs.items()}
     return [
         _number_input(screen, name, spec, value)
         for name, (spec, value) in known.items()
@@ -104,10 +104,10 @@ def _number_input(screen: Screen, name: str, spec: Number, value: float) -> Join
 
 
 def _set_number(tables: Tables, spec: Number, value: float) -> None:
-    if spec.table == "joint":
-        _set_length(tables["joint"], spec.key, value)
+    if spec.entry.part == "joint":
+        _set_length(tables["joint"], spec.entry.key, value)
     else:
-        tables.setdefault(spec.table, {})[spec.key] = value
+        tables.setdefault(spec.entry.part, {})[spec.entry.key] = value
 
 
 def _set_length(lengths: Tables, name: str, value: float) -> None:
@@ -258,8 +258,7 @@ def layer_fields(joint: Joint) -> dict[str, Field]:
         choice("behind.add", "Add a layer behind the liner", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE)
     )
     if joint.backing:
-        supports = [support.value for support in Support]
-        listed.append(segments("behind.support", "Outermost surface", supports, joint.support.value))
+        listed.append({**choice_of("joint.support", joint.support.value), "name": "behind.support"})
     return {field["name"]: field for field in listed}
 
 

@@ -199,5 +199,5 @@ def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
 
 def _nearest_size(name: str, value: float) -> float:
     single, times = (DIAMETERS[name], 2) if name in DIAMETERS else (name, 1)
-    sizes = NUMBERS[single].sizes if single in NUMBERS else ()
+    sizes = NUMBERS[single].typical.sizes if single in NUMBERS else ()
     return min((times * size for size in sizes), key=lambda size: abs(size - value), default=value)
