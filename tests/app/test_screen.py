@@ -369,7 +369,12 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
     [
         ("", "load", "3,000", "Normal force '3,000' could be two numbers: write 3000 or 3.000"),
         ("", "load", HUGE, "the integer is too large"),
-        ("", "liner_poisson", "0,7", "Poisson's ratio of the liner must be -0.999 to 0.5 (the limits of an isotropic solid)"),
+        (
+            "",
+            "liner_poisson",
+            "0,7",
+            "Poisson's ratio of the liner must be -0.999 to 0.5 (the limits of an isotropic solid)",
+        ),
         ("", "clearance", None, "Diametral clearance must be a number in mm, or a length such as '16 mm', got None"),
         ("", "clearence", "1", "'clearence' among the inputs is not known"),
         ("", "liner", 3, "liner = 3 is not a material"),

@@ -6,17 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import degrees, isfinite, pi
 from time import perf_counter
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-import typer
 from rich.console import Console
 
 from ..contact import Contact
 from ..contact.describe import COLUMNS
 from ..contact.per_joint import SolvedContact
 from ..contact.verdict import Verdict, rim_verdict
-from ..core.checks import known_name, require
-from ..core.kinds import Kind
+from ..core.checks import require
 from ..core.quantities import CONTACT, LOADS
 from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
@@ -24,39 +22,43 @@ from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Unif
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..elasticity.off_axis.model import Sphere
-from ..files.units import parse
+from ..files.schema import Angle, Length, Table, Word, meaning
+from ..files.units import as_given
 from ..model_catalogue import judge, off_axis
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units
 
 
-@dataclass(frozen=True, kw_only=True)
-class MeshOptions:
-    """Options of a finite-element mesh."""
+class ElementSize(Length):
+    """Size of the elements in mm."""
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        size = super().read(name, value)
+        require(name, float(size), size > 0, "an element's size (mm) is above 0")
+        return size
+
+
+class ElementName(Word):
+    """Type of the elements."""
+
+    choices = tuple(element.name.lower() for element in Element)
+
+
+class MeshTable(Table, frozen=True, kw_only=True):
+    """Finite-element mesh."""
 
     element_size: Annotated[
-        str | None, typer.Option(help="Element size in the contact in mm: '0.05 mm'. Default: from the contact size.")
+        ElementSize | None, meaning("element size in the contact", example="0.05 mm", default="from the contact size")
     ] = None
-    element: Annotated[
-        str | None, typer.Option(help="Element type: 'biquadratic' or 'bilinear'. Default: biquadratic.")
-    ] = None
+    element: Annotated[ElementName | None, meaning("element type", default="biquadratic")] = None
 
     def model(self, cup: Cup, meshes: int) -> FiniteElement:
         """Return the finite-element model of a cup, on one mesh or on two for error estimates."""
-        known = {element.name.lower(): element for element in Element}
-        element = Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
-        spacing: Spacing = Adapted() if self.size is None else Uniform(size=self.size)
+        element = Element[(self.element or "biquadratic").upper()]
+        spacing: Spacing = Adapted() if self.element_size is None else Uniform(size=float(self.element_size))
         return FiniteElement(cup=cup, spacing=spacing, element=element, meshes=meshes)
-
-    @property
-    def size(self) -> float | None:
-        """Element size in mm; None if the option is not used."""
-        if self.element_size is None:
-            return None
-        length = parse("element_size", self.element_size, Kind.LENGTH)
-        require("element_size", length, length > 0, "an element's size (mm) is above 0")
-        return length
 
 
 def refuse_mesh_options(options: Mapping[str, Any]) -> None:
@@ -95,13 +97,11 @@ def _error_text(contact: SolvedContact) -> str:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class RingOptions:
-    """Options of the rings of the model `sphere`."""
+class RingTable(Table, frozen=True, kw_only=True):
+    """Rings of the model `sphere`."""
 
     ring_width: Annotated[
-        str | None,
-        typer.Option(help="sphere: width of its rings in degrees. Default: 2 deg; finer is slower and more exact."),
+        Angle | None, meaning("width of its rings; finer is slower and more exact", default="2 deg")
     ] = None
 
     def refuse(self) -> None:
@@ -113,7 +113,8 @@ class RingOptions:
         """Return the model `sphere` with the ring width of the options."""
         if self.ring_width is None:
             return Sphere()
-        return Sphere(ring_width=parse("ring_width", self.ring_width, Kind.ANGLE))
+        with as_given({"ring_width": self.ring_width.written}):
+            return Sphere(ring_width=float(self.ring_width))
 
 
 def orientation_summary(cup: Cup) -> dict[str, dict[str, float]]:

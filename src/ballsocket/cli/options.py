@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from copy import copy
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
@@ -15,8 +14,10 @@ from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
 from ..core.quantities import JOINT as LENGTHS
 from ..core.quantities import LOADS
-from ..files.inputs import ORIENTATION, PARTS, inputs_in
+from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
 from ..files.joint_file import JointFile, joint_of, read_joint, varied
+from ..files.schema import Table
+from ..files.tables import read_table
 from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
 from ..problem.presets import joints
@@ -89,23 +90,6 @@ class JointOptions:
 
     tables: Mapping[str, Mapping[str, str]]
 
-    @staticmethod
-    def parameters(parts: Sequence[str]) -> Iterator[Parameter]:
-        """Return a parameter for each input of some parts of a joint file."""
-        for entry in inputs_in(parts):
-            option = typer.Option(help=entry.help, autocompletion=_completion(entry.choices))
-            kind = Annotated[str | None, option]
-            yield Parameter(entry.name, Parameter.KEYWORD_ONLY, default=None, annotation=kind)
-
-    @classmethod
-    def taken(cls, options: dict[str, Any], parts: Sequence[str]) -> Self:
-        """Take the values of the inputs of some parts out of the options of a command."""
-        tables: dict[str, dict[str, str]] = {}
-        for entry in inputs_in(parts):
-            if (text := options.pop(entry.name)) is not None:
-                tables.setdefault(entry.part, {})[entry.key] = text
-        return cls(tables)
-
     def read(self, name: str | None) -> JointFile:
         """Read a joint from a file, a preset or the options alone; options replace single values.
 
@@ -131,15 +115,6 @@ class JointOptions:
     def orients(self) -> bool:
         """True if an option orients the cup."""
         return any(f"cup.{key}" in ORIENTATION for key in self.tables.get("cup", {}))
-
-
-def _completion(choices: Sequence[str]) -> Callable[[str], list[str]] | None:
-    """Return the function that completes words for a shell; None without words."""
-
-    def complete(start: str) -> list[str]:
-        return [name for name in choices if name.startswith(start.lower())]
-
-    return complete if choices else None
 
 
 def needed_load(file: JointFile) -> dict[str, float]:
@@ -216,23 +191,19 @@ def choose_executor(workers: int | None, scheduler: str | None, default: Engine)
 def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command whose groups of options are expanded to single parameters, for typer.
 
-    typer makes an option of each parameter in the signature of a function. A group is a dataclass whose fields are
-    annotated like such parameters, or `JointOptions`. The returned function has a signature in which the options of
-    each group replace the group; called with their values, it builds the groups and calls the command.
+    typer makes an option of each parameter in the signature of a function. A group is a table of files, whose keys
+    become options; `JointOptions`; or a dataclass whose fields are annotated like parameters. The returned function has
+    a signature in which the options of each group replace the group; called with their values, it builds the groups and
+    calls the command.
 
-    A text in the annotation of a group, `mesh: Annotated[MeshOptions, "fem"]`, is put before the help of its options.
+    A text in the annotation of a group, `mesh: Annotated[MeshTable, "fem"]`, is put before the help of its options.
     """
     parameters = signature(command, eval_str=True).parameters.values()
     types = {parameter.name: _group_type(parameter) for parameter in parameters}
-    groups: dict[str, Any] = {name: entry for name, entry in types.items() if is_dataclass(entry[0])}
+    groups: dict[str, Any] = {name: entry for name, entry in types.items() if _is_group(entry[0])}
 
     def expanded_command(**options: Any) -> None:
-        built = {
-            name: group.taken(options, annotation)
-            if group is JointOptions
-            else group(**{field.name: options.pop(field.name) for field in fields(group)})
-            for name, (group, annotation) in groups.items()
-        }
+        built = {name: _built(group, annotation, options) for name, (group, annotation) in groups.items()}
         command(**options, **built)
 
     expanded_command.__name__, expanded_command.__doc__ = command.__name__, command.__doc__
@@ -252,14 +223,41 @@ def _group_type(parameter: Parameter) -> tuple[Any, Any]:
     return get_args(parameter.annotation)
 
 
+def _is_group(kind: Any) -> bool:
+    return isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, Table))
+
+
+def _built(group: Any, annotation: Any, options: dict[str, Any]) -> Any:
+    """Take the values of a group out of the options of a command, and return the group."""
+    if not (group is JointOptions or issubclass(group, Table)):
+        return group(**{field.name: options.pop(field.name) for field in fields(group)})
+    tables: dict[str, dict[str, str]] = {}
+    for entry in inputs_in(annotation) if group is JointOptions else inputs_of(group):
+        if (text := options.pop(entry.name)) is not None:
+            tables.setdefault(entry.part, {})[entry.key] = text
+    return JointOptions(tables) if group is JointOptions else read_table(tables.get("", {}), group)
+
+
 def _group_options(group: Any, annotation: Any) -> Iterator[Parameter]:
     """Return the options of a group as single parameters."""
     if group is JointOptions:
-        yield from JointOptions.parameters(annotation)
-        return
-    for field in signature(group, eval_str=True).parameters.values():
-        kind, option = get_args(field.annotation)
-        if annotation:
-            option = copy(option)
-            option.help = f"{annotation}: {option.help[0].lower()}{option.help[1:]}"
-        yield field.replace(annotation=Annotated[kind, option])
+        yield from (_parameter(entry, entry.help, None) for entry in inputs_in(annotation))
+    elif issubclass(group, Table):
+        for entry in inputs_of(group):
+            text = f"{annotation}: {entry.help[0].lower()}{entry.help[1:]}" if annotation else entry.help
+            yield _parameter(entry, text, plain_default(entry.field))
+    else:
+        for field in signature(group, eval_str=True).parameters.values():
+            kind, option = get_args(field.annotation)
+            yield field.replace(annotation=Annotated[kind, option])
+
+
+def _parameter(entry: Input, text: str, default: Any) -> Parameter:
+    """Return the parameter of an input, for typer."""
+
+    def complete(start: str) -> list[str]:
+        return [name for name in entry.choices if name.startswith(start.lower())]
+
+    option = typer.Option(help=text, autocompletion=complete if entry.choices else None)
+    kind: Any = Annotated[str if default else str | None, option]
+    return Parameter(entry.name, Parameter.KEYWORD_ONLY, default=default, annotation=kind)

@@ -24,7 +24,7 @@ from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orient
 from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
-from .elasticity_options import RingOptions
+from .elasticity_options import RingTable
 from .options import (
     GapName,
     JointName,
@@ -134,7 +134,7 @@ def orient(
     joint: JointName = None,
     joint_options: Annotated[JointOptions, (*PARTS, *LOAD, "load.direction", "cup.side", *_RIM)],
     orientation: OrientationOptions,
-    rings: RingOptions,
+    rings: Annotated[RingTable, "sphere"],
     units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:

@@ -30,8 +30,8 @@ from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
-    MeshOptions,
-    RingOptions,
+    MeshTable,
+    RingTable,
     TimedModel,
     mesh_remark,
     orientation_remark,
@@ -232,8 +232,8 @@ def press(
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
-    rings: RingOptions,
-    mesh: Annotated[MeshOptions, "fem"],
+    rings: Annotated[RingTable, "sphere"],
+    mesh: Annotated[MeshTable, "fem"],
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
     ] = None,
@@ -248,7 +248,7 @@ def press(
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
     if not model_options.has_finite_elements:
-        refuse_mesh_options({**vars(mesh), "meshes": meshes})
+        refuse_mesh_options({**mesh.stated(), "meshes": meshes})
     files.check()
     report.check()
     friction_options.check()

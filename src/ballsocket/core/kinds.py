@@ -50,6 +50,7 @@ class Kind(StrEnum):
     EDGE_COEFFICIENT = "edge coefficient"
     VISCOSITY = "viscosity"
     ROTATION_RATE = "rotation rate"
+    SPEED = "speed"
 
     @property
     def unit(self) -> str:
@@ -93,6 +94,7 @@ _KINDS = {
     Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
     Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
     Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
+    Kind.SPEED: ("mm/s", "a speed, such as '0.1 m/s'"),
     Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}

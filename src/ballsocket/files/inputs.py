@@ -1,7 +1,7 @@
 """Inputs: every key of the tables of a file, as documentation, options of commands and explorer show it.
 
 A new key of a table is an input without another line. `_TYPICAL` adds a range, a step and an example to a number,
-`_REMARKS` a remark to its help, and `_FALLBACKS` its value where neither a file nor an option has it.
+and `_REMARKS` a remark to its help.
 """
 
 from __future__ import annotations
@@ -89,22 +89,16 @@ _TYPICAL: Mapping[str, Typical] = MappingProxyType({
 
 _REMARKS = {
     "material": "See `ballsocket presets`; single numbers replace its values.",
+    "ball": "See `ballsocket presets`; single numbers replace its values. Without a material the ball is rigid.",
     "shell": "Its thickness follows from --outer-diameter and --liner-thickness, or is --shell-thickness.",
     **dict.fromkeys(("interference", "tilt", "direction"), "Solved by the model sphere."),
     "orientation": "See Murray 1993.",
 }
 """Remarks in the help of options, by the name of the input or by its key."""
 
-_FALLBACKS = {
-    **dict.fromkeys(("chamfer", "inclination", "anteversion", "tilt"), "as in the file, or 0"),
-    "arc_of_cover": "as in the file, or 180 deg",
-    "interface": "as in the file, or bonded",
-    "side": "as in the file, or right",
-    "ball": "as in the file, or rigid",
-    "ball_young": "as in the file, or rigid",
-}
 # fmt: on
-"""Values without an option, by the name of the input; the others are as in the file."""
+_NOT_IN_FILES = ("orientation", "pelvic_tilt")
+"""Inputs whose default is not that of the file, which is read to radiographic angles in the body."""
 
 _PREFIXES = {"ball": "ball_", "shell": "shell_"}
 """Beginnings of the names of options by table."""
@@ -121,10 +115,30 @@ class Input:
     """
 
     table: str
-    key: str
-    type: inspect.Type
-    default: str = ""
-    """Default as the file writes it, "required", or empty without a default."""
+    field: inspect.Field
+
+    @property
+    def key(self) -> str:
+        """Name of the key in its table."""
+        return self.field.encode_name
+
+    @property
+    def type(self) -> inspect.Type:
+        """Type of the values, for `msgspec`."""
+        return self.field.type
+
+    @property
+    def shown(self) -> Mapping[str, str]:
+        """Example and default that the declaration of the key states."""
+        return (self.type.extra if isinstance(self.type, inspect.Metadata) else None) or {}
+
+    @property
+    def default(self) -> str:
+        """Default, "required", or empty without a default."""
+        value = plain_default(self.field)
+        if value is None:
+            return "required" if self.field.required else self.shown.get("default", "")
+        return str(value).lower() if isinstance(value, bool) else str(value)
 
     @property
     def part(self) -> str:
@@ -193,15 +207,22 @@ class Input:
         kinds = [custom.kind for custom in customs_in(self.type) if issubclass(custom, QuantityValue)]
         unit = "degrees" if kinds == [Kind.ANGLE] else "".join(kind.assumed_unit for kind in kinds)
         symbol, definition = (self.quantity.symbol, self.quantity.meaning) if self.quantity else ("", "")
-        start = f"{self.label} {symbol}".strip() + (f"{',' * (',' in self.label)} in {unit}" if unit else "")
-        listed = f": {' or '.join(map(repr, self.choices))}" if self.choices and self.key != "material" else ""
+        name, _, condition = self.label.partition("; ")
+        start = f"{name} {symbol}".strip() + (f"{',' * (',' in name)} in {unit}" if unit else "")
+        example = self.shown.get("example") or (self.typical.example if self.typical else "")
+        start += f", such as {example!r}" if example else ""
+        if self.choices and self.key != "material":
+            *first, last = map(repr, self.choices)
+            start += f": {', '.join(first)} or {last}"
+        default = self.default if self.part or plain_default(self.field) is None else ""
+        follows = bool(self.part) and self.key not in _NOT_IN_FILES
         rivals = " or ".join(f"--{rival}".replace("_", "-") for rival in self.rivals)
         sentences = (
-            f"{start}{listed}{f', such as {self.typical.example!r}' if self.typical else ''}",
+            f"{start}; {condition}" if condition else start,
             definition.partition(". ")[0].rstrip(".").replace("`", ""),
             _REMARKS.get(self.name) or _REMARKS.get(self.key, ""),
             f"Not with {rivals}" if rivals else "",
-            f"Default: {_FALLBACKS[self.name]}" if self.name in _FALLBACKS else "",
+            f"Default: {'as in the file, or ' * follows}{default}" if default else "",
         )
         return " ".join(f"{sentence.rstrip('.')}." for sentence in sentences if sentence)
 
@@ -213,7 +234,7 @@ def inputs_of(table: type[Table]) -> tuple[Input, ...]:
     tables: list[tuple[str, Any]] = [("", root), *tables_of(root)]
     heads = {head.strip("[]") for head, _ in tables}
     return tuple(
-        Input(head, field.encode_name, field.type, _default(field))
+        Input(head, field)
         for head, struct in tables
         for field in struct.fields
         if f"{head.strip('[]')}.{field.encode_name}".lstrip(".") not in heads
@@ -221,15 +242,10 @@ def inputs_of(table: type[Table]) -> tuple[Input, ...]:
     )
 
 
-def _default(field: inspect.Field) -> str:
-    value = plain_default(field)
-    text = "" if value is None else str(value).lower() if isinstance(value, bool) else repr(value)
-    return "required" if field.required else text
-
-
 def plain_default(field: inspect.Field) -> Any:
     """Return the default of a key as JSON has it; None without a default, or for a table."""
-    value = field.default.value if isinstance(field.default, Enum) else field.default
+    value = getattr(field.default, "written", field.default)
+    value = value.value if isinstance(value, Enum) else value
     plain = next((kind for kind in (bool, int, float, str) if isinstance(value, kind)), None)
     return None if plain is None else plain(value)
 

@@ -82,17 +82,18 @@ class ShellTable(MaterialTable, frozen=True, kw_only=True):
 class CupTable(Table, frozen=True, kw_only=True):
     """Cup: its rim, its interface with the liner, and its orientation in the body."""
 
-    arc_of_cover: Angle | None = None
-    chamfer: Length | None = None
-    inclination: Angle | None = None
-    anteversion: Angle | None = None
-    interface: Annotated[Interface | None, meaning("interface of liner and backing")] = None
-    side: Annotated[Side | None, meaning("side of the body")] = None
+    arc_of_cover: Annotated[Angle | None, meaning(default="180 deg")] = None
+    chamfer: Annotated[Length | None, meaning(default="0 mm")] = None
+    inclination: Annotated[Angle | None, meaning(default="0 deg")] = None
+    anteversion: Annotated[Angle | None, meaning(default="0 deg")] = None
+    interface: Annotated[Interface | None, meaning("interface of liner and backing", default="bonded")] = None
+    side: Annotated[Side | None, meaning("side of the body", default="right")] = None
     orientation: Annotated[
-        AngleDefinition | None, meaning("definition of inclination and anteversion (radiographic by default)")
+        AngleDefinition | None, meaning("definition of inclination and anteversion", default="radiographic")
     ] = None
     pelvic_tilt: Annotated[
-        Angle | None, meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front")
+        Angle | None,
+        meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front", default="0"),
     ] = None
 
 
@@ -106,7 +107,7 @@ class Direction(Value, tuple[float, ...]):
         """Convert three numbers: a list, or a text with commas."""
         parts = value.split(",") if isinstance(value, str) else value
         if not isinstance(parts, list | tuple) or len(parts) != 3:
-            raise ValueError(f"{name} = {shown(value)} must be three numbers: to the right, to the front, upwards")
+            raise ValueError(f"{name} = {shown(value)} must be three numbers 'x,y,z'")
         numbers = cls(parse(name, part, Kind.NUMBER) for part in parts)
         length = hypot(*numbers)
         require(f"length of {name}", length, 0 < length < inf, "a direction points somewhere")
@@ -119,7 +120,7 @@ class LoadTable(Table, frozen=True, kw_only=True):
     force: Force | None = None
     indentation: Length | None = None
     half_angle: Angle | None = None
-    tilt: Angle | None = None
+    tilt: Annotated[Angle | None, meaning(default="0 deg")] = None
     direction: Annotated[Direction | None, meaning("direction of the load: to the right, to the front, upwards")] = None
 
 
