@@ -211,7 +211,7 @@ def test_a_joint_file_keeps_the_page_and_names_no_picture_of_the_server():
     text = '[joint]\nball_radius = 18\nclearance = 0.1\nliner_thickness = 6\n[liner]\nmaterial = "pom"\n'
     screen = read_link(parse_qs("preset=hip-28&load.force=900&units=imperial"))
     (read,) = read_upload(f'{text}[report]\nlogo = "/etc/secret.png"\ncustomer = "A"\n', screen)
-    assert (read.units, read.file.load, read.file.report.logo) == ("imperial", {"force": 900.0}, "")
+    assert (read.units, read.file.load, read.file.report.logo) == ("imperial", {"force": 900.0}, None)
     assert read.file.joint.liner == bs.POM
     assert read_link(parse_qs(link_of(read), keep_blank_values=True)) == read
 

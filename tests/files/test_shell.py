@@ -5,7 +5,7 @@ from math import radians
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import joint_of, read_cup, varied
+from ballsocket.files.joint_file import JointFile, joint_of, varied
 from ballsocket.files.joint_toml import tables_of
 
 LENGTHS = {"head_diameter": "36 mm", "diametral_clearance": "0.3 mm"}
@@ -56,6 +56,10 @@ def test_a_shell_of_a_preset_takes_its_liner():
 def test_shells_that_do_not_follow_are_refused(shell, lengths, message):
     with pytest.raises(ValueError, match=message):
         file_of(shell, **lengths)
+
+
+def read_cup(table, *base):
+    return varied(JointFile(bs.joints["hip-28"], {}, *base), {"cup": table}).cup
 
 
 def test_a_cup_has_the_angles_of_its_definition():

@@ -18,7 +18,7 @@ from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restit
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
 from ..files.inputs import JOINT, LOAD, PARTS
-from ..files.joint_file import JointFile, read_aim
+from ..files.joint_file import JointFile
 from ..files.schema import Length, PlainNumber, Speed, Table, Viscosity, meaning
 from ..files.tables import written_in
 from ..files.units import as_given
@@ -222,7 +222,7 @@ _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 def deck(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, (*PARTS, "cup", *LOAD)],
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", *LOAD, "load.tilt")],
     out: Annotated[Path, typer.Option(help="Output folder, or the deck itself (.inp); created if it does not exist.")],
     steps: Annotated[
         int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
@@ -233,19 +233,12 @@ def deck(
             help="Factor on clearance and indentation; small: contact on the undeformed shape, 1: on the deformed."
         ),
     ] = 1e-3,
-    tilt: Annotated[
-        str | None,
-        typer.Option(
-            help="Angle between load and cup axis in degrees: '45 deg'. Writes a three-dimensional model. "
-            "Default: 0 deg."
-        ),
-    ] = None,
     mesh: MeshTable,
     run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
 ) -> None:
     """Write a finite-element input file for CalculiX or Abaqus.
 
-    The folder also gets the results to expect.
+    The folder also gets the results to expect. A tilted load makes a three-dimensional model.
     """
     if out.suffix.lower() in _FILE_ENDINGS:
         check_ending("out", out, ".inp")
@@ -256,9 +249,8 @@ def deck(
             "preloaded joint (model sphere), and export table has its forces"
         )
     load = needed_load(file)
-    if tilt is not None:
-        angle = read_aim({"tilt": tilt})["tilt"]
-        _write_tilted(file, load, angle, out, mesh, run)
+    if "tilt" in file.aim:
+        _write_tilted(file, load, file.aim["tilt"], out, mesh, run)
         return
     contact, _ = solve_mesh(mesh.model(file.cup, meshes=1), file.joint, load)
     if contact.status.failed:

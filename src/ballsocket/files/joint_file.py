@@ -8,6 +8,8 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
+from msgspec import structs
+
 from ..contact.assembly import select_and_check_load
 from ..core.checks import check_text, nearest, normalise_name, require, shown
 from ..core.input_files import resolve_input
@@ -135,7 +137,7 @@ class JointTables(Table, frozen=True, kw_only=True):
     cup: CupTable | None = None
 
 
-class ReportTable(Table, frozen=True, kw_only=True):
+class ReportDetails(Table, frozen=True, kw_only=True):
     """Head of the report: names, and a picture beside them."""
 
     qualified: ClassVar[bool] = True
@@ -153,24 +155,7 @@ class JointFileTable(JointTables, frozen=True, kw_only=True):
     source: Annotated[Text | None, meaning("source of the numbers")] = None
     joint: LengthsTable | None = None
     load: LoadTable | None = None
-    report: ReportTable | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReportDetails:
-    """Head of a report; empty texts are left out.
-
-    Attributes
-    ----------
-    customer, project, author : str
-    logo : str
-        Path of a PNG or SVG picture.
-    """
-
-    customer: str = ""
-    project: str = ""
-    author: str = ""
-    logo: str = ""
+    report: ReportDetails | None = None
 
 
 NO_DETAILS = ReportDetails()
@@ -219,7 +204,7 @@ def read_joint(path: str | Path) -> JointFile:
         The file cannot be read.
     """
     file = read_toml(Path(path), "joint", joint_of)
-    return replace(file, report=_logo_in(Path(path).parent, file.report))
+    return replace(file, report=details_in(Path(path).parent, file.report))
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
@@ -231,18 +216,13 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
     """Convert the tables of a joint file, or of the command line; see `read_joint`."""
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
-    load, report = tables.load or LoadTable(), tables.report or ReportTable()
-    return replace(file, load=_load_of(load), aim=_aim_of(load), report=ReportDetails(**report.stated()))
+    load = tables.load or LoadTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load), report=tables.report or NO_DETAILS)
 
 
-def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
+def details_in(folder: Path, details: ReportDetails) -> ReportDetails:
     """Return the head of a report whose logo is in a folder."""
-    return replace(details, logo=str(folder / details.logo)) if details.logo else details
-
-
-def report_details(table: ReportTable, folder: Path) -> ReportDetails:
-    """Return the head of a report from its table; the path of the logo starts at a folder."""
-    return _logo_in(folder, ReportDetails(**table.stated()))
+    return structs.replace(details, logo=Text(folder / details.logo)) if details.logo else details
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
@@ -315,11 +295,6 @@ def _load_of(table: LoadTable) -> dict[str, float]:
         return dict([select_and_check_load(**load)]) if load else {}
 
 
-def read_aim(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Read at most one of tilt and direction, as the keyword of `Sphere.press`; other keys are ignored."""
-    return _aim_of(read_table({name: content[name] for name in ("tilt", "direction") if name in content}, LoadTable))
-
-
 def _aim_of(table: LoadTable) -> dict[str, Any]:
     """Return the direction of a load as the keyword of `Sphere.press`; empty for a load along the cup's axis."""
     if table.tilt is not None and table.direction is not None:
@@ -331,11 +306,6 @@ def _aim_of(table: LoadTable) -> dict[str, Any]:
     tilt = float(table.tilt)
     require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
     return {"tilt": tilt}
-
-
-def read_cup(content: Mapping[str, Any], base: Cup = DEFAULT_CUP) -> Cup:
-    """Read a cup; every key is optional, and keys replace values of another cup."""
-    return cup_of(read_table(content, CupTable), base)
 
 
 def cup_of(table: CupTable, base: Cup = DEFAULT_CUP) -> Cup:

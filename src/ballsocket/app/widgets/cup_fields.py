@@ -7,8 +7,7 @@ from math import atan2, degrees, radians, tan
 from typing import Any
 
 from ...core.checks import check_names
-from ...files.joint_file import JointFile, read_aim, read_cup
-from ...files.joint_toml import cup_table
+from ...files.joint_file import JointFile, varied
 from ...problem.cup import UP, Side
 from ..state.screen import Screen
 from .fields import Field, segments
@@ -65,12 +64,12 @@ def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
     if key in CUP_NUMBERS:
         value = CUP_NUMBERS[key].meant(value, screen.reading)
     if key == "tilt":
-        return replace(file, aim=read_aim({key: value}))
+        return varied(file, {"load": {key: value}})
     if key in _LEANS:
         return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
     if key == "aim":
         return _aimed_from(file, value)
-    changed = replace(file, cup=read_cup({**cup_table(file.cup), key: value}))
+    changed = varied(file, {"cup": {key: value}})
     return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so
 
 

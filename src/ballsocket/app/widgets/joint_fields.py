@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.checks import check_names, check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
-from ...files.joint_file import JointFile, joint_of, read_aim
+from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
 from ...problem.cup import UP
@@ -217,7 +217,7 @@ def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
 def _with_tilt(screen: Screen, value: Any) -> JointFile:
     tilt, file = TILT.meant(value, screen.reading), screen.file
     along = tilt == 0 and float(file.cup.tilt(UP)) == 0
-    return replace(file, aim={} if along else read_aim({"tilt": tilt}))
+    return replace(file, aim={}) if along else varied(file, {"load": {"tilt": tilt}})
 
 
 def _with_allowable(screen: Screen, value: Any) -> JointFile:
