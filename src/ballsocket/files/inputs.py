@@ -166,6 +166,11 @@ class Input:
         return _TYPICAL.get(self.name) or _TYPICAL.get(self.key)
 
     @property
+    def example(self) -> str:
+        """Example of a value; empty for a key without one."""
+        return self.shown.get("example") or (self.typical.example if self.typical else "")
+
+    @property
     def choices(self) -> list[str]:
         """Words that the key allows, or the names that it knows; empty for other keys."""
         return choices_in(self.type)
@@ -197,7 +202,8 @@ class Input:
         if not customs:
             return expected(self.key, self.type)
         if issubclass(customs[0], QuantityValue):
-            return customs[0].kind.example
+            noun, _, usual = customs[0].kind.example.partition(", such as ")
+            return f"{noun}, such as {repr(self.example) if self.example else usual}"
         text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
         return text[:1].lower() + text[1:]
 
@@ -209,8 +215,7 @@ class Input:
         symbol, definition = (self.quantity.symbol, self.quantity.meaning) if self.quantity else ("", "")
         name, _, condition = self.label.partition("; ")
         start = f"{name} {symbol}".strip() + (f"{',' * (',' in name)} in {unit}" if unit else "")
-        example = self.shown.get("example") or (self.typical.example if self.typical else "")
-        start += f", such as {example!r}" if example else ""
+        start += f", such as {self.example!r}" if self.example else ""
         if self.choices and self.key != "material":
             *first, last = map(repr, self.choices)
             start += f": {', '.join(first)} or {last}"

@@ -95,7 +95,9 @@ class CupTable(Table, frozen=True, kw_only=True):
     ] = None
     pelvic_tilt: Annotated[
         Angle | None,
-        meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front", default="0"),
+        meaning(
+            "tilt of the pelvis in which the angles are measured, positive with its top to the front", default="0 deg"
+        ),
     ] = None
 
 

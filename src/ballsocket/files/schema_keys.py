@@ -7,7 +7,7 @@ from typing import Any
 from msgspec import inspect
 
 from ..core.quantities import QUANTITIES
-from .inputs import plain_default
+from .inputs import Input, plain_default
 from .refusals import choices_in, meaning_of, parts_of
 from .schema import Table, Value, choices_schema
 
@@ -35,13 +35,14 @@ def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> d
 def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of a key, with its meaning and default."""
     described, default = meaning_of(field.encode_name, field.type), plain_default(field)
-    quantity = QUANTITIES.get(field.encode_name)
+    example, quantity = Input("", field).example, QUANTITIES.get(field.encode_name)
     if quantity is not None and described == quantity.title:
         described = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
     return {
         **_type_schema(field.type, definitions),
         **({"description": described} if described else {}),
         **({} if default is None else {"default": default}),
+        **({"examples": [example]} if example else {}),
     }
 
 
