@@ -10,12 +10,13 @@ from math import degrees, inf, isinf
 from typing import Any
 
 from ...core.checks import check_names, check_text, shown
-from ...core.quantities import LOADS, STRESS_LIMITS
+from ...core.quantities import JOINT, LOADS, STRESS_LIMITS
+from ...files.inputs import Input
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
 from ...problem.cup import UP
-from ...problem.dimensions import LENGTHS, give
+from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
 from ..pressing import same_load, tilt_of
 from ..state.screen import Screen
@@ -85,9 +86,8 @@ def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list
 
 def _numbers_of(joint: Joint, tables: Tables) -> Tables:
     """Return the tables of a joint with the numbers that they do not have: lengths, and those of materials."""
-    numbers: Tables = {"joint": {name: float(getattr(joint, name)) for name in _LENGTHS}}
-    if joint.clearance < 0:
-        del numbers["joint"]["clearance"]
+    lengths = {name: float(getattr(joint, name)) for name in JOINT}
+    numbers: Tables = {"joint": {name: length for name, length in lengths.items() if length >= 0}}  # an interference
     for part in ("liner", "ball"):
         material = getattr(joint, part)
         if material is not None:
@@ -98,16 +98,18 @@ def _numbers_of(joint: Joint, tables: Tables) -> Tables:
 def _number_input(screen: Screen, name: str, spec: Number, value: float) -> JointInput:
     def edit(typed: Any) -> JointFile:
         meant = spec.meant(typed, screen.reading)
-        return _changed(screen.file, lambda tables: _set_number(tables, spec, meant))
+        return _changed(screen.file, lambda tables: _set_number(tables, spec.entry, meant))
 
     return JointInput(spec.field(name, value, screen.reading), edit)
 
 
-def _set_number(tables: Tables, spec: Number, value: float) -> None:
-    if spec.entry.part == "joint":
-        _set_length(tables["joint"], spec.entry.key, value)
+def _set_number(tables: Tables, entry: Input, value: float) -> None:
+    """Set a number of a table; a diameter sets its radius."""
+    if entry.part == "joint":
+        single = DIAMETERS.get(entry.key, entry.key)
+        _set_length(tables["joint"], single, value if single == entry.key else value / 2)
     else:
-        tables.setdefault(spec.entry.part, {})[spec.entry.key] = value
+        tables.setdefault(entry.part, {})[entry.key] = value
 
 
 def _set_length(lengths: Tables, name: str, value: float) -> None:

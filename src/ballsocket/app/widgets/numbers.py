@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ...core.kinds import Unit
-from ...core.quantities import JOINT, QUANTITIES, Quantity
+from ...core.quantities import QUANTITIES, Quantity
 from ...files.inputs import Input, Typical, inputs_of
 from ...files.joint_file import JointFileTable
 from ...hip.schema import HipTable
@@ -21,12 +21,11 @@ _NEARLY_ZERO = 0.01  # share of the largest number below which the smallest is s
 
 @dataclass(frozen=True, kw_only=True)
 class Number:
-    """Number of a file with an input on the page; `times` is 2 for a diameter of a radius."""
+    """Number of a file with an input on the page."""
 
     entry: Input
     quantity: Quantity
     label: str
-    times: int = 1
 
     @property
     def typical(self) -> Typical:
@@ -37,7 +36,7 @@ class Number:
     def unit(self, reading: Reading) -> Unit:
         """Return the unit beside the box, and the factor to it from the table's unit."""
         unit = reading.unit(self.quantity)
-        return Unit(unit.text, self.times * unit.factor / self.quantity.written.factor)
+        return Unit(unit.text, unit.factor / self.quantity.written.factor)
 
     def field(self, name: str, value: float | None, reading: Reading) -> Field:
         """Return the input for a number of a table; an empty box that may stay empty for None."""
@@ -46,18 +45,19 @@ class Number:
         hint = f"{self.quantity.symbol}: {self.quantity.meaning}".removeprefix(": ").replace("`", "")
         if value is None:
             return {**empty_number(name, self.label, unit), "hint": hint}
-        low, high = (float(f"{self.times * end * ratio:.3g}") for end in self.typical.ends)
-        step = self.times * self.typical.step * ratio
+        low, high = (float(f"{end * ratio:.3g}") for end in self.typical.ends)
+        step = self.typical.step * ratio
         step = step if ratio == 1 else handy_step(step)
         stated = "" if reading.units is Units.SI else " mm"  # of catalogue sizes where the page has another unit
-        sizes = [f"{self.times * size:g}{stated}" for size in self.typical.sizes]
-        extra = {"hint": hint, "sizes": sizes} if sizes else {"hint": hint}
+        sizes = [f"{size:g}{stated}" for size in self.typical.sizes]
+        drag = unit.factor * (2 if self.entry.key in DIAMETERS else 1)  # box unit per unit of a radius
+        extra = {"hint": hint, "factor": drag, **({"sizes": sizes} if sizes else {})}
         return {**number(name, self.label, unit, (low, high), step, value * unit.factor), **extra}
 
     def meant(self, value: object, reading: Reading) -> float:
         """Convert typed text to the number of the table; raise ValueError for other text and numbers out of bounds."""
         unit = self.unit(reading)
-        number = typed(self.label, value, unit, self.quantity.kind, self.times)
+        number = typed(self.label, value, unit, self.quantity.kind)
         low, high = self.typical.bounds
         if low <= number <= high:
             return number
@@ -105,30 +105,19 @@ CUP_NUMBERS: Mapping[str, Number] = {
 }
 """Numbers of a cup and of the direction of its load by input."""
 
-_PARAMETERS = {
-    "socket_radius": NUMBERS["ball_radius"],
-    "liner_yield_stress": ALLOWABLE,
-    "ball_yield_stress": ALLOWABLE,
-}
-"""Numbers with the bounds of parameters that have no box beside the joint."""
-
 _SINGLE = {single: double for double, single in DIAMETERS.items()}
 
 
 def number_of(name: str, size: str) -> Number:
     """Return an input of joint or materials; `size` is "radius" or "diameter"."""
-    spec = NUMBERS[name]
-    if size != "diameter" or name not in _SINGLE:
-        return spec
-    quantity = JOINT[_SINGLE[name]]
-    return replace(spec, quantity=quantity, times=2, label=capital(quantity.title))
+    return _number(f"joint.{_SINGLE[name]}") if size == "diameter" and name in _SINGLE else NUMBERS[name]
 
 
-def of_parameter(name: str, label: str) -> Number:
-    """Return the input of a parameter of a study, with other words beside its box."""
-    quantity, single = QUANTITIES[name], DIAMETERS.get(name, name)
-    spec = _PARAMETERS.get(single) or NUMBERS.get(single) or load_of(single)
-    return replace(spec, quantity=quantity, times=1 + (name in DIAMETERS), label=label)
+def of_parameter(name: str) -> Number:
+    """Return the input of a parameter of a study."""
+    part, _, key = name.partition("_")
+    named = (f"joint.{name}", f"{part}.{key}", f"load.{name}")
+    return _number(next(path for path in named if path in _INPUTS))
 
 
 def load_of(kind: str) -> Number:
