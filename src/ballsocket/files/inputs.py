@@ -192,9 +192,9 @@ class Input:
 
     @property
     def rivals(self) -> list[str]:
-        """Keys that exclude this one."""
+        """Keys of a joint file that exclude this one."""
         groups = ([name for name in LENGTHS if canonical(name) == canonical(self.key)], *_RIVALS)
-        return [rival for group in groups if self.key in group for rival in group if rival != self.key]
+        return [rival for group in groups if self.part and self.key in group for rival in group if rival != self.key]
 
     @property
     def values(self) -> str:
