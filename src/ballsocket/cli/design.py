@@ -77,7 +77,7 @@ class PressOptions:
         else:
             model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
-        return with_gap(model, self.gap).in_cup(file.cup)
+        return with_gap(model, self.gap).in_cup(file.cup, **file.aim)
 
     def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
         """Return the load in N or mm; empty if the load is one of the varied parameters."""

@@ -6,9 +6,9 @@ import keyword
 import re
 import sys
 from dataclasses import dataclass, replace
-from math import degrees, radians
+from math import radians
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -22,11 +22,11 @@ from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant
 from ..model_catalogue import off_axis, reference, with_gap
-from ..problem import Joint
 from ..problem.cup import Cup
+from ..question import complete
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .elasticity_options import CupOptions, MeshOptions, mesh_progress
 from .model_file import requested_model
 from .options import ArcOfCover, GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
@@ -85,7 +85,7 @@ class ForceElementOptions:
         if self.arc_of_cover is not None:
             stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
         if file.joint.clearance < 0:
-            return self._preloaded_element(file.joint, stated_cup, friction)
+            return self._preloaded_element(file, stated_cup, friction)
         default = default_model(file.joint, {}) if self.gap is None else reference
         model = with_gap(default if self.model is None else requested_model(self.model), self.gap)
         lubricant = self._lubricant()
@@ -96,19 +96,17 @@ class ForceElementOptions:
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
-    def _preloaded_element(self, joint: Joint, stated_cup: Cup, friction: Friction | None) -> PreloadedElement:
+    def _preloaded_element(self, file: JointFile, stated_cup: Cup, friction: Friction | None) -> PreloadedElement:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
         if self.model not in (None, off_axis.name):
             raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {off_axis.name}")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
-        cup = stated_cup.around_ball(joint.clearance)
-        if cup is not stated_cup:
-            print_message(
-                f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover"
-            )
+        assumed, sentences = complete(replace(file, cup=stated_cup))
+        if "arc_of_cover" in sentences:
+            print_message(sentences["arc_of_cover"])
         element = PreloadedElement(
-            Sphere(cup=cup, ring_width=_RING_WIDTH), joint, damping=self._damping(), friction=friction
+            Sphere(cup=assumed.cup, ring_width=_RING_WIDTH), file.joint, damping=self._damping(), friction=friction
         )
         error = element.table.error
         if error > _NOTED_ERROR:
@@ -274,7 +272,8 @@ def deck(
         angle = read_aim({"tilt": tilt})["tilt"]
         _write_tilted(replace(file, cup=cup.apply_to(file.cup)), load, angle, out, mesh, run)
         return
-    contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
+    with mesh_progress():
+        contact: Any = replace(mesh.model(meshes=1), cup=cup.apply_to(file.cup)).press(file.joint, **load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.calculix import run as run_ccx

@@ -19,12 +19,12 @@ from ..files.units import parse
 from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
-from ..model_catalogue import off_axis, with_gap
-from ..problem.cup import UP
+from ..model_catalogue import with_gap
+from ..question import DEFAULT_MODEL, PressQuestion
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import CupOptions, DirectionOptions, tilted_cup
+from .elasticity_options import CupOptions, DirectionOptions
 from .model_file import requested_model
 from .options import (
     GapName,
@@ -36,7 +36,6 @@ from .options import (
     complete_model,
     expand_groups,
 )
-from .press import DEFAULT_MODEL
 from .root import app, fail
 
 
@@ -174,15 +173,12 @@ def _contacts(
     typer.Exit
         A model has no result.
     """
-    direction = direction_options.read(file)
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    default = off_axis.name if direction or cup.tilt(UP) > 0 else DEFAULT_MODEL
+    file = replace(file, cup=cup_options.apply_to(file.cup), aim=direction_options.read(file), load=load)
+    models = {model.name: model for model in map(requested_model, options.model or ())}
+    question = PressQuestion(file=file, models=models, sphere=direction_options.model())
     contacts = []
-    for name in options.model or [default]:
-        model = requested_model(name)
-        if model.name == off_axis.name:
-            model = replace(direction_options.model(), cup=cup).with_direction(**direction)
-        model = with_gap(model, options.gap)
+    for chosen in question.chosen.values():
+        model = with_gap(chosen, options.gap).in_cup(file.cup, **file.aim)
         contact = model.press(file.joint, **load)
         if contact.status.failed:
             fail(f"no answer from {model.name}: {contact.status.sentence}")

@@ -255,9 +255,9 @@ class LoadOptions:
         """Read the load from the options, or take that of the joint file, in N, mm or rad."""
         return read_load_option(vars(self), file)
 
-    def are_missing(self, file: JointFile) -> bool:
-        """Return True if neither the options nor the joint file have a load."""
-        return not (drop_missing(vars(self)) or file.load)
+    def stated(self, file: JointFile) -> dict[str, float]:
+        """Read the load from the options, or take that of the joint file; empty without both."""
+        return read_load(drop_missing(vars(self))) or file.load
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,10 @@ UP: Direction = (0.0, 0.0, 1.0)
 """Direction of a vertical load of the ball on a cup."""
 
 
+AXIAL_TILT = 1e-9
+"""Angle in rad between a load and the axis of a cup up to which the load counts as axial."""
+
+
 class Interface(Choice):
     """Interface between the liner and its backing: bonded, or sliding without friction."""
 
@@ -297,6 +301,10 @@ class Cup:
         The angle is at most π/2.
         """
         return replace(self, inclination=angle, anteversion=0.0)
+
+    def load_tilt(self, *, tilt: float | None = None, direction: Array = UP) -> float:
+        """Return the angle in rad between a load and the axis of the cup, from a tilt or a direction in the body."""
+        return float(self.tilt(direction)) if tilt is None else float(tilt)
 
     def tilt(self, direction: Array) -> Array:
         """Compute the angle γ in rad between a direction and the axis of the cup.
