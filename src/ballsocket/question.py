@@ -36,9 +36,11 @@ class PressQuestion:
     file : JointFile
         Joint, load, cup and direction of the load, as they are stated.
     models : mapping of str to Model
-        Requested models by name; empty for the default. The exact solution is always added.
+        Requested models by name; empty for the default.
     sphere : Sphere
         The model `sphere`, where it is requested or the default.
+    exact : Model, optional
+        Solution with which the others are compared; None without a comparison.
     gap : str, optional
         Name of the gap of the models that have a choice.
     pull_out : float, optional
@@ -48,6 +50,7 @@ class PressQuestion:
     file: JointFile
     models: Mapping[str, Model] = field(default_factory=dict)
     sphere: Sphere = off_axis
+    exact: Model | None = reference
     gap: str | None = None
     pull_out: float | None = None
 
@@ -122,20 +125,22 @@ def complete(file: JointFile) -> tuple[JointFile, dict[str, str]]:
     return replace(file, cup=cup, load=load), {name: sentence for name, sentence in sentences.items() if sentence}
 
 
-def real_cup_reason(file: JointFile) -> str:
-    """Return the reason why only the model `sphere` solves a question; empty for an axial load without a preload."""
+def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
+    """Return the reason why only the model `sphere` solves a question; empty where models of a full sphere do.
+
+    The contact of such a model tells if the rim is near: the models hold up to one liner thickness from it.
+    """
     if file.joint.clearance < 0:
         return "the ball is preloaded"
     if file.tilt > AXIAL_TILT:
         return f"the load is tilted {degrees(file.tilt):.3g}° against the axis of the cup"
-    return ""
-
-
-def is_near_rim(file: JointFile, contact: Contact) -> bool:
-    """Return True if a contact ends so near the rim that models of a full sphere do not hold, as they state."""
-    radius, half_angle = float(file.joint.socket_radius), float(contact.half_angle)
-    distance = radius * (file.cup.rim - file.tilt - half_angle)
-    return distance < min(float(file.joint.liner_thickness), radius)
+    radius = float(file.joint.socket_radius)
+    near_rim = (
+        contact is not None
+        and not contact.status.failed
+        and file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius)
+    )
+    return "the contact ends near the rim of the cup" if near_rim else ""
 
 
 def every_model(file: JointFile) -> dict[str, Model]:
@@ -159,7 +164,8 @@ def answer(question: PressQuestion) -> PressAnswer:
     if question.pull_out is not None and "arc_of_cover" in assumptions:
         raise ValueError("a pull-out force needs the arc of cover: set arc_of_cover")
     comparison, seconds = Comparison(file.joint, {}, {}), {}
-    for name, model in {**models, reference.name: models.get(reference.name, reference)}.items():
+    compared = {} if question.exact is None else {question.exact.name: question.exact}
+    for name, model in {**models, **{name: model for name, model in compared.items() if name not in models}}.items():
         chosen, start = with_gap(model, question.gap if hasattr(model, "gap") else None), perf_counter()
         pressed = compare(file.joint, models={name: chosen}, cup=file.cup, **file.aim, **file.load)
         comparison.contacts.update(pressed.contacts)

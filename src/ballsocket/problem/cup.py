@@ -260,8 +260,12 @@ class Cup:
 
         A preloaded ball is held by a socket that reaches beyond its equator alone.
         """
-        unset = isinstance(self.arc_of_cover, UnsetAngle)
-        return replace(self, arc_of_cover=HOLDING_ARC) if unset and float(clearance) < 0 else self
+        return self if self.has_stated_arc or float(clearance) >= 0 else replace(self, arc_of_cover=HOLDING_ARC)
+
+    @property
+    def has_stated_arc(self) -> bool:
+        """True if the arc of cover was set, even to 180°."""
+        return not isinstance(self.arc_of_cover, UnsetAngle)
 
     @property
     def oriented(self) -> bool:
