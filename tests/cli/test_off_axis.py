@@ -150,7 +150,7 @@ HELD = (*TIGHT, "--force", "0", *COARSE)
 @pytest.mark.long
 def test_a_preloaded_joint_gets_a_socket_that_holds_it_and_its_friction_torques():
     finished = run("press", *HELD, "--friction", "0.1", "--static-friction", "0.15", columns=200)
-    assert "arc of cover 240° assumed for a preloaded joint; set --arc-of-cover" in finished.stdout
+    assert "arc of cover 240° assumed for a preloaded joint; set arc_of_cover" in finished.stdout
     assert "after 1000 hours under load it is 1300 MPa (Ticona 2008" in finished.stdout
     torques = answered(*HELD, "--friction", "0.1", "--static-friction", "0.15")["sphere"]["friction"]
     joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
@@ -169,7 +169,7 @@ def test_a_preloaded_joint_without_a_load_is_at_rest_and_states_the_wear_that_lo
     printed, at_rest = run(*words, columns=200).stdout, answer(*words)
     for text in (
         "uniform wear of the bore by 0.03 mm ends the preload",
-        "force 0 assumed, the ball is at rest in its socket; set --force",
+        "force 0 assumed, the ball is at rest in its socket; set force",
         "sphere: the contact reaches the rim, as is normal in a preloaded joint",
         "p, 0° to 120°",
     ):

@@ -103,7 +103,7 @@ press {hip-36} --tilt '200 deg' => tilt = 200
 press {hip-36} --direction 1,0 => three numbers
 press {hip-36} --direction 0,0,0 => points somewhere
 press {hip-36} --tilt 10 --direction 0,0,1 => both
-press {hip-36} --tilt 10 --model fem => use --model sphere
+press {hip-36} --tilt 10 --model fem => from the cup's axis: use sphere
 press {hip-36} --tilt 10 --ring-width '20 deg' => 0.5 to 6 degrees
 press {hip-36} --ring-width '2 deg' => --ring-width is for contact on the sphere: add --model sphere
 
@@ -117,8 +117,8 @@ orient {hip-36} --points 2 --step 5 => --step and --points are one too many: eit
 orient {hip-36} --points 2 --limit 'area<=3' => --limit of area is not possible here; possible:
 orient {hip-36} --points 2 --inclination 30..100 => inclination is 0 to 90 degrees
 
-press suspension-ball-joint --interference 0.03 --force 9 --pull-out => --pull-out needs the arc of cover: add
-press hip-28 --force 9 --pull-out --model exact => --pull-out is solved by the model sphere
+press suspension-ball-joint --interference 0.03 --force 9 --pull-out => needs the arc of cover: set arc_of_cover
+press hip-28 --force 9 --pull-out --model exact => a pull-out force is solved by the model sphere
 press hip-28 --force 9 --pull-out --ring-width 6 => a socket of 180 deg does not hold its ball
 press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coefficient of sliding
 press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1

@@ -13,7 +13,7 @@ from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending
-from ..files.inputs import JOINT, LOAD
+from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
@@ -73,7 +73,7 @@ class PressOptions:
         else:
             model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
-        return with_gap(model, self.gap).in_cup(file.cup)
+        return with_gap(model, self.gap).in_cup(file.cup, **file.aim)
 
 
 @app.command(name="map")
@@ -81,7 +81,7 @@ class PressOptions:
 def design_map(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, JOINT + LOAD],
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     x: Annotated[
         str, typer.Option(help="Parameter and range of the horizontal axis: 'ball_radius=11..23 mm'.")
     ] = "ball_radius=11..23 mm",
@@ -117,7 +117,7 @@ def design_map(
 def optimise(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, JOINT + LOAD],
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     vary: Annotated[
         list[str],
         typer.Option(
@@ -192,7 +192,7 @@ _SENSITIVITY_RESULTS = ("indentation", "half_angle", "max_pressure", "area")
 def sensitivity(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, JOINT + LOAD],
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     spread: Annotated[
         list[str],
         typer.Option(
@@ -270,7 +270,7 @@ def sensitivity(
 def _load(options: JointOptions, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
     """Return the load in N, mm or rad; empty if the load is one of the varied parameters."""
     loads = [name for name in parameters if name in LOADS]
-    if loads and "load" in options.tables:
+    if loads and set(LOADS) & set(options.tables.get("load", {})):
         raise ValueError(f"{loads[0]} varies, and a load is given too; one is needed")
     return {} if loads else needed_load(file)
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import degrees, isfinite, pi
-from time import perf_counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import degrees, isfinite
 from typing import Annotated, Any, Self
 
 from rich.console import Console
 
-from ..contact import Contact
-from ..contact.describe import COLUMNS
 from ..contact.per_joint import SolvedContact
 from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import require
@@ -25,7 +22,6 @@ from ..elasticity.off_axis.model import Sphere
 from ..files.schema import Angle, Length, Table, Word, meaning
 from ..files.units import as_given
 from ..model_catalogue import judge, off_axis
-from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units
 
@@ -54,11 +50,11 @@ class MeshTable(Table, frozen=True, kw_only=True):
     ] = None
     element: Annotated[ElementName | None, meaning("element type", default="biquadratic")] = None
 
-    def model(self, cup: Cup, meshes: int) -> FiniteElement:
-        """Return the finite-element model of a cup, on one mesh or on two for error estimates."""
+    def model(self, meshes: int) -> FiniteElement:
+        """Return the finite-element model, on one mesh or on two for error estimates."""
         element = Element[(self.element or "biquadratic").upper()]
         spacing: Spacing = Adapted() if self.element_size is None else Uniform(size=float(self.element_size))
-        return FiniteElement(cup=cup, spacing=spacing, element=element, meshes=meshes)
+        return FiniteElement(spacing=spacing, element=element, meshes=meshes)
 
 
 def refuse_mesh_options(options: Mapping[str, Any]) -> None:
@@ -68,14 +64,12 @@ def refuse_mesh_options(options: Mapping[str, Any]) -> None:
             raise ValueError(f"--{name.replace('_', '-')} is for the finite elements: add --model {judge.name}")
 
 
-def solve_mesh(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[MeshedContact, float]:
-    """Press a joint by finite elements with progress on stderr; return the contact and the time in s."""
-    start = perf_counter()
+@contextmanager
+def mesh_progress() -> Iterator[None]:
+    """Show the progress of finite elements on stderr."""
     status = Console(stderr=True).status("finite elements")
     with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
-        contact: Any = model.press(joint, **load)
-        _ = [column.values_of(contact) for column in COLUMNS]
-    return contact, perf_counter() - start
+        yield
 
 
 def mesh_remark(contact: MeshedContact, seconds: float) -> str:
@@ -129,34 +123,6 @@ def orientation_remark(cup: Cup) -> str:
     angles = orientation_summary(cup)
     texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
     return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
-
-
-def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
-    """Return the cup tilted against a vertical load.
-
-    A direction in the body leaves the cup unchanged. Models that take every load as axial judge the rim by the tilt.
-    """
-    return cup.tilted(min(direction["tilt"], pi / 2)) if "tilt" in direction else cup
-
-
-@dataclass
-class TimedModel:
-    """A model that measures the time of its last press in s."""
-
-    model: Any
-    seconds: float = 0.0
-
-    def in_cup(self, cup: Cup) -> TimedModel:
-        """Set the cup of the model, and return this object."""
-        self.model = self.model.in_cup(cup)
-        return self
-
-    def press(self, joint: Joint, **load: Any) -> Contact:
-        """Press a joint, and measure the time."""
-        start = perf_counter()
-        contact: Contact = self.model.press(joint, **load)
-        self.seconds = perf_counter() - start
-        return contact
 
 
 def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:

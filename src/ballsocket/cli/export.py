@@ -6,9 +6,9 @@ import keyword
 import re
 import sys
 from dataclasses import replace
-from math import degrees, radians
+from math import radians
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -17,18 +17,18 @@ from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
-from ..files.inputs import JOINT, LOAD, PARTS
+from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
 from ..files.schema import Length, PlainNumber, Speed, Table, Viscosity, meaning
 from ..files.tables import written_in
 from ..files.units import as_given
 from ..lubrication import Lubricant
 from ..model_catalogue import off_axis, reference, with_gap
-from ..problem import Joint
-from ..problem.cup import Cup
+from ..problem.cup import AXIAL_TILT, Cup
+from ..question import complete
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import MeshTable, solve_mesh
+from .elasticity_options import MeshTable, mesh_progress
 from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
@@ -77,7 +77,7 @@ class ForceElementInputs(Table, frozen=True, kw_only=True):
         """
         friction = None if self.friction is None else Friction(coefficient=float(self.friction))
         if file.joint.clearance < 0:
-            return self._preloaded_element(file.joint, file.cup, name, friction)
+            return self._preloaded_element(file, name, friction)
         default = default_model(file.joint, {}) if gap is None else reference
         model = with_gap(default if name is None else requested_model(name), gap)
         lubricant = self._lubricant()
@@ -88,21 +88,17 @@ class ForceElementInputs(Table, frozen=True, kw_only=True):
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
-    def _preloaded_element(
-        self, joint: Joint, stated_cup: Cup, name: str | None, friction: Friction | None
-    ) -> PreloadedElement:
+    def _preloaded_element(self, file: JointFile, name: str | None, friction: Friction | None) -> PreloadedElement:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
         if name not in (None, off_axis.name):
             raise ValueError(f"the model {name} does not solve a preloaded joint: use {off_axis.name}")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
-        cup = stated_cup.around_ball(joint.clearance)
-        if cup is not stated_cup:
-            print_message(
-                f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover"
-            )
+        assumed, sentences = complete(file)
+        if "arc_of_cover" in sentences:
+            print_message(sentences["arc_of_cover"])
         element = PreloadedElement(
-            Sphere(cup=cup, ring_width=_RING_WIDTH), joint, damping=self._damping(), friction=friction
+            Sphere(cup=assumed.cup, ring_width=_RING_WIDTH), file.joint, damping=self._damping(), friction=friction
         )
         error = element.table.error
         if error > _NOTED_ERROR:
@@ -222,7 +218,7 @@ _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 def deck(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, (*PARTS, "cup", *LOAD, "load.tilt")],
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     out: Annotated[Path, typer.Option(help="Output folder, or the deck itself (.inp); created if it does not exist.")],
     steps: Annotated[
         int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
@@ -249,10 +245,11 @@ def deck(
             "preloaded joint (model sphere), and export table has its forces"
         )
     load = needed_load(file)
-    if "tilt" in file.aim:
-        _write_tilted(file, load, file.aim["tilt"], out, mesh, run)
+    if file.tilt > AXIAL_TILT:
+        _write_tilted(file, load, file.tilt, out, mesh, run)
         return
-    contact, _ = solve_mesh(mesh.model(file.cup, meshes=1), file.joint, load)
+    with mesh_progress():
+        contact: Any = replace(mesh.model(meshes=1), cup=file.cup).press(file.joint, **load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.calculix import run as run_ccx

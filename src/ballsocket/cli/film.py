@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import hypot, isfinite
 from typing import Annotated
 
@@ -21,12 +20,12 @@ from ..files.units import as_given
 from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
-from ..model_catalogue import off_axis, with_gap
-from ..problem.cup import UP
+from ..model_catalogue import with_gap
+from ..question import DEFAULT_MODEL, PressQuestion
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import RingTable, tilted_cup
+from .elasticity_options import RingTable
 from .model_file import requested_model
 from .options import (
     GapName,
@@ -38,7 +37,6 @@ from .options import (
     expand_groups,
     needed_load,
 )
-from .press import DEFAULT_MODEL
 from .root import app, fail
 
 
@@ -149,14 +147,13 @@ def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: 
     typer.Exit
         A model has no result.
     """
-    cup, load = tilted_cup(file.cup, file.aim), needed_load(file)
-    default = off_axis.name if file.aim or cup.tilt(UP) > 0 else DEFAULT_MODEL
+    load = needed_load(file)
+    question = PressQuestion(
+        file=file, models={model.name: model for model in map(requested_model, names or ())}, sphere=rings.model()
+    )
     contacts = []
-    for name in names or [default]:
-        model = requested_model(name)
-        if model.name == off_axis.name:
-            model = replace(rings.model(), cup=cup).with_direction(**file.aim)
-        model = with_gap(model, gap)
+    for chosen in question.chosen.values():
+        model = with_gap(chosen, gap).in_cup(file.cup, **file.aim)
         contact = model.press(file.joint, **load)
         if contact.status.failed:
             fail(f"no answer from {model.name}: {contact.status.sentence}")

@@ -15,7 +15,7 @@ import numpy
 import typer
 
 from ..contact.closed_sphere import NOTED_CHANGE
-from ..core.quantities import LOADS, QUANTITIES
+from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
 from ..model_catalogue import judge, listed_models, off_axis, reference
 from ..problem import Joint, Material
@@ -181,7 +181,7 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    from ..files.inputs import JOINT, inputs_in
+    from ..files.inputs import PARTS, inputs_in
 
     if "point" in answer:
         point = answer["point"]
@@ -190,14 +190,14 @@ def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         point = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
     chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
-    load = [] if set(LOADS) & set(point) else _load_options(arguments)
     varied = set(map(_dimension_of, point))
     replaced = [
         entry.option
-        for entry in inputs_in(JOINT)
-        if {_dimension_of(entry.key), _dimension_of(f"{entry.part}_{entry.key}")} & varied
+        for entry in inputs_in((*PARTS, "load"))
+        if set(map(_dimension_of, (entry.key, f"{entry.part}_{entry.key}", *entry.rivals))) & varied
     ]
-    step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
+    stated = _without_options(arguments, *replaced)
+    step = ("press", *_joint_arguments(stated), *chosen, *numbers, *_load_options(stated), "--all")
     yield NextStep(step, "the best joint by every model")
 
 
@@ -275,14 +275,18 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _load_options(arguments: Arguments) -> list[str]:
-    return _selected_options(arguments, "--force", "--indentation", "--half-angle")
+    """Return the options of the load; of its direction only where the next command has the same cup."""
+    from ..files.inputs import LOAD, inputs_in
+
+    inputs = inputs_in(LOAD if arguments[0] == "orient" else ("load",))
+    return _selected_options(arguments, *(entry.option for entry in inputs))
 
 
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
-    """Return the file or preset of the joint, and the options that change it."""
-    from ..files.inputs import JOINT, PARTS, inputs_in
+    """Return the file or preset of the joint, and the options that change joint and cup."""
+    from ..files.inputs import PARTS, RIM, inputs_in
 
-    inputs = inputs_in(PARTS if arguments[0] == "orient" else JOINT)  # the angles of orient are ranges
+    inputs = inputs_in((*PARTS, *RIM) if arguments[0] == "orient" else (*PARTS, "cup"))  # its angles are ranges
     return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
 
 

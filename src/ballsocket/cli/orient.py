@@ -17,7 +17,7 @@ from ..core.quantities import CUP
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..files.inputs import LOAD, PARTS
+from ..files.inputs import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
@@ -124,15 +124,12 @@ def _even_degrees(low: float, high: float, step: float | None) -> Numbers:
     return numpy.unique(numpy.round([low, *multiples, high], 9))
 
 
-_RIM = ("cup.arc_of_cover", "cup.chamfer", "cup.interface")
-
-
 @app.command()
 @expand_groups
 def orient(
     *,
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, (*PARTS, *LOAD, "load.direction", "cup.side", *_RIM)],
+    joint_options: Annotated[JointOptions, (*PARTS, *LOAD, "load.direction", "cup.side", *RIM)],
     orientation: OrientationOptions,
     rings: Annotated[RingTable, "sphere"],
     units: UnitSystem = Units.SI,

@@ -46,6 +46,7 @@ ORIENTATION = tuple(f"cup.{key}" for key in ("inclination", "anteversion", "side
 """Keys of a joint file for the orientation of the cup in the body."""
 
 JOINT = (*PARTS, *ORIENTATION)
+RIM = ("cup.arc_of_cover", "cup.chamfer", "cup.interface")
 LOAD = tuple(f"load.{name}" for name in LOADS)
 
 _ONLY_IN_FILES = re.compile(

@@ -186,6 +186,11 @@ class JointFile:
     aim: dict[str, Any] = field(default_factory=dict)
     report: ReportDetails = NO_DETAILS
 
+    @property
+    def tilt(self) -> float:
+        """Angle in rad between the load and the axis of the cup."""
+        return self.cup.load_tilt(**self.aim)
+
 
 def read_joint(path: str | Path) -> JointFile:
     """Read a joint file.

@@ -67,7 +67,7 @@ def _file_table(file: JointFile) -> JointFileTable:
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
         or None,
-        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
+        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented or file.cup.has_stated_arc else None,
         load=_load(file) if file.load or file.aim else None,
     )
 
@@ -85,7 +85,7 @@ def _lengths(joint: Joint) -> dict[str, float]:
 def _cup(cup: Cup) -> CupTable:
     """Return the table of a cup, without the default orientation."""
     return CupTable(
-        arc_of_cover=Angle(cup.arc_of_cover),
+        arc_of_cover=Angle(cup.arc_of_cover) if cup.has_stated_arc else None,
         chamfer=Length(cup.chamfer),
         inclination=Angle(cup.inclination) if cup.oriented else None,
         anteversion=Angle(cup.anteversion) if cup.oriented else None,

@@ -9,6 +9,7 @@ from typing import Any
 from ...core.checks import check_names
 from ...files.joint_file import JointFile, varied
 from ...problem.cup import UP, Side
+from ...question import complete
 from ..state.screen import Screen
 from .fields import Field, segments
 from .numbers import CUP_NUMBERS, choice_of
@@ -19,7 +20,7 @@ _LEANS = ("inwards", "forwards")
 
 def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
     """Return every input of the cup by name, which begins with that of the view; inputs without effect are hidden."""
-    file, cup, tilted = screen.file, screen.file.cup, "tilt" in screen.file.aim
+    file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
     numbers = {
         "inclination": (degrees(cup.inclination), tilted),
         "anteversion": (degrees(cup.anteversion), tilted),
@@ -78,6 +79,4 @@ def _aimed_from(file: JointFile, origin: Any) -> JointFile:
     check_names([origin], (_BODY, _AXIS), "as aim")
     if origin == _BODY:
         return replace(file, aim={})
-    return (
-        file if "tilt" in file.aim else replace(file, aim={"tilt": float(file.cup.tilt(file.aim.get("direction", UP)))})
-    )
+    return replace(file, aim={"tilt": file.tilt})

@@ -15,10 +15,9 @@ from ...files.inputs import Input
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
-from ...problem.cup import UP
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
-from ..pressing import same_load, tilt_of
+from ..pressing import same_load
 from ..state.screen import Screen
 from .fields import Field, Options, choice, segments, tick, words
 from .numbers import ALLOWABLE, THICKNESS, TILT, Number, choice_of, load_of, number_of
@@ -132,7 +131,7 @@ def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
     return [
         JointInput(kinds, partial(_with_kind_of_load, screen)),
         _number_input(screen, "load", load_of(kind), tables["load"][kind]),
-        JointInput(TILT.field("tilt", degrees(tilt_of(file)), reading), partial(_with_tilt, screen)),
+        JointInput(TILT.field("tilt", degrees(file.tilt), reading), partial(_with_tilt, screen)),
     ]
 
 
@@ -181,17 +180,17 @@ def _as_changed(joint: Joint) -> Joint:
     """Return a joint that differs from its source, with a preset marked as changed in its name."""
     base = joint.name.removesuffix(_CHANGED)
     if base not in joints:
-        return replace(joint, source="")
+        return joint.replace(name=joint.name, source="")
     preset = joints[base]
-    same = replace(joint, name=preset.name, source=preset.source) == preset
-    return preset if same else replace(joint, name=base + _CHANGED, source="")
+    same = joint.replace(name=preset.name, source=preset.source) == preset
+    return preset if same else joint.replace(name=base + _CHANGED, source="")
 
 
 def _with_name(file: JointFile, value: Any) -> JointFile:
     name = " ".join(check_text("the name", value).split())
     if len(name) > _MAX_NAME:
         raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
-    return replace(file, joint=replace(file.joint, name=name))
+    return replace(file, joint=file.joint.replace(name=name, source=file.joint.source))
 
 
 def _with_preset(file: JointFile, name: Any) -> JointFile:
@@ -218,7 +217,7 @@ def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
 
 def _with_tilt(screen: Screen, value: Any) -> JointFile:
     tilt, file = TILT.meant(value, screen.reading), screen.file
-    along = tilt == 0 and float(file.cup.tilt(UP)) == 0
+    along = tilt == 0 and replace(file, aim={}).tilt == 0
     return replace(file, aim={}) if along else varied(file, {"load": {"tilt": tilt}})
 
 
@@ -287,4 +286,5 @@ def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
 
 
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
-    return replace(file, joint=_as_changed(replace(file.joint, **changes)))
+    joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
+    return replace(file, joint=_as_changed(joint))
