@@ -10,17 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
-from ..core.checks import nearest, normalise_name
-from ..core.input_files import resolve_input
 from ..core.quantities import JOINT as LENGTHS
 from ..core.quantities import LOADS
 from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
-from ..files.joint_file import JointFile, joint_of, read_joint, varied
+from ..files.joint_file import JointFile, joint_of, named_joint, varied
 from ..files.schema import Table
 from ..files.tables import read_table
 from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
-from ..problem.presets import joints
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
 from .json_answers import echo_json
@@ -148,28 +145,6 @@ class OutputOptions:
         """Draw and write the figure if there is a file for it."""
         if self.figure is not None:
             save(draw(), self.figure)
-
-
-def named_joint(name: str) -> JointFile:
-    """Return the joint of a file, or the preset of that name.
-
-    Raises
-    ------
-    ValueError
-        No such file or preset.
-    """
-    if not name:
-        raise ValueError("the joint's name is empty")
-    path = resolve_input(Path(name))
-    if path.is_dir():
-        raise ValueError(f"{name!r} is a folder; a joint file is needed")
-    if path.exists():
-        return read_joint(path)
-    if normalise_name(name) in joints:
-        return JointFile(joints[normalise_name(name)], {})
-    if not path.parent.is_dir():
-        raise ValueError(f"{name!r} does not exist: there is no folder {str(path.parent)!r}")
-    raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
 
 
 def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:

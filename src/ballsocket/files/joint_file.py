@@ -416,14 +416,26 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
     if described:
         name = shown(tables.joint)
         raise ValueError(f"joint = {name} is a whole joint: [{described[0]}] belongs to a table [joint]")
-    return _named(tables.joint, folder)
+    return named_joint(tables.joint, folder)
 
 
-def _named(name: str, folder: Path) -> JointFile:
+def named_joint(name: str, folder: Path = Path()) -> JointFile:
+    """Return the joint of a file in a folder, or the preset of that name.
+
+    Raises
+    ------
+    ValueError
+        No such file or preset.
+    """
     if not check_text("joint", name):
-        raise ValueError("joint is empty")
+        raise ValueError("the joint's name is empty")
+    path = resolve_input(folder / name)
+    if path.exists() and not path.is_dir():
+        return read_joint(path)
     if normalise_name(name) in joints:
         return JointFile(joints[normalise_name(name)], {})
-    if not resolve_input(folder / name).is_file():
-        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
-    return read_joint(folder / name)
+    if path.is_dir():
+        raise ValueError(f"{shown(name)} is a folder; a joint file is needed")
+    if not path.parent.is_dir():
+        raise ValueError(f"{shown(name)} does not exist: there is no folder {str(path.parent)!r}")
+    raise ValueError(f"{shown(name)} is neither a file nor a preset{nearest(name, joints)}")
