@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from math import degrees, isfinite
 from typing import Annotated, Any, Self
 
+import typer
 from rich.console import Console
 
 from ..contact.per_joint import SolvedContact
@@ -23,7 +24,18 @@ from ..files.schema import Angle, Length, Table, Word, meaning
 from ..files.units import as_given
 from ..model_catalogue import judge, off_axis
 from ..problem.cup import AngleDefinition, Cup
+from ..question import DEFAULT_MODEL
 from ..reports.unit_systems import Units
+from .options import complete_model
+
+ModelNames = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. Repeat for "
+        f"several. Default: {DEFAULT_MODEL}, or {off_axis.name} for a tilted load or a preloaded joint.",
+        autocompletion=complete_model,
+    ),
+]
 
 
 class ElementSize(Length):

@@ -6,7 +6,6 @@ from math import hypot, isfinite
 from typing import Annotated
 
 import numpy
-import typer
 
 from ..contact import Contact
 from ..core.arrays import Numbers
@@ -21,11 +20,11 @@ from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
 from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import with_gap
-from ..question import DEFAULT_MODEL, PressQuestion
+from ..question import PressQuestion
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import RingTable
+from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model
 from .options import (
     GapName,
@@ -33,7 +32,6 @@ from .options import (
     JointOptions,
     OutputOptions,
     UnitSystem,
-    complete_model,
     expand_groups,
     needed_load,
 )
@@ -96,14 +94,7 @@ def film(
     *,
     joint: JointName = None,
     joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name of a model (see `ballsocket models`), sphere, or FILE.py:NAME. Repeat for several. "
-            f"Default: {DEFAULT_MODEL}, or sphere for a tilted load.",
-            autocompletion=complete_model,
-        ),
-    ] = None,
+    model: ModelNames = None,
     gap: GapName = None,
     inputs: FilmInputs,
     rings: Annotated[RingTable, "sphere"],

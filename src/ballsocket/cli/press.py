@@ -23,12 +23,13 @@ from ..elasticity.off_axis import PullOut
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue, judge, off_axis, with_gap
-from ..question import DEFAULT_MODEL, PressAnswer, PressQuestion, answer, complete, every_model
+from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
     MeshTable,
+    ModelNames,
     RingTable,
     mesh_progress,
     mesh_remark,
@@ -46,7 +47,6 @@ from .options import (
     JointNames,
     JointOptions,
     UnitSystem,
-    complete_model,
     expand_groups,
     needed_load,
 )
@@ -61,14 +61,7 @@ if TYPE_CHECKING:
 class ModelOptions:
     """Options of the models that press a joint."""
 
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}.",
-            autocompletion=complete_model,
-        ),
-    ] = None
+    model: ModelNames = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
     gap: GapName = None
 
