@@ -29,13 +29,13 @@ from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.contact.verdict import exact_number
+from ballsocket.core.unit_systems import Units
 from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 from ballsocket.reports.check_table import wear_check
-from ballsocket.reports.unit_systems import Units
 
 from .asking import does, edits, opened, saved, told, trouble
 

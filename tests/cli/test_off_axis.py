@@ -112,6 +112,7 @@ def test_orient_prints_every_orientation_and_the_limits():
     assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
 
 
+@pytest.mark.long
 def test_a_cup_that_is_oriented_by_options_is_solved_and_shown_in_every_definition():
     angles = {"inclination": "43.0795 deg", "anteversion": "20.7536 deg", "orientation": "operative", "side": "left"}
     words = ("press", *NUMBERS, *COARSE, "--force", "3 kN", *(f"--{key}={value}" for key, value in angles.items()))

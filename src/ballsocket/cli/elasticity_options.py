@@ -14,6 +14,7 @@ from ..contact.per_joint import SolvedContact
 from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import require
 from ..core.quantities import CONTACT, LOADS
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
@@ -25,7 +26,6 @@ from ..files.units import as_given
 from ..model_catalogue import judge, off_axis
 from ..problem.cup import AngleDefinition, Cup
 from ..question import DEFAULT_MODEL
-from ..reports.unit_systems import Units
 from .options import complete_model
 
 ModelNames = Annotated[

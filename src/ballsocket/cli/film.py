@@ -10,6 +10,7 @@ import numpy
 from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.inputs import PARTS
 from ..files.joint_file import Direction, JointFile
@@ -22,7 +23,6 @@ from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import with_gap
 from ..question import PressQuestion
 from ..reports.film_results import film_figure, print_films
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model

@@ -12,6 +12,7 @@ import typer
 
 from ..core.quantities import JOINT as LENGTHS
 from ..core.quantities import LOADS
+from ..core.unit_systems import Units
 from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
 from ..files.joint_file import JointFile, joint_of, named_joint, varied
 from ..files.schema import Table
@@ -19,7 +20,6 @@ from ..files.tables import read_table
 from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
-from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:

@@ -18,6 +18,7 @@ from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
+from ..core.unit_systems import Units
 from ..core.validity import Status
 from ..elasticity.off_axis import PullOut
 from ..files.inputs import PARTS
@@ -25,7 +26,6 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue, judge, off_axis, with_gap
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_curve, print_press
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
     MeshTable,

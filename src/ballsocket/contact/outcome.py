@@ -67,20 +67,11 @@ class ModelInfo(ABC):
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Outcome(ABC):
-    """Base class of results, with status, validity and notes of each point.
+    """Base class of results, with status, validity and notes of each point."""
 
-    Attributes
-    ----------
-    model : ModelInfo
-        The model that computed the result.
-    joint : Joint
-    status : Status or array of int
-        Success, or the reason of the failure, of each point.
-    """
-
-    model: ModelInfo
+    model: ModelInfo  # the model that computed the result
     joint: Joint
-    status: Array
+    status: Array  # success, or the reason of the failure, of each point
 
     @property
     @abstractmethod

@@ -41,10 +41,7 @@ def is_plain_number(value: Any) -> bool:
 def namespace(*values: Array) -> Any:
     """Return the array library of the given values, such as NumPy or JAX; NumPy for plain numbers.
 
-    Raises
-    ------
-    TypeError
-        Arrays of several libraries.
+    Raises TypeError: arrays of several libraries.
     """
     if all(isinstance(value, _NUMPY_TYPES) for value in values):
         return numpy

@@ -221,10 +221,7 @@ def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     name : str
         Name of the model or modulus for the message.
 
-    Raises
-    ------
-    OutsideDomainError
-        No point is inside one of the ranges.
+    Raises OutsideDomainError: no point is inside one of the ranges.
     """
     points: Array = joint.ball_radius == joint.ball_radius
     unloaded = _UnloadedContact(joint)

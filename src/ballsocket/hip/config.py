@@ -46,35 +46,18 @@ _DEFAULT_N_REPORTS = 10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipFile:
-    """Contents of a hip file.
-
-    Attributes
-    ----------
-    use : HipSimulation
-    cycles : float
-        Number of cycles.
-    report_at : tuple of float
-        Cycle counts of the reports.
-    lubricant : Lubricant, optional
-        Lubricant of the film; None if neither [film] nor a limit of the film ratio asks for one.
-    uncertain : optional
-        Distributions of quantities that differ between patients; None without a table [uncertainty].
-    data : tuple of MeasuredWear
-        Measured wear of the tables [[data]].
-    name : str
-        Name of the simulation; empty if the file states none.
-    report : ReportDetails
-        Head of a report; without [report] that of the joint file.
-    """
+    """Contents of a hip file."""
 
     use: HipSimulation
-    cycles: float
-    report_at: tuple[float, ...]
+    cycles: float  # number of cycles
+    report_at: tuple[float, ...]  # cycle counts of the reports
+    # lubricant of the film; None if neither [film] nor a limit of the film ratio asks for one
     lubricant: Lubricant | None
+    # distributions of quantities that differ between patients; None without a table [uncertainty]
     uncertain: UncertaintySettings | None = None
-    data: tuple[MeasuredWear, ...] = ()
-    name: str = ""
-    report: ReportDetails = NO_DETAILS
+    data: tuple[MeasuredWear, ...] = ()  # measured wear of the tables [[data]]
+    name: str = ""  # name of the simulation; empty if the file states none
+    report: ReportDetails = NO_DETAILS  # head of a report; without [report] that of the joint file
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -284,10 +267,7 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
     """Return the foundation of the socket by its name in files, with the model of its springs.
 
-    Raises
-    ------
-    ValueError
-        A model without springs, or next to another foundation.
+    Raises ValueError: a model without springs, or next to another foundation.
     """
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
@@ -356,21 +336,11 @@ _SAMPLED_KINDS: Mapping[str, Kind] = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UncertaintySettings:
-    """Settings of the table [uncertainty].
+    """Settings of the table [uncertainty]."""
 
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients.
-    count : int
-        Number of samples, 2 or more.
-    seed : int
-        Seed of the samples.
-    """
-
-    variability: PatientVariability
-    count: int
-    seed: int
+    variability: PatientVariability  # distributions of the patients
+    count: int  # number of samples, 2 or more
+    seed: int  # seed of the samples
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:

@@ -33,23 +33,15 @@ class CupFrame:
 
     The axis x points upwards along the rim's plane, z to the dome's pole.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of single numbers.
-    cycle : Cycle or Mix
-        Loads and rotations in the body's frame, for the right side of the body.
-    cup : Cup
-        Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
-
     Raises
     ------
     ValueError
         A load that pushes the ball over the rim, unless a spring balances the load there.
     """
 
-    joint: Joint
-    cycle: Cycle | Mix
+    joint: Joint  # joint of single numbers
+    cycle: Cycle | Mix  # loads and rotations in the body's frame, for the right side of the body
+    # arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:

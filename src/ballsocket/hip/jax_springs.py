@@ -19,21 +19,11 @@ _DIAGONAL = numpy.array([0, 3, 5])  # indices of xx, yy and zz among these entri
 
 
 class PatientEquilibria(NamedTuple):
-    """Contacts of several patients under all loads of a cycle, as arrays of JAX in double precision.
+    """Contacts of several patients under all loads of a cycle, as arrays of JAX in double precision."""
 
-    Attributes
-    ----------
-    displacement : array (patients, loads, 3)
-        Displacement of the ball's centre in mm.
-    pressure : array (patients, loads, cells)
-        Pressure in MPa.
-    converged : array (patients,)
-        True where every load is balanced.
-    """
-
-    displacement: Array
-    pressure: Array
-    converged: Array
+    displacement: Array  # (patients, loads, 3), displacement of the ball's centre in mm
+    pressure: Array  # (patients, loads, cells), pressure in MPa
+    converged: Array  # (patients,), True where every load is balanced
 
 
 def join_contacts(contacts: list[SpringContact]) -> SpringContact:

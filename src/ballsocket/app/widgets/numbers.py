@@ -8,11 +8,11 @@ from typing import Any
 
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES, Quantity
+from ...core.unit_systems import Units
 from ...files.inputs import Input, Typical, inputs_of
 from ...files.joint_file import JointFileTable
 from ...hip.schema import HipTable
 from ...problem.dimensions import DIAMETERS
-from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, segments, typed
 from .reading import Reading, box_text, handy_step, unit_suffix
 

@@ -56,18 +56,10 @@ def _dimensionless_quantities(state: AbelState) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevCurve:
-    """Force, indentation and half angle of one joint from Chebyshev series.
+    """Force, indentation and half angle of one joint from Chebyshev series."""
 
-    Attributes
-    ----------
-    curve : LoadCurve
-        Exact solutions of the joint.
-    knots : AbelState
-        Contacts that the series interpolate, at `chebyshev_points`.
-    """
-
-    curve: LoadCurve
-    knots: AbelState
+    curve: LoadCurve  # exact solutions of the joint
+    knots: AbelState  # contacts that the series interpolate, at `chebyshev_points`
 
     def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
