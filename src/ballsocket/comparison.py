@@ -186,6 +186,7 @@ def compare(
     half_angle: Array | None = None,
     models: Mapping[str, Model] | Sequence[Model | str] | None = None,
     cup: Cup | None = None,
+    **aim: Any,
 ) -> Comparison:
     """Compute the contact of one joint and load with several models.
 
@@ -198,6 +199,8 @@ def compare(
         Models by name, or models and names of the catalogue; all models of the catalogue by default.
     cup : Cup, optional
         Rim of the socket. Models without a rim are then invalid near it.
+    **aim
+        Direction of the load in the cup, as of `Model.in_cup`: `direction` or `tilt`.
 
     Returns
     -------
@@ -225,7 +228,8 @@ def compare(
     contacts, missing = {}, {}
     for name, model in named.items():
         try:
-            contacts[name] = (model if cup is None else model.in_cup(cup)).press(joint, **keyword)
+            placed = model.in_cup(cup or Cup(), **aim) if aim or cup is not None else model
+            contacts[name] = placed.press(joint, **keyword)
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)

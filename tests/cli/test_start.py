@@ -4,16 +4,16 @@ import ast
 import re
 import subprocess
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
 import typer
 
 import ballsocket as bs
-from ballsocket.cli.options import JointOptions
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.files.inputs import inputs_of
+from ballsocket.files.joint_file import JointFileTable
 
 from .command import run
 
@@ -103,7 +103,7 @@ def test_help_of_a_command_fits_80_columns_and_begins_with_its_purpose(name):
     assert text.split("\n\n")[1].strip() == COMMANDS[name].__doc__.partition("\n")[0]
 
 
-JOINT_OPTIONS = {field.name for field in fields(JointOptions)}
+JOINT_OPTIONS = {entry.name for entry in inputs_of(JointFileTable)}
 """Options whose default is the joint file or the preset, as the help of the argument states."""
 
 SIZES = re.compile(r"ring_width|arc_of_cover|chamfer|element_size|tilt|hysteresis|impact_speed|longest|thickness")
@@ -117,7 +117,7 @@ def test_every_option_states_its_unit_and_its_default(name):
         if SIZES.fullmatch(option.name) or (quantity and quantity.unit not in ("", "1")):
             assert UNIT.search(text), f"--{option.name} has no unit: {text}"
         if option.name == "joint" and name != "calibrate":
-            assert "options of the joint replace its values" in text
+            assert "Options replace its values" in text
         elif option.name not in JOINT_OPTIONS and not (option.required or option.default is not None):
             stated = r"Default|^(fem: |sphere: )?[Ww]rite |Not with --|^Show this"
             assert re.search(stated, text), f"--{option.name} has no default: {text}"

@@ -78,7 +78,7 @@ class Page:
 
     def ask(self, **changes: Any) -> None:
         screen = replace(self.screen, **changes)
-        if screen == self.screen:
+        if screen == self.screen and screen.link == self.screen.link:  # a default and the same number typed are equal
             return
         _check_link(screen)
         self.refuse("")

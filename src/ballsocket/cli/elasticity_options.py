@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import degrees, isfinite, pi
-from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import degrees, isfinite
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
-from ..contact import Contact
-from ..contact.describe import COLUMNS
 from ..contact.per_joint import SolvedContact
 from ..contact.verdict import Verdict, rim_verdict
-from ..core.checks import known_name, require
-from ..core.kinds import Kind
+from ..core.checks import require
 from ..core.quantities import CONTACT, LOADS
 from ..core.unit_systems import Units
-from ..files.joint_file import JointFile, read_aim, read_cup
-from ..files.units import parse
+from ..files.schema import Angle, Length, Table, Word, meaning
+from ..files.units import as_given
 from ..model_catalogue import JUDGE, OFF_AXIS
-from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
-from .options import ArcOfCover, drop_missing
+from ..question import DEFAULT_MODEL
+from .options import complete_model
+
+ModelNames = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. Repeat for "
+        f"several. Default: {DEFAULT_MODEL}, or {OFF_AXIS} for a tilted load or a preloaded joint.",
+        autocompletion=complete_model,
+    ),
+]
 
 if TYPE_CHECKING:
     from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
@@ -32,54 +37,38 @@ if TYPE_CHECKING:
     from ..elasticity.off_axis.model import Sphere
 
 
-@dataclass(frozen=True, kw_only=True)
-class CupOptions:
-    """Options of a cup; they replace single values of the cup in the joint file."""
+class ElementSize(Length):
+    """Size of the elements in mm."""
 
-    arc_of_cover: ArcOfCover = None
-    chamfer: Annotated[
-        str | None,
-        typer.Option(help="Width of the chamfer on the rim's inner edge in mm. Default: as in the file, or 0."),
-    ] = None
-    interface: Annotated[
-        str | None,
-        typer.Option(help="Liner on its backing: 'bonded' or 'sliding'. Default: as in the file, or bonded."),
-    ] = None
-
-    def apply_to(self, cup: Cup) -> Cup:
-        """Return a cup with the values that the options replace."""
-        return read_cup(drop_missing(vars(self)), cup)
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        size = super().read(name, value)
+        require(name, float(size), size > 0, "an element's size (mm) is above 0")
+        return size
 
 
-@dataclass(frozen=True, kw_only=True)
-class MeshOptions:
-    """Options of a finite-element mesh."""
+class ElementName(Word):
+    """Type of the elements."""
+
+    choices = ("biquadratic", "bilinear")
+
+
+class MeshTable(Table, frozen=True, kw_only=True):
+    """Finite-element mesh."""
 
     element_size: Annotated[
-        str | None, typer.Option(help="Element size in the contact in mm: '0.05 mm'. Default: from the contact size.")
+        ElementSize | None, meaning("element size in the contact", example="0.05 mm", default="from the contact size")
     ] = None
-    element: Annotated[
-        str | None, typer.Option(help="Element type: 'biquadratic' or 'bilinear'. Default: biquadratic.")
-    ] = None
+    element: Annotated[ElementName | None, meaning("element type", default="biquadratic")] = None
 
-    def model(self, cup: Cup, meshes: int) -> FiniteElement:
-        """Return the finite-element model of a cup, on one mesh or on two for error estimates."""
+    def model(self, meshes: int) -> FiniteElement:
+        """Return the finite-element model, on one mesh or on two for error estimates."""
         from ..elasticity.finite_elements.model import FiniteElement
         from ..elasticity.finite_elements.spacing import Adapted, Element, Uniform
 
-        known = {element.name.lower(): element for element in Element}
-        element = Element.BIQUADRATIC if self.element is None else known[known_name("element", self.element, known)]
-        spacing: Spacing = Adapted() if self.size is None else Uniform(size=self.size)
-        return FiniteElement(cup=cup, spacing=spacing, element=element, meshes=meshes)
-
-    @property
-    def size(self) -> float | None:
-        """Element size in mm; None if the option is not used."""
-        if self.element_size is None:
-            return None
-        length = parse("element_size", self.element_size, Kind.LENGTH)
-        require("element_size", length, length > 0, "an element's size (mm) is above 0")
-        return length
+        element = Element[(self.element or "biquadratic").upper()]
+        spacing: Spacing = Adapted() if self.element_size is None else Uniform(size=float(self.element_size))
+        return FiniteElement(spacing=spacing, element=element, meshes=meshes)
 
 
 def refuse_mesh_options(options: Mapping[str, Any]) -> None:
@@ -89,18 +78,16 @@ def refuse_mesh_options(options: Mapping[str, Any]) -> None:
             raise ValueError(f"--{name.replace('_', '-')} is for the finite elements: add --model {JUDGE}")
 
 
-def solve_mesh(model: FiniteElement, joint: Any, load: Mapping[str, float]) -> tuple[MeshedContact, float]:
-    """Press a joint by finite elements with progress on stderr; return the contact and the time in s."""
+@contextmanager
+def mesh_progress() -> Iterator[None]:
+    """Show the progress of finite elements on stderr."""
     from rich.console import Console
 
     from ..elasticity.finite_elements.progress import progress_to
 
-    start = perf_counter()
     status = Console(stderr=True).status("finite elements")
     with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
-        contact: Any = model.press(joint, **load)
-        _ = [column.values_of(contact) for column in COLUMNS]
-    return contact, perf_counter() - start
+        yield
 
 
 def mesh_remark(contact: MeshedContact, seconds: float) -> str:
@@ -122,32 +109,12 @@ def _error_text(contact: SolvedContact) -> str:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class DirectionOptions:
-    """Options of the load's direction, and of the rings of the model `sphere`."""
+class RingTable(Table, frozen=True, kw_only=True):
+    """Rings of the model `sphere`."""
 
-    tilt: Annotated[
-        str | None,
-        typer.Option(
-            help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere. "
-            "Default: as in the file, or 0 deg."
-        ),
-    ] = None
-    direction: Annotated[
-        str | None,
-        typer.Option(
-            help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere. "
-            "Default: as in the file."
-        ),
-    ] = None
     ring_width: Annotated[
-        str | None,
-        typer.Option(help="sphere: width of its rings in degrees. Default: 2 deg; finer is slower and more exact."),
+        Angle | None, meaning("width of its rings; finer is slower and more exact", default="2 deg")
     ] = None
-
-    def read(self, file: JointFile) -> dict[str, Any]:
-        """Read the direction from the options or the joint file; empty if there is none."""
-        return read_aim(drop_missing({"tilt": self.tilt, "direction": self.direction})) or file.aim
 
     def refuse(self) -> None:
         """Raise ValueError for options of `sphere` that are used without this model."""
@@ -160,7 +127,8 @@ class DirectionOptions:
 
         if self.ring_width is None:
             return Sphere()
-        return Sphere(ring_width=parse("ring_width", self.ring_width, Kind.ANGLE))
+        with as_given({"ring_width": self.ring_width.written}):
+            return Sphere(ring_width=float(self.ring_width))
 
 
 def orientation_summary(cup: Cup) -> dict[str, dict[str, float]]:
@@ -175,34 +143,6 @@ def orientation_remark(cup: Cup) -> str:
     angles = orientation_summary(cup)
     texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
     return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
-
-
-def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
-    """Return the cup tilted against a vertical load.
-
-    A direction in the body leaves the cup unchanged. Models that take every load as axial judge the rim by the tilt.
-    """
-    return cup.tilted(min(direction["tilt"], pi / 2)) if "tilt" in direction else cup
-
-
-@dataclass
-class TimedModel:
-    """A model that measures the time of its last press in s."""
-
-    model: Any
-    seconds: float = 0.0
-
-    def in_cup(self, cup: Cup) -> TimedModel:
-        """Set the cup of the model, and return this object."""
-        self.model = self.model.in_cup(cup)
-        return self
-
-    def press(self, joint: Joint, **load: Any) -> Contact:
-        """Press a joint, and measure the time."""
-        start = perf_counter()
-        contact: Contact = self.model.press(joint, **load)
-        self.seconds = perf_counter() - start
-        return contact
 
 
 def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:

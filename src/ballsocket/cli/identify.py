@@ -11,6 +11,7 @@ import typer
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..files.joint_file import named_joint
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..identification import as_constant, as_corrected_vessel, as_polynomial
@@ -24,7 +25,7 @@ from ..reports.identify_results import print_identified
 from ..studies.calibration import FORCES, Form
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, named_joint
+from .options import AsJson
 from .root import app, echo_path, fail
 
 _FORMATS = "(.png, .svg, .pdf)"

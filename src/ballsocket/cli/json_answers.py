@@ -19,7 +19,7 @@ from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
 from ..model_catalogue import JUDGE, OFF_AXIS, listed_models, reference
 from ..problem import Joint, Material
-from ..problem.dimensions import DIAMETERS, LENGTHS
+from ..problem.dimensions import DIAMETERS
 from ..problem.presets import joints, materials
 
 Answer = Mapping[str, Any]
@@ -180,6 +180,8 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    from ..files.inputs import PARTS, inputs_in
+
     if "point" in answer:
         point = answer["point"]
     else:  # of a map, with the smallest peak pressure or the smallest value of the first quantity
@@ -187,14 +189,14 @@ def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         point = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
     chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
-    has_load = any(name in point for name in ("force", "indentation"))
-    load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
-    varied, replaced = set(map(_dimension_of, point)), []
-    for option in _JOINT_OPTIONS:
-        name = option.removeprefix("--").replace("-", "_")
-        if {_dimension_of(name), _dimension_of(f"liner_{name}")} & varied:
-            replaced.append(option)
-    step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
+    varied = set(map(_dimension_of, point))
+    replaced = [
+        entry.option
+        for entry in inputs_in((*PARTS, "load"))
+        if set(map(_dimension_of, (entry.key, f"{entry.part}_{entry.key}", *entry.rivals))) & varied
+    ]
+    stated = _without_options(arguments, *replaced)
+    step = ("press", *_joint_arguments(stated), *chosen, *numbers, *_load_options(stated), "--all")
     yield NextStep(step, "the best joint by every model")
 
 
@@ -216,7 +218,7 @@ _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 
 def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    load = _selected_options(arguments, "--force", "--indentation")
+    load = _load_options(arguments)
     yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
 
 
@@ -229,7 +231,7 @@ def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
     if known:
-        load = _selected_options(arguments, "--force", "--indentation", "--half-angle")
+        load = _load_options(arguments)
         step = ("press", *_joint_arguments(arguments), *load, "--tilt", f"{max(known)[1]:.4g} deg")
         yield NextStep(step, "the orientation with the largest distance to the rim")
 
@@ -271,17 +273,20 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         yield NextStep(("cite", model["name"]), "BibTeX")
 
 
+def _load_options(arguments: Arguments) -> list[str]:
+    """Return the options of the load; of its direction only where the next command has the same cup."""
+    from ..files.inputs import LOAD, inputs_in
+
+    inputs = inputs_in(LOAD if arguments[0] == "orient" else ("load",))
+    return _selected_options(arguments, *(entry.option for entry in inputs))
+
+
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
-    """Return the file or preset of the joint, and the options that change it."""
-    angles = () if arguments[0] == "orient" else _ANGLE_OPTIONS  # there they are ranges
-    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS, *angles))
+    """Return the file or preset of the joint, and the options that change joint and cup."""
+    from ..files.inputs import PARTS, RIM, inputs_in
 
-
-_PART_OPTIONS = ("young", "poisson", "liner", "ball_young", "ball_poisson", "ball", "shell", "shell_thickness")
-
-_JOINT_OPTIONS = tuple(f"--{name}".replace("_", "-") for name in (*LENGTHS, *_PART_OPTIONS))
-
-_ANGLE_OPTIONS = ("--inclination", "--anteversion", "--side", "--orientation", "--pelvic-tilt")
+    inputs = inputs_in((*PARTS, *RIM) if arguments[0] == "orient" else (*PARTS, "cup"))  # its angles are ranges
+    return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
 
 
 def _joint_name(arguments: Arguments) -> list[str]:

@@ -15,6 +15,7 @@ from ..core.checks import check_names
 from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
+from ..question import PressAnswer
 from ..reports.figure_files import check_format, save
 from .root import print_message
 
@@ -145,21 +146,18 @@ class ReportOptions:
                 raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
         return dict(parsed)
 
-    def design(
-        self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units, remarks: Sequence[str]
-    ) -> Any:
+    def design(self, answer: PressAnswer, units: Units, remarks: Sequence[str]) -> Any:
         """Return a design of the report with the effect of its tolerances; None without a report."""
         if self.report is None:
             return None
         from ..reports.press_report import PressedDesign
 
-        best = [name for name in (OFF_AXIS, reference.name) if name in comparison and comparison[name].valid]
         return PressedDesign(
-            comparison=comparison,
-            file=file,
-            leading=[*best, *comparison][0],
-            uncertainty=self._tolerance_study(comparison, file),
-            command=self._command(comparison, models, units),
+            comparison=answer.comparison,
+            file=answer.file,
+            leading=answer.leading,
+            uncertainty=self._tolerance_study(answer.comparison, answer.file),
+            command=self._command(answer.comparison, answer.models, units),
             remarks=remarks,
         )
 

@@ -60,6 +60,7 @@ class Kind(StrEnum):
     EDGE_COEFFICIENT = "edge coefficient"
     VISCOSITY = "viscosity"
     ROTATION_RATE = "rotation rate"
+    SPEED = "speed"
     VOLUME = "volume"
     CYCLES = "number of cycles"
     TIME = "time"
@@ -106,6 +107,7 @@ _KINDS = {
     Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
     Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
     Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
+    Kind.SPEED: ("mm/s", "a speed, such as '0.1 m/s'"),
     Kind.VOLUME: ("mm3", "a volume, such as '80 mm^3'"),
     Kind.CYCLES: ("1", "a number of cycles, such as 5e6"),
     Kind.TIME: ("years", "a time in years, such as 5"),

@@ -16,7 +16,7 @@ from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.columns import ALL_COLUMNS
-from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
+from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, details_in, joint_in
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
@@ -133,7 +133,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
         data=tuple(_parse_measured_wear(table, cycle.per_year, tables, folder) for table in tables.data or ()),
         name=str(tables.name or ""),
-        report=joint_file.report if tables.report is None else report_details(tables.report, folder),
+        report=joint_file.report if tables.report is None else details_in(folder, tables.report),
     )
 
 

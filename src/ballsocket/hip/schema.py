@@ -9,7 +9,7 @@ import msgspec
 
 from ..core.checks import shown
 from ..files.columns import HeadKeys
-from ..files.joint_file import CupTable, JointTables, ReportTable
+from ..files.joint_file import CupTable, JointTables, ReportDetails
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
@@ -365,4 +365,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     film: FilmTable | None = None
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
-    report: ReportTable | None = None
+    report: ReportDetails | None = None

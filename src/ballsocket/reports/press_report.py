@@ -19,6 +19,7 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..files.joint_file import JointFile, ReportDetails
 from ..files.joint_toml import toml_of
+from ..files.schema import Text
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
@@ -127,7 +128,7 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     logos = dict.fromkeys(design.file.report.logo for design in designs if design.file.report.logo)
     if len({logo_address(Path(logo)) for logo in logos}) > 1:
         raise ValueError(f"the designs have different logos, {' and '.join(map(repr, logos))}; a report has one")
-    return ReportDetails(**{name: text_of(name) for name in HEAD_TEXTS}, logo=next(iter(logos), ""))
+    return ReportDetails(**{name: Text(text_of(name)) for name in HEAD_TEXTS}, logo=next(iter(logos), None))
 
 
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:

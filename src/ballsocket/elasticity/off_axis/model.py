@@ -177,9 +177,10 @@ class Sphere(Model):
         """Raise TypeError: a contact off the axis has no closed force law."""
         raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
-    def in_cup(self, cup: Cup) -> Sphere:
-        """Return a copy of the model with another cup."""
-        return replace(self, cup=cup)
+    def in_cup(self, cup: Cup, **aim: Any) -> Sphere:
+        """Return a copy of the model with another cup and direction of the load; a tilt tilts the cup as well."""
+        tilted = cup.tilted(min(aim["tilt"], pi / 2)) if "tilt" in aim else cup
+        return replace(self, cup=tilted).with_direction(**aim)
 
     def press(
         self,

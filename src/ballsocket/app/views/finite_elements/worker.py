@@ -46,7 +46,7 @@ class ElementResult:
 def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     """Press a joint in load steps by finite elements, and report progress as `Reached`."""
     start = time.perf_counter()
-    model = named_models[JUDGE].in_cup(file.cup)
+    model = named_models[JUDGE].in_cup(file.cup, **file.aim)
     ((kind, load),) = file.load.items()
     report(Reached(share=0.05, words="making the meshes"))
     for share in _LOAD_STEPS:
