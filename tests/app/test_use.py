@@ -76,7 +76,7 @@ def test_a_cycle_is_that_of_python(page):
     assert found.force == pytest.approx(hip.cycle.force_magnitudes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
     assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
-    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.force_magnitudes)
+    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.frame.forces[:, 0] / hip.cycle.force_magnitudes)
     cells = found.frames.cells
     assert cells.shape == (100, RINGS + 1, MERIDIANS)
     assert 240 <= cells.max() <= 255

@@ -200,7 +200,7 @@ def ratios() -> Iterator[Ratio]:
 def separations() -> Iterator[tuple[str, float, float]]:
     """Compute medial-lateral separation and distance of the centres in mm, with the name of the measured one."""
     for angle, tilt in zip(MEASURED_SEPARATIONS, (30.0, 50.0), strict=True):
-        apart = make_hip(36.0, iso_14242_4(), tilt).separation
+        apart = make_hip(36.0, iso_14242_4(), tilt).frame.separation
         assert apart is not None
         yield f"ali-{angle[:-1]}-separation", apart.medial_lateral, apart.centre_distance
 

@@ -73,7 +73,7 @@ def hip_report(
     sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
     if history.use.unworn_checks:
         sections["contact"] = ("Validity of the contact", None)
-    if len(history.use.loaded):
+    if len(history.use.frame.loaded):
         figures = dict(_FIGURES)
         if history.use.ball_wear is not None:
             figures["ball"] = ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")
@@ -156,7 +156,7 @@ def _first_cycle(history: History) -> str:
 
 def _rim_approach(history: History) -> str:
     """Describe the least distance to the rim with instant and location, new and at the end, and the radiograph."""
-    nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
+    nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use.frame)}
     sentences = []
     for stage, worst in nearest.items():
         if worst is not None:
