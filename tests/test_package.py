@@ -65,7 +65,7 @@ GALLERY = {
 EXAMPLES = sorted(path for path in (ROOT / "examples").glob("*.py") if path.stem not in GALLERY)
 
 
-@pytest.mark.parametrize("path", some(EXAMPLES, 2), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", some(EXAMPLES, 1), ids=lambda path: path.stem)
 def test_examples_run(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(path), run_name="__main__")

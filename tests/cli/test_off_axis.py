@@ -123,6 +123,7 @@ def test_orient_prints_every_orientation_and_the_limits():
     assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
 
 
+@pytest.mark.long
 def test_a_cup_is_oriented_by_options_as_by_its_file(tmp_path):
     angles = {"inclination": "43.0795 deg", "anteversion": "20.7536 deg", "orientation": "operative", "side": "left"}
     words = ("press", "--ball-radius", "18", "--clearance", "0.1", "--liner-thickness", "5", "--liner", "xlpe")

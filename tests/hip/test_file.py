@@ -199,7 +199,7 @@ def test_a_stated_name_stands_in_table_csv_and_figure(files, tmp_path):
     names = ["conventional 28 (named_a)", "conventional 28 (named_b)", "named_c"]
     process = run("hip", *paths, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
     figure = (tmp_path / "n.svg").read_text(encoding="utf-8")
-    assert all(f"0.01 {name}" in process.stdout and name in figure for name in names)
+    assert all(name in " ".join(process.stdout.split()) and name in figure for name in names)
     assert list(dict.fromkeys(row["hip"] for row in read_csv(tmp_path / "n.csv"))) == names
     assert run("hip", paths[0]).stdout.startswith("conventional 28: R1 14 mm")
 
@@ -214,7 +214,7 @@ def test_a_history_is_a_frame_and_a_figure(monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     with pytest.raises(ImportError, match=r'pandas is not installed: pip install "ballsocket\[study\]"'):
         history.to_frame()
-    assert len(history.table()) == 2
+    assert len(history.table().rows) == 2
 
 
 def test_the_radiograph_shows_the_displacement_in_the_frontal_plane():

@@ -92,6 +92,7 @@ def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cy
     return np.array(films)
 
 
+@pytest.mark.long
 def test_a_long_swing_repeats_and_its_two_strokes_are_alike():
     film = carry_over_cycle(MESH, VISCOSITY, swing(1.5))
     assert film.converged
@@ -113,6 +114,7 @@ def test_a_short_swing_about_one_axis_squeezes_the_middle():
     assert central[0] / central[1] == pytest.approx(2.0, rel=0.02)
 
 
+@pytest.mark.long
 def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
     """Reynolds' equation in the frame of the film has 84.5 nm after 10 cycles and 59.5 after 25."""
     mesh, instants = rocking(width=either(5.0, 3.0))

@@ -18,6 +18,7 @@ from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
@@ -29,7 +30,6 @@ from ..files.units import parse
 from ..model_catalogue import judge, off_axis
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
-from ..reports.unit_systems import Units
 from .options import ArcOfCover, drop_missing
 
 

@@ -13,6 +13,7 @@ from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
 from ..core.kinds import Kind
+from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..files.units import parse
@@ -22,7 +23,6 @@ from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import off_axis, with_gap
 from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import CupOptions, DirectionOptions, tilted_cup
 from .model_file import requested_model

@@ -106,7 +106,9 @@ def _has_measured_wear(file: Path) -> bool:
 def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
     from ..hip.config import read_wear_test
     from ..hip.wear_fit import fit_wear_coefficient
-    from ..reports.hip_comparison import print_wear_fit, wear_fit_figure
+    from ..hip.wear_fit_answer import describe_wear_fit
+    from ..reports.hip_comparison import wear_fit_figure
+    from ..reports.terminal import print_answer
 
     hip_file = read_wear_test(file)
     fit = fit_wear_coefficient(hip_file.use, hip_file.data)
@@ -114,7 +116,7 @@ def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
         valid = all(check.valid for check in fit.simulation.unworn_checks)
         echo_json({"version": __version__, "joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()})
     else:
-        print_wear_fit(fit)
+        print_answer(describe_wear_fit(fit))
     if figure is not None:
         save(wear_fit_figure(fit, hip_file.cycles), figure)
 

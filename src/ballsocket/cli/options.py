@@ -14,12 +14,12 @@ import typer
 from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
 from ..core.quantities import JOINT
+from ..core.unit_systems import Units
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
 from ..model_catalogue import listed_models
 from ..problem.dimensions import LENGTHS, fit_beside
 from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save
-from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:

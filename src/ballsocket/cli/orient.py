@@ -15,6 +15,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
 from ..core.quantities import CUP
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
@@ -22,7 +23,6 @@ from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
-from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
 from .elasticity_options import CupOptions, DirectionOptions

@@ -17,6 +17,7 @@ from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
+from ..core.unit_systems import Units
 from ..core.validity import Status
 from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
@@ -26,7 +27,6 @@ from ..problem import Joint
 from ..problem.cup import UP, Cup
 from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
     CupOptions,

@@ -12,11 +12,11 @@ import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
+from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
 from ..model_catalogue import judge, off_axis, reference
 from ..reports.figure_files import check_format, save
 from ..reports.pages import check_page_path, write_page
-from ..reports.unit_systems import Units
 from .root import print_message
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
+from ..core.bounded import Bounded
 from ..core.checks import check_numeric, check_vectors, degrees_hint, require, shown
 from ..core.display import load_plot
 from ..core.kinds import Unit
@@ -18,7 +19,6 @@ from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from . import describe, strength
-from .bounded import Bounded
 from .outcome import Outcome
 from .stress_ratio import von_mises_ratio
 

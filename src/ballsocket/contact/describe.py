@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from html import escape
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -11,8 +13,10 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import needs
-from ..core.kinds import Unit
+from ..core.kinds import Kind, Unit
 from ..core.quantities import BEARING, CONTACT, Quantity
+from ..core.unit_systems import Units
+from ..problem import Joint, elementwise_maximum
 
 if TYPE_CHECKING:
     import pandas
@@ -78,6 +82,44 @@ COLUMNS = tuple(Column(quantity, quantity.written) for quantity in CONTACT.value
 
 UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
 """Column of the utilisation, printed if a strength is known."""
+
+
+class PressureRatioColumn(Column):
+    """Column of the largest pressure over the allowable pressure, the larger of liner and ball."""
+
+    def values_of(self, contact: Any) -> Any:
+        """Return the ratios of a contact; NaN without an allowable pressure."""
+        materials = (contact.joint.liner, contact.joint.ball)
+        allowed = [material.allowable_pressure for material in materials if material is not None]
+        ratios = [contact.max_pressure / pressure for pressure in allowed if pressure is not None]
+        return reduce(elementwise_maximum, ratios) if ratios else nan * contact.max_pressure
+
+
+PRESSURE_RATIO = PressureRatioColumn(
+    Quantity(
+        "pressure_ratio",
+        "pmax/pa",
+        "largest over allowable pressure",
+        Kind.NUMBER,
+        "Largest pressure over the allowable pressure, the larger of liner and ball.",
+    ),
+    Unit(""),
+)
+"""Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
+
+
+def columns_in(units: Units) -> tuple[Column, ...]:
+    """Return the columns of a contact, each with its unit."""
+    return (*(Column(quantity, units.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
+
+
+def columns_of(joint: Joint, units: Units) -> tuple[Column, ...]:
+    """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
+    materials = [material for material in (joint.liner, joint.ball) if material is not None]
+    known = {name for material in materials for name in material.strengths}
+    ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
+    return (*columns_in(units)[:-1], *(column for name, column in ratios.items() if name in known))
+
 
 UTILISATION_NOTE = "utilisation_note"
 """Key in JSON of the reason why the utilisation does not cover the liner."""

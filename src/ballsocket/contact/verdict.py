@@ -14,11 +14,11 @@ from math import inf, nextafter
 from math import isfinite as is_finite_number
 
 from ..core.arrays import isfinite, where
+from ..core.bounded import Bounded as Bounded
+from ..core.bounded import Verdict as Verdict
+from ..core.bounded import exact_number as exact_number
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
-from .bounded import Bounded as Bounded
-from .bounded import Verdict as Verdict
-from .bounded import exact_number as exact_number
 from .contact import Contact
 from .strength import joint_ball_stress_ratio, unchecked_strength_reason, utilisation
 

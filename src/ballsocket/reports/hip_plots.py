@@ -112,7 +112,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
             part = [0.0, *(float(numpy.linalg.norm(getattr(report, name))) for report in history.reports)]
             axes.plot(count, part, dash, color=colour, label=label)
     axes.plot(count, [0.0, *(report.depth for report in history.reports)], "-.", color="0.4", label="deepest wear")
-    finish(axes, "million cycles", "mm")
+    finish(axes, "million cycles", "depth [mm]")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False)
     return figure

@@ -11,6 +11,7 @@ import numpy
 from ..contact import Contact
 from ..core.display import plain_number
 from ..core.quantities import CONTACT, FIELD
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import judge, reference
 from ..problem import Joint
@@ -30,7 +31,6 @@ from .style import (
     line_of,
     new_figure,
 )
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

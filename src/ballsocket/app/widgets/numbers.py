@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from ...core.kinds import Unit
 from ...core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
+from ...core.unit_systems import Units
 from ...problem.dimensions import DIAMETERS
-from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, typed
 from .reading import Reading, box_text, handy_step, unit_suffix
 
