@@ -76,7 +76,7 @@ def test_a_cycle_is_that_of_python(page):
     assert found.force == pytest.approx(hip.cycle.force_magnitudes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
     assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
-    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.force_magnitudes)
+    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.frame.forces[:, 0] / hip.cycle.force_magnitudes)
     cells = found.frames.cells
     assert cells.shape == (100, RINGS + 1, MERIDIANS)
     assert 240 <= cells.max() <= 255
@@ -263,7 +263,7 @@ def made(scale):
 
 def test_a_bore_worn_to_the_rim_fails_there_only_by_edge_loading():
     distances = np.array([0.0, 3.0, -1.0])
-    hip = SimpleNamespace(reach=1.5, joint=bs.joints["hip-36"])
+    hip = SimpleNamespace(frame=SimpleNamespace(reach=1.5), joint=bs.joints["hip-36"])
     (row,) = worker.worn_rim_rows(hip, distances, np.zeros(3, dtype=bool))
     assert (row.title, row.verdict.word) == ("reach of the contact", "undecided")
     assert worker.worn_rim_rows(hip, distances, np.array([False, False, True])) == []

@@ -26,7 +26,7 @@ TILT = 'tilt = "30 deg" # between the load and the cup\'s axis'
 
 
 def tilt_of(use):
-    return round(degrees(use.placed.inclination), 9)
+    return round(degrees(use.frame.placed.inclination), 9)
 
 
 def test_a_cup_with_an_explicit_zero_angle_is_upright():

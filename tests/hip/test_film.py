@@ -35,7 +35,9 @@ def test_film_of_a_cycle_has_consistent_ratio_moment_power_and_heat():
     use = hip(**QUICK)
     film = use.film(Lubricant(ball_roughness=3e-5, cup_roughness=4e-5, friction=0.1), method="hamrock-dowson")
     assert film.ratio == pytest.approx(film.least / 5e-5, rel=1e-12)
-    assert 1e-3 * np.einsum("tk,tk->", film.moment, use.rotation_increments) == pytest.approx(film.heat, rel=1e-12)
+    assert 1e-3 * np.einsum("tk,tk->", film.moment, use.frame.rotation_increments) == pytest.approx(
+        film.heat, rel=1e-12
+    )
     assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-9)
     assert film.heat == pytest.approx((film.power * use.cycle.seconds).sum(), rel=1e-12)
     moment = np.linalg.norm(film.moment, axis=1)  # less than μ R ∫ p dA, and about μ R F
@@ -53,7 +55,7 @@ def test_json_has_the_largest_moment_vector():
     summary = use.film(Lubricant(), cycles=1).summary()
     vector = np.array(summary["moment_on_cup_Nmm"])
     assert np.linalg.norm(vector) == pytest.approx(summary["moment_Nmm"], rel=1e-12)
-    aside = np.array(use.placed.frame) @ [1.0, 0.0, 0.0]
+    aside = np.array(use.frame.placed.frame) @ [1.0, 0.0, 0.0]
     assert abs(vector @ aside) == pytest.approx(summary["moment_Nmm"], rel=0.02)
 
 
@@ -179,7 +181,7 @@ def test_edge_azimuth_follows_the_load():
     use = hip(cycle=cycle, cup=bs.Cup())
     edge = use.edge(use.unworn)
     assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
-    assert edge.closest_approach(use).step_description == "99.5 % of the cycle"
+    assert edge.closest_approach(use.frame).step_description == "99.5 % of the cycle"
 
 
 def test_missing_films_are_null_in_json(short_film):

@@ -80,7 +80,7 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
     Three patients of different weights, in the first cycle of a simulation `use`:
 
     >>> springs, unworn = use.foundation, numpy.zeros(len(use.foundation.areas))  # doctest: +SKIP
-    >>> weights = [springs.contact(factor * use.loads, unworn) for factor in (0.8, 1.0, 1.2)]  # doctest: +SKIP
+    >>> weights = [springs.contact(factor * use.frame.loads, unworn) for factor in (0.8, 1.0, 1.2)]  # doctest: +SKIP
     >>> start = numpy.stack(3 * [use.unworn.displacement])  # doctest: +SKIP
     >>> solve_patients(join_contacts(weights), start).converged.tolist()  # doctest: +SKIP
     [True, True, True]

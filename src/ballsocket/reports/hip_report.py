@@ -69,7 +69,7 @@ def hip_report(
     sections = answer_sections(answer, units)
     if bands is not None:
         sections |= answer_sections(describe_bands(bands), units)
-    if len(history.use.loaded):
+    if len(history.use.frame.loaded):
         for section, (title, figure, caption) in _figures(history, bands).items():
             sections[section] = (title, picture(figure_bytes(in_units(figure, units)), title, caption))
     title = f"Wear of a hip: {name}" if name else "Wear of a hip"
