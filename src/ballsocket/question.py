@@ -12,16 +12,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees, pi
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .comparison import Comparison, compare
 from .contact import Contact, Model
-from .elasticity.off_axis.model import Sphere
-from .elasticity.off_axis.preload import Preload, PullOut, pull_out
 from .files.joint_file import JointFile
-from .model_catalogue import catalogue, named_models, off_axis, reference, with_gap
+from .model_catalogue import OFF_AXIS, catalogue, named_models, reference, with_gap
 from .problem.cup import AXIAL_TILT
 from .problem.presets import long_term_note
+
+if TYPE_CHECKING:
+    from .elasticity.off_axis.model import Sphere
+    from .elasticity.off_axis.preload import PullOut
 
 DEFAULT_MODEL = "hess-forsbach"
 """Name of the model that solves a load along the axis of the cup without a request."""
@@ -38,7 +40,7 @@ class PressQuestion:
     models : mapping of str to Model
         Requested models by name; empty for the default.
     sphere : Sphere
-        The model `sphere`, where it is requested or the default.
+        The model `sphere`, where it is requested or the default; by default that of the catalogue.
     exact : Model, optional
         Solution with which the others are compared; None without a comparison.
     gap : str, optional
@@ -49,7 +51,7 @@ class PressQuestion:
 
     file: JointFile
     models: Mapping[str, Model] = field(default_factory=dict)
-    sphere: Sphere = off_axis
+    sphere: Sphere | None = None
     exact: Model | None = reference
     gap: str | None = None
     pull_out: float | None = None
@@ -58,9 +60,9 @@ class PressQuestion:
     def chosen(self) -> dict[str, Model]:
         """Models that solve the question, by name: the requested ones, or the default one."""
         needs_sphere = self.pull_out is not None or real_cup_reason(self.file)
-        default = off_axis.name if needs_sphere else DEFAULT_MODEL
+        default = OFF_AXIS if needs_sphere else DEFAULT_MODEL
         models = self.models or {default: named_models[default]}
-        return {name: self.sphere if name == off_axis.name else model for name, model in models.items()}
+        return {name: (self.sphere or model) if name == OFF_AXIS else model for name, model in models.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,8 +98,8 @@ class PressAnswer:
     @property
     def leading(self) -> str:
         """Name of the model whose contact gets the verdict: `sphere` where it is needed, or the first valid one."""
-        ordered = [name for name in (off_axis.name, reference.name, *self.models) if name in self.comparison]
-        needed = ordered[:1] if real_cup_reason(self.file) else []
+        ordered = [name for name in (OFF_AXIS, reference.name, *self.models) if name in self.comparison]
+        needed = [OFF_AXIS] if OFF_AXIS in ordered and real_cup_reason(self.file) else []
         return [*needed, *(name for name in ordered if self.comparison[name].valid), *ordered][0]
 
 
@@ -143,7 +145,7 @@ def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
 
 def every_model(file: JointFile) -> dict[str, Model]:
     """Return the catalogue, and first the model `sphere` if no other one solves the question."""
-    return {**({off_axis.name: off_axis} if real_cup_reason(file) else {}), **catalogue}
+    return {**({OFF_AXIS: named_models[OFF_AXIS]} if real_cup_reason(file) else {}), **catalogue}
 
 
 def answer(question: PressQuestion) -> PressAnswer:
@@ -157,8 +159,8 @@ def answer(question: PressQuestion) -> PressAnswer:
     """
     file, assumptions = complete(question.file)
     models = question.chosen
-    if question.pull_out is not None and off_axis.name not in models:
-        raise ValueError(f"a pull-out force is solved by the model {off_axis.name}: add it to the models")
+    if question.pull_out is not None and OFF_AXIS not in models:
+        raise ValueError(f"a pull-out force is solved by the model {OFF_AXIS}: add it to the models")
     if question.pull_out is not None and "arc_of_cover" in assumptions:
         raise ValueError("a pull-out force needs the arc of cover: set arc_of_cover")
     comparison, seconds = Comparison(file.joint, {}, {}), {}
@@ -171,15 +173,22 @@ def answer(question: PressQuestion) -> PressAnswer:
         seconds[name] = perf_counter() - start
     if not any(name in comparison for name in models):
         raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in models))
-    sphere: Any = comparison[off_axis.name].model if off_axis.name in comparison else None
-    held = sphere is not None and file.joint.clearance < 0 and file.cup.arc_of_cover > pi
-    pulled = None if question.pull_out is None else pull_out(sphere, file.joint, question.pull_out)
+    sphere: Any = comparison[OFF_AXIS].model if OFF_AXIS in comparison else None
+    wear_depth = pulled = None
+    if question.pull_out is not None:
+        from .elasticity.off_axis.preload import pull_out
+
+        pulled = pull_out(sphere, file.joint, question.pull_out)
+    if sphere is not None and file.joint.clearance < 0 and file.cup.arc_of_cover > pi:
+        from .elasticity.off_axis.preload import Preload
+
+        wear_depth = Preload(model=sphere, joint=file.joint).wear_depth_to_loosen()
     return PressAnswer(
         file=file,
         assumptions=tuple(assumptions.values()),
         models=tuple(models),
         comparison=comparison,
         seconds=seconds,
-        wear_depth_to_loosen=Preload(model=sphere, joint=file.joint).wear_depth_to_loosen() if held else None,
+        wear_depth_to_loosen=wear_depth,
         pulled=pulled,
     )

@@ -26,11 +26,11 @@ from ballsocket.app.views.cup.view import _hint
 from ballsocket.app.views.cup.worker import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
+from ballsocket.core.unit_systems import Units
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.section_plots import gap_factor
-from ballsocket.reports.unit_systems import Units
 
 from ..extent import either
 from .asking import does, edits, opened, saved, told, trouble
@@ -68,7 +68,7 @@ def test_every_handle_is_an_input_and_says_its_number():
     assert page.screen.file.aim == {}
 
 
-@pytest.mark.parametrize("tilt", either([20.0, 75.0], [20.0, 45.0, 75.0]))
+@pytest.mark.parametrize("tilt", either([20.0], [20.0, 45.0, 75.0]))
 def test_a_tilted_contact_is_that_of_the_real_cup_in_this_view_and_in_the_view_cup(tilt, at_once):
     page = opened(f"{JOINT}&load.tilt={tilt} deg")
     contact = bs.Sphere().press(page.screen.file.joint, force=3000.0, tilt=radians(tilt))
@@ -192,6 +192,7 @@ def test_the_drawing_says_every_dimension_and_is_painted_with_stresses_when_they
     assert "this model has no stresses inside the liner" in drawing(page)
 
 
+@pytest.mark.long
 def test_a_report_is_printed_with_the_address_of_the_server(monkeypatch):
     """PDF is the page of HTML, printed in a process on the paper of the units; a refusal is a sentence."""
     printed = []

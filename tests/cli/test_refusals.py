@@ -31,7 +31,7 @@ press /proc/self/mem => /proc/self/mem
 curve {hip} --points x => --points
 fmu {hip} --out a.fmu --fmi 2.5 => --fmi
 deck {hip} --out a --steps 0 => --steps
-fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed must be a number of mm/s, or such as '0.1 m/s'
+fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed = 'x' is not a speed, such as '0.1 m/s'
 press {hip} --force -3 => force = '-3' is not allowed: a force (N) is 0 or more and finite
 press {hip} --force 1 --indentation 1 => one load is needed, got force, indentation
 press {numbers} --clearance=-100um => clearance = '-100um' is not allowed: a radial clearance (mm) is
@@ -80,7 +80,7 @@ curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models
 
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
-press {hip} --model fem --element triangle => element 'triangle' is not known
+press {hip} --model fem --element triangle => element = 'triangle' is not known
 press {hip} --model fem --element-size '9 mm' => liner_thickness = 6.75 is not allowed: a layer must have
 press {hip} --model fem --element-size '0.0005 mm' => GiB of memory
 press {hip} --model fem --vtk a.txt => 'a.txt' must end in .vtu, .vtk
@@ -94,7 +94,7 @@ film {hip} --viscosity '-1 mPa s' => a viscosity (Pa s) is positive and finite
 film {hip} --spin inf => a rotation rate (rad/s) is finite
 film {hip} --spin '3 mm' => is not a rotation rate
 film {hip} --spin-axis 1,2 => spin_axis = '1,2' must be three numbers 'x,y,z'
-film {hip} --spin-axis 0,0,0 => an axis has a positive and finite length
+film {hip} --spin-axis 0,0,0 => length of spin_axis = 0 is not allowed
 film {hip} --method magic => method
 film {hip} --interference '0.02 mm' --model sphere --ring-width 6 => interference = 0.02 mm is not allowed
 film {hip} --model refined --method reynolds => springs
@@ -135,7 +135,7 @@ fmu {rod} --model exact --out a.fmu => the model exact does not solve a preloade
 {fmu} --fmi 4 => FMI version = 4 is not allowed: 2 or 3
 {fmu} --hysteresis -1 => hysteresis
 {fmu} --restitution 0.5 => a restitution and the speed of its impact belong together
-{fmu} --viscosity '2.5 mm' => viscosity must be a number of Pa s, or such as '2.5 mPa s'
+{fmu} --viscosity '2.5 mm' => viscosity = '2.5 mm' is not a viscosity, such as '2.5 mPa s'
 {fmu} --roughness '1 um' => add --viscosity
 """
 """Commands, and words of the message after the arrow."""

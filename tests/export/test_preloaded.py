@@ -50,6 +50,7 @@ def test_the_c_program_has_the_loads_of_the_element_and_their_slopes(element, tm
     assert_allclose(slope, (np.array(loads[1]) - loads[0]) / (2 * step), rtol=1e-5, atol=1e-6)
 
 
+@pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("version", some([3, 2], 1))
 def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp_path):

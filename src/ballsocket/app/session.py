@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import parse_qs
 
 from ..core.checks import check_names, shown
-from ..reports.unit_systems import Units
+from ..core.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,18 +18,18 @@ from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
+from ..core.unit_systems import Units
 from ..core.validity import Status
-from ..elasticity.off_axis import PullOut
+from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
-from ..model_catalogue import catalogue, judge, off_axis, with_gap
-from ..question import DEFAULT_MODEL, PressAnswer, PressQuestion, answer, complete, every_model
+from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
+from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_curve, print_press
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
-    CupOptions,
-    DirectionOptions,
-    MeshOptions,
+    MeshTable,
+    ModelNames,
+    RingTable,
     mesh_progress,
     mesh_remark,
     orientation_remark,
@@ -45,50 +45,43 @@ from .options import (
     JointName,
     JointNames,
     JointOptions,
-    LoadOptions,
     UnitSystem,
-    complete_model,
     expand_groups,
+    needed_load,
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
+    from ..elasticity.off_axis.preload import PullOut
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelOptions:
     """Options of the models that press a joint."""
 
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}.",
-            autocompletion=complete_model,
-        ),
-    ] = None
+    model: ModelNames = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
     gap: GapName = None
 
     @property
     def names(self) -> list[str]:
         """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
-        known = (*catalogue, judge.name, off_axis.name)
+        known = (*catalogue, JUDGE, OFF_AXIS)
         return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
         """True if the finite elements are requested."""
-        return judge.name in self.names
+        return JUDGE in self.names
 
     def models(self, file: JointFile, fem: Model) -> dict[str, Model]:
         """Return the requested models by name: empty for the default, and every one that presses the joint for all."""
         if self.every:
             custom = [requested_model(name) for name in self.names if is_model_file(name)]
             return {**{model.name: model for model in custom}, **every_model(file)}
-        models = [fem if name == judge.name else requested_model(name) for name in self.names]
+        models = [fem if name == JUDGE else requested_model(name) for name in self.names]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):
             raise ValueError("two of the models have one name: give each custom model a different name")
@@ -200,17 +193,15 @@ def _strength_summary(contact: Contact | None) -> dict[str, Any]:
 def press(
     *,
     joint: JointNames = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     friction_options: FrictionOptions,
     model_options: ModelOptions,
     units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
-    direction_options: DirectionOptions,
-    cup_options: CupOptions,
-    mesh: Annotated[MeshOptions, "fem"],
+    rings: Annotated[RingTable, "sphere"],
+    mesh: Annotated[MeshTable, "fem"],
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
     ] = None,
@@ -225,7 +216,7 @@ def press(
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
     if not model_options.has_finite_elements:
-        refuse_mesh_options({**vars(mesh), "meshes": meshes})
+        refuse_mesh_options({**mesh.stated(), "meshes": meshes})
     files.check()
     report.check()
     friction_options.check()
@@ -235,29 +226,27 @@ def press(
     def press_joint(name: str | None) -> PressedJoint:
         """Press one joint by the requested models."""
         file = joint_options.read(name)
-        direction = direction_options.read(file)
-        file = replace(file, load=load_options.stated(file), aim=direction, cup=cup_options.apply_to(file.cup))
-        load_options.read(complete(file)[0])
+        needed_load(complete(file)[0])
         question = PressQuestion(
             file=file,
             models=model_options.models(file, mesh.model(meshes or 2)),
-            sphere=direction_options.model(),
+            sphere=rings.model(),
             gap=model_options.gap,
             pull_out=(friction_options.friction or 0.0) if friction_options.pull_out else None,
         )
         files.check_models(question.chosen)
-        if off_axis.name not in question.chosen:
-            direction_options.refuse()
+        if OFF_AXIS not in question.chosen:
+            rings.refuse()
         with mesh_progress() if model_options.has_finite_elements else nullcontext():
             answered = answer(question)
         comparison = answered.comparison
-        orientation = {} if "tilt" in direction else orientation_summary(file.cup)
+        orientation = {} if "tilt" in file.aim else orientation_summary(file.cup)
         remarks = [orientation_remark(file.cup)] if orientation and joint_options.orients else []
-        if judge.name in comparison:
-            meshed: Any = comparison[judge.name]
-            remarks.append(mesh_remark(meshed, answered.seconds[judge.name]))
-        if off_axis.name in comparison:
-            remarks.append(sphere_remark(comparison[off_axis.name], answered.seconds[off_axis.name], units))
+        if JUDGE in comparison:
+            meshed: Any = comparison[JUDGE]
+            remarks.append(mesh_remark(meshed, answered.seconds[JUDGE]))
+        if OFF_AXIS in comparison:
+            remarks.append(sphere_remark(comparison[OFF_AXIS], answered.seconds[OFF_AXIS], units))
         if friction_options.friction is not None:
             contacts = successful_contacts(comparison)
             named = [name for name in answered.models if name in contacts]
@@ -308,14 +297,12 @@ def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
 def curve(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     gap: GapName = None,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
-    cup: CupOptions,
     as_json: AsJson = False,
 ) -> None:
     """Press a joint in equal steps from zero to a load.
@@ -326,8 +313,8 @@ def curve(
     """
     file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
     fractions = numpy.linspace(0.0, 1.0, points)
-    steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
-    contact = named.in_cup(cup.apply_to(file.cup), **file.aim).press(file.joint, **steps)
+    steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
+    contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
     if as_json:
         summary: Any = contact.summary()
         valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}

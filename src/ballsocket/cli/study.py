@@ -16,10 +16,10 @@ from rich.progress import BarColumn, Progress, TextColumn
 from ..core.executors.processes import count_text
 from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
+from ..core.unit_systems import Units
 from ..model_catalogue import with_gap
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
-from ..reports.unit_systems import Units
 from ..studies.file import StudyFile, read_study
 from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener

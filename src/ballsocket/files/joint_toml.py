@@ -9,6 +9,7 @@ from ..problem import Joint, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
 from .joint_file import (
+    NO_DETAILS,
     CupTable,
     Direction,
     JointFile,
@@ -18,7 +19,6 @@ from .joint_file import (
     LoadTable,
     MaterialName,
     MaterialTable,
-    ReportTable,
 )
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Text
 from .tables import write_table
@@ -54,18 +54,13 @@ def toml_of(file: JointFile) -> str:
     return toml_text(written_tables(file))
 
 
-def cup_table(cup: Cup) -> Tables:
-    """Return the table `cup` of a joint file, without default angles."""
-    return write_table(_cup(cup))
-
-
 def _file_table(file: JointFile) -> JointFileTable:
-    joint, report = file.joint, {name: Text(value) for name, value in vars(file.report).items() if value}
+    joint = file.joint
     if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
-        report=ReportTable(**report) if report else None,
+        report=file.report if file.report != NO_DETAILS else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
         liner=MaterialTable(**_material(joint.liner)),

@@ -9,7 +9,7 @@ import msgspec
 
 from ..core.checks import shown
 from ..files.columns import HeadKeys
-from ..files.joint_file import CupTable, JointTables, ReportTable
+from ..files.joint_file import CupTable, JointTables, ReportDetails
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
@@ -29,7 +29,7 @@ from ..files.schema import (
 )
 from ..model_catalogue import catalogue
 from ..problem.cup import Side
-from ..studies.file import DISTRIBUTION_SCHEMA
+from ..studies.distribution_tables import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES
@@ -365,4 +365,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     film: FilmTable | None = None
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
-    report: ReportTable | None = None
+    report: ReportDetails | None = None

@@ -1,8 +1,8 @@
-"""Study files: TOML with units that describes a model, a joint and a design of cases; distributions in files."""
+"""Study files: TOML with units that describes a model, a joint and a design of cases."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -11,7 +11,6 @@ from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..core.kinds import Kind
 from ..core.storage.atomic_files import address_of, check_local
 from ..files.columns import HeadKeys
 from ..files.joint_file import JointTables, joint_in
@@ -36,32 +35,12 @@ from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
 from .design import Design, check_values, grid, sample, table
-from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
+from .distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
+from .distributions import Distribution
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
 from .sampling import Method
 from .task import EDGE_DISTANCE, QUANTITIES
-
-Read = Callable[[str, Any], float]
-"""Function from name and value of a number in a file to the number."""
-
-_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
-    (("low", "high"), Rectangular),
-    (("mean", "deviation"), Normal),
-    (("mean", "deviation", "low"), Normal),
-    (("mean", "deviation", "high"), Normal),
-    (("mean", "deviation", "low", "high"), Normal),
-    (("median", "factor"), LogNormal),
-    (("nominal", "plus_minus"), tolerance),
-)
-"""Keys of the tables, and the distributions that they describe."""
-
-DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
-    "type": "object",
-    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
-    "additionalProperties": False,
-}
-"""JSON schema of a distribution."""
 
 
 class ScatteredNumber(Parsed):
@@ -73,27 +52,6 @@ class ScatteredNumber(Parsed):
     def parse(cls, name: str, value: Any) -> Distribution:
         """Convert a distribution."""
         return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
-
-
-def distribution_of(name: str, content: Any, read: Read) -> Distribution:
-    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
-
-    Raises
-    ------
-    ValueError
-        Other keys, or numbers that are not allowed.
-    """
-    for keys, make in _DISTRIBUTIONS:
-        if isinstance(content, Mapping) and set(content) == set(keys):
-            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
-            if "factor" in keys:  # it has no unit
-                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
-            with as_given(content, f"{name}."):
-                return make(**numbers)
-    raise ValueError(
-        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
-        "{median, factor}, or {nominal, plus_minus}"
-    )
 
 
 class ModelName(Word):

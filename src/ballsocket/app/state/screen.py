@@ -12,12 +12,12 @@ from urllib.parse import urlencode
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind
 from ...core.quantities import QUANTITIES
+from ...core.unit_systems import Units
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
 from ...model_catalogue import catalogue, reference
 from ...problem.presets import joints
 from ...question import complete
-from ...reports.unit_systems import Units
 from ...studies.expressions import parse_limit, parse_range
 from ...studies.limits import Limit
 from ...studies.parameters import PARAMETERS

@@ -7,13 +7,12 @@ from math import atan2, degrees, radians, tan
 from typing import Any
 
 from ...core.checks import check_names
-from ...files.joint_file import JointFile, read_aim, read_cup
-from ...files.joint_toml import cup_table
-from ...problem.cup import UP, Interface, Side
+from ...files.joint_file import JointFile, varied
+from ...problem.cup import UP, Side
 from ...question import complete
 from ..state.screen import Screen
 from .fields import Field, segments
-from .numbers import CUP_NUMBERS
+from .numbers import CUP_NUMBERS, choice_of
 
 _BODY, _AXIS = "body", "axis"
 _LEANS = ("inwards", "forwards")
@@ -37,10 +36,8 @@ def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
             for name, (value, hidden) in numbers.items()
         ),
         segments("aim", "Load direction given", aims, _AXIS if tilted else _BODY),
-        segments("side", "Side of the body", [side.value for side in Side], cup.side.value),
-        segments(
-            "interface", "Liner on its backing", [interface.value for interface in Interface], cup.interface.value
-        ),
+        choice_of("cup.side", cup.side.value),
+        choice_of("cup.interface", cup.interface.value),
     ]
     return {f"{view}.{field['name']}": {**field, "name": f"{view}.{field['name']}"} for field in listed}
 
@@ -68,12 +65,12 @@ def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
     if key in CUP_NUMBERS:
         value = CUP_NUMBERS[key].meant(value, screen.reading)
     if key == "tilt":
-        return replace(file, aim=read_aim({key: value}))
+        return varied(file, {"load": {key: value}})
     if key in _LEANS:
         return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
     if key == "aim":
         return _aimed_from(file, value)
-    changed = replace(file, cup=read_cup({**cup_table(file.cup), key: value}))
+    changed = varied(file, {"cup": {key: value}})
     return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so
 
 

@@ -12,7 +12,7 @@ from ...contact.verdict import Verdict, range_text
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, JOINT
 from ...files.joint_file import JointFile
-from ...model_catalogue import off_axis
+from ...model_catalogue import OFF_AXIS
 from ...question import real_cup_reason
 from ...reports.check_table import Check, checks_of, verdict_of
 from ..pictures.section import extent_of, section
@@ -71,7 +71,7 @@ def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[
     designs = {}
     for name, file in files.items():
         if real_cup_reason(file) and is_prepared(file):
-            comparison, by, limit = answer_in_cup(file).comparison, off_axis.name, ""
+            comparison, by, limit = answer_in_cup(file).comparison, OFF_AXIS, ""
         else:
             comparison, by = pressed(file, (model,)), model
             limit = real_cup_reason(file, comparison.contacts.get(model))

@@ -14,12 +14,12 @@ from ...contact.describe import COLUMNS, Column
 from ...contact.verdict import Verdict
 from ...core.kinds import Unit
 from ...core.quantities import HEADLINE, Quantity
+from ...core.unit_systems import Units
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
 from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from ...reports.style import line_of
-from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
 

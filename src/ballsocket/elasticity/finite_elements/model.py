@@ -19,7 +19,7 @@ from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
 from ...core.sources import Source
 from ...core.stress import Peak
-from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Status, body_remarks
+from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Status, body_remarks, largest_poisson
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
@@ -103,18 +103,6 @@ class MeshedContact(SolvedContact):
         """Return the contact as a dictionary for JSON, with error estimates and the mesh size of a single contact."""
         single = self.laws.shape == () and not Status(self.status).failed and self.indentation > 0
         return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}
-
-
-def largest_poisson(contact: Any) -> Array:
-    """Return the largest Poisson's ratio of liner, backing and ball."""
-    joint = contact.joint
-    ratios = [layer.material.poisson for layer in joint.backing]
-    if joint.ball is not None:
-        ratios.append(joint.ball.poisson)
-    largest = joint.liner.poisson
-    for poisson in ratios:
-        largest = arrays.where(poisson > largest, poisson, largest)
-    return largest
 
 
 _BODY_REMARKS = body_remarks("cut off at the plane of the socket's rim", "half a one on its equator")

@@ -25,11 +25,10 @@ from ...core.checks import (
     shown,
 )
 from ...core.sources import Source
-from ...core.validity import SMALL_STRAIN, Range, Remark, Status
+from ...core.validity import SMALL_STRAIN, Range, Remark, Status, largest_poisson
 from ...problem import Joint
 from ...problem.cup import UP, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
-from ..finite_elements.model import largest_poisson
 from .bore_shapes import BoreShape
 from .contact import OffAxisContact
 from .directions import check_direction, cup_frames, tilted_directions

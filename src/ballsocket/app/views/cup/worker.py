@@ -12,12 +12,13 @@ import numpy
 
 from ....elasticity.finite_elements.mesh import socket_shape
 from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis import Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....elasticity.off_axis.grid import rim_grid
+from ....elasticity.off_axis.model import Sphere
+from ....elasticity.off_axis.orientations import orient
 from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
 from ....files.joint_file import JointFile
-from ....model_catalogue import off_axis
+from ....model_catalogue import OFF_AXIS, named_models
 from ....problem import Joint
 from ....problem.cup import Cup, Side
 from ....question import PressAnswer, PressQuestion, answer, complete
@@ -58,8 +59,8 @@ def _are_rings_cached(joint: Joint, cup: Cup) -> bool:
 @lru_cache(maxsize=32)
 def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> PressAnswer:
     file = JointFile(joint, dict(load), cup, dict(aim))
-    answered = answer(PressQuestion(file=file, models={off_axis.name: off_axis}, exact=None))
-    contact: Any = answered.comparison[off_axis.name]
+    answered = answer(PressQuestion(file=file, models={OFF_AXIS: named_models[OFF_AXIS]}, exact=None))
+    contact: Any = answered.comparison[OFF_AXIS]
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes) or contact.status.sentence)
     return answered
@@ -73,7 +74,7 @@ def answer_in_cup(file: JointFile) -> PressAnswer:
 
 def pressed_in_cup(file: JointFile) -> OffAxisContact:
     """Return the contact of a joint file in its cup; raise ValueError without a result."""
-    contact: Any = answer_in_cup(file).comparison[off_axis.name]
+    contact: Any = answer_in_cup(file).comparison[OFF_AXIS]
     return contact
 
 
