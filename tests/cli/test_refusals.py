@@ -93,13 +93,13 @@ film {hip} --viscosity '-1 mPa s' => a viscosity (Pa s) is positive and finite
 film {hip} --spin inf => a rotation rate (rad/s) is finite
 film {hip} --spin '3 mm' => is not a rotation rate
 film {hip} --spin-axis 1,2 => spin_axis = '1,2' must be three numbers 'x,y,z'
-film {hip} --spin-axis 0,0,0 => an axis has a positive and finite length
-film {hip} --method magic => method 'magic' is not known; known: inlet, wave, reynolds
+film {hip} --spin-axis 0,0,0 => length of spin_axis = 0 is not allowed: a direction points somewhere
+film {hip} --method magic => method = 'magic' is not known; known: inlet, wave, reynolds
 film {hip} --interference '0.02 mm' --model sphere --ring-width 6 => interference = 0.02 mm is not allowed
 film {hip} --model refined --method reynolds => is not possible for refined: it needs a contact on springs
 
 press {hip-36} --tilt '200 deg' => tilt = 200 is not allowed: a tilt is 0 to 180 degrees
-press {hip-36} --direction 1,0 => must be three numbers: to the right, to the front, upwards
+press {hip-36} --direction 1,0 => direction = '1,0' must be three numbers 'x,y,z'
 press {hip-36} --direction 0,0,0 => points somewhere
 press {hip-36} --tilt 10 --direction 0,0,1 => either a tilt or a direction is needed, got both
 press {hip-36} --tilt 10 --model fem => from the cup's axis: use sphere
