@@ -1,6 +1,7 @@
-"""Joint files: TOML with units that describes a joint, its cup and its load; joints of files of other kinds."""
+"""Joint files: TOML with units that describes a joint, its cup and its load; joints of files of other kinds.
 
-from __future__ import annotations
+Annotations are objects here, not text, which msgspec would compile at each start.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
