@@ -97,12 +97,10 @@ class PressAnswer:
 
     @property
     def leading(self) -> str:
-        """Name of the model whose contact gets the verdict: a valid one of full elasticity, or the first."""
-        valid = [name for name in (OFF_AXIS, reference.name) if self._is_valid(name)]
-        return [*valid, *self.comparison][0]
-
-    def _is_valid(self, name: str) -> bool:
-        return name in self.comparison and bool(self.comparison[name].valid)
+        """Name of the model whose contact gets the verdict: `sphere` where it is needed, or the first valid one."""
+        ordered = [name for name in (OFF_AXIS, reference.name, *self.models) if name in self.comparison]
+        needed = [OFF_AXIS] if OFF_AXIS in ordered and real_cup_reason(self.file) else []
+        return [*needed, *(name for name in ordered if self.comparison[name].valid), *ordered][0]
 
 
 def complete(file: JointFile) -> tuple[JointFile, dict[str, str]]:

@@ -115,7 +115,7 @@ def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
 
 
 def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
-    page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed(bs.catalogue))}")
+    page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed([*bs.catalogue]))}")
     curves = re.findall('data-name="([^"]+)"', page.channel.shown_value("#press-charts"))
     assert curves[0] == "exact"
     assert set(curves) == set(bs.catalogue)

@@ -90,7 +90,7 @@ def check_numeric(name: str, value: Any) -> Array:
         return value
     if (
         not hasattr(value, "dtype")
-        or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
+        or any(kind.__name__ in _REJECTED_ARRAYS for kind in type(value).__mro__)
         or hasattr(value, "to_numpy")
         or not _has_real_numbers(value)
     ):
@@ -153,9 +153,8 @@ def _has_real_numbers(value: Any) -> bool:
 def _format_type_error(name: str, value: Any) -> str:
     """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
-    for kind, title in _REJECTED_ARRAYS.items():
-        if isinstance(value, kind):
-            text = title
+    for kind in type(value).__mro__:
+        text = _REJECTED_ARRAYS.get(kind.__name__, text)
     if hasattr(value, "to_numpy"):  # of pandas, xarray or polars
         name_of_type = type(value).__name__
         column = "of one of its columns" if name_of_type in ("DataFrame", "Dataset") else "of it"
@@ -164,7 +163,8 @@ def _format_type_error(name: str, value: Any) -> str:
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {text}{hint}"
 
 
-_REJECTED_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
+_REJECTED_ARRAYS = {"MaskedArray": "a masked array", "matrix": "a numpy.matrix: use numpy.asarray"}
+"""Arrays by the name of their class: NumPy imports the module of masked arrays when it is named."""
 
 
 def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:

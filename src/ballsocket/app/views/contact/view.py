@@ -74,6 +74,7 @@ class Press(LongView):
         super().__init__(page)
         self._cancel_further: Callable[[], None] = lambda: None
         self._real: OffAxisContact | None = None
+        self._requested: Hashable = None  # bore for which the real cup was requested
 
     def question_of(self, screen: Screen) -> Hashable:
         return bore_of(screen.file)
@@ -93,11 +94,18 @@ class Press(LongView):
         self._cancel_further = self.page.later(_PAUSE, partial(self._fill, screen))
 
     def _needs_cup(self, screen: Screen, comparison: Comparison) -> str:
-        """Return the reason for the real cup; an axial load near the rim has one that is set up or requested."""
-        reason = real_cup_reason(screen.file)
-        if reason or not (is_prepared(screen.file) or self.long.works_on(screen)):
-            return reason
-        return _reason(comparison, screen)
+        """Return the reason for the real cup; it solves an axial load near the rim on request."""
+        reason, file = _reason(comparison, screen), screen.file
+        if not reason or not (real_cup_reason(file) or self._requested == bore_of(file)):
+            return ""
+        is_prepared(file)  # notes a bore whose rings are on disk, which needs no work
+        return reason
+
+    def _edited(self, key: str, value: Any) -> None:
+        self._requested = bore_of(self.page.screen.file) if value else None
+        super()._edited(key, value)
+        if value and is_prepared(self.page.screen.file):
+            self.show(self.page.screen)
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
         """Show the numbers of a model of a load along the axis of the cup."""
