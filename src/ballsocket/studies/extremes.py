@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy
 
 from ..contact.verdict import Verdict
+from ..core.answers import Column, Row, Table
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Amount, Sentence
@@ -64,9 +65,18 @@ class StudyReport:
             first += part.status.size
         return report
 
-    def median(self, name: str) -> float:
-        """Compute the median of a result."""
-        return float(numpy.nanmedian(numpy.concatenate(self.sampled[name])))
+    def quantities(self, study: xarray.Dataset) -> dict[str, dict[str, Any]]:
+        """Return least and largest value of each result with coordinates, and its median; None without an answer."""
+        return {
+            name: dict.fromkeys(_ENDS)
+            if numpy.isnan(low.value)
+            else {
+                "least": {"value": low.value, "at": coordinates(study, low.place)},
+                "median": float(numpy.nanmedian(numpy.concatenate(self.sampled[name]))),
+                "largest": {"value": high.value, "at": coordinates(study, high.place)},
+            }
+            for name, (low, high) in self.ends.items()
+        }
 
     def notes(self, study: xarray.Dataset) -> list[str]:
         """List the reasons why points are not valid, with their number, and those of quantities without an answer."""
@@ -90,6 +100,8 @@ class StudyReport:
             high = End(float(values[largest]), first + largest)
         self.ends[name] = low, high
 
+
+_ENDS = ("least", "median", "largest")
 
 _MAX_SAMPLED = 1_000_000
 """Points from which a median is computed."""
@@ -125,13 +137,29 @@ def plain_values(values: numpy.ndarray) -> Any:
     return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
-def point_text(study: xarray.Dataset, at: Mapping[str, Any]) -> Sentence:
-    """List the varying parameters at a point with symbols and units."""
+def end_table(study: xarray.Dataset, quantities: Mapping[str, Mapping[str, Any]], key: str, title: str) -> Table:
+    """List least and largest value of each result with the varying parameters there, and the median if there is one."""
+    ends = [end for end in _ENDS if any(end in content for content in quantities.values())]
+    columns = [Column.of_words("quantity"), *map(Column.of_number, ends)]
+    columns += [Column.of_words(f"{end}_at", f"{end} at") for end in ends if end != "median"]
+    rows = []
+    for name, content in quantities.items():
+        found = [content[end] for end in ends]
+        values = (entry["value"] if isinstance(entry, dict) else entry for entry in found)
+        places = (_point_text(study, content[end]) for end in ends if end != "median")
+        rows.append(Row([name, *(amount_of(name, value) for value in values), *places]))
+    return Table(key, title, columns, rows)
+
+
+def _point_text(study: xarray.Dataset, end: Mapping[str, Any] | None) -> Sentence | None:
+    """List the varying parameters at an end with symbols and units."""
+    if end is None:
+        return None
     names = varying_parameters(study)
     heads = (QUANTITIES[name].symbol or name if name in QUANTITIES else name for name in names)
-    return Sentence(", ".join(f"{head} {{}}" for head in heads), *(amount_of(name, at[name]) for name in names))
+    return Sentence(", ".join(f"{head} {{}}" for head in heads), *(amount_of(name, end["at"][name]) for name in names))
 
 
-def amount_of(name: str, value: float | str) -> Amount | str:
-    """Return a number with the unit of its quantity; a material is its name."""
-    return value if isinstance(value, str) else Amount(value, QUANTITIES[name].shown)
+def amount_of(name: str, value: Any) -> Any:
+    """Return a number with the unit of its quantity; a material is its name, and None stays."""
+    return Amount(value, QUANTITIES[name].shown) if isinstance(value, float) else value

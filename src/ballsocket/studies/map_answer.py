@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..contact.verdict import Verdict
-from ..core.answers import Answer, Cell, Column, Row, Table
+from ..core.answers import Answer, Table
 from ..core.kinds import PERCENT
 from ..core.unit_systems import Amount, Sentence
-from .extremes import amount_of, coordinates, point_text, result_names
+from .extremes import coordinates, end_table, result_names
 from .file_formats import dimension_names
 from .limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from .metadata import held_in, held_lines
@@ -31,15 +31,8 @@ def describe_map(study: xarray.Dataset, limits: Sequence[Limit]) -> Answer:
 def map_table(study: xarray.Dataset, limits: Sequence[Limit]) -> Table:
     """List the ends of each result of the kept designs; ValueError as of `map_summary`."""
     summary = map_summary(study, limits)
-    columns = [Column.of_words("quantity")]
-    for end in ("least", "largest"):
-        columns += [Column.of_number(end), Column.of_words(f"{end}_at", "at")]
-    rows = []
-    for name, ends in summary["quantities"].items():
-        cells: list[Cell] = [name]
-        for end in ends:
-            cells += [amount_of(name, end["value"]), point_text(study, end["at"])]
-        rows.append(Row(cells))
+    ends = {name: dict(zip(("least", "largest"), pair, strict=True)) for name, pair in summary["quantities"].items()}
+    table = end_table(study, ends, "map", "Design map")
     counts = summary["verdicts"]
     shares = [(Amount(n / study.status.size, PERCENT, 3), word) for word, n in counts.items() if n]
     template = ", ".join(["{} {}"] * len(shares)) + "; {}" * len(limits)
@@ -47,7 +40,7 @@ def map_table(study: xarray.Dataset, limits: Sequence[Limit]) -> Table:
     if counts[Verdict.UNDECIDED.word]:
         reason = undecided_reason(study, limits)
         lines.append(Sentence("undecided: {}; the table has the kept designs only", reason))
-    return Table("map", "Design map", columns, rows, lines + held_lines(held_in(study)))
+    return table._replace(lines=lines + held_lines(held_in(study)))
 
 
 def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:

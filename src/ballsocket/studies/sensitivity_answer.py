@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.arrays import to_list
@@ -29,66 +29,68 @@ _DATA_ORDER = ("first_order", "total_order", "shapley", "second_order", "elastic
 
 def describe_sensitivity(indices: xarray.Dataset) -> Answer:
     """Describe the scatter of each result, and the parts of the parameters and of their pairs in it."""
-    summary = sensitivity_summary(indices)
-    results = summary["quantities"]
     means = (
-        Sentence("{}: {} ± {}", name, *(amount_of(name, content[key]) for key in ("mean", "deviation")))
-        for name, content in results.items()
+        Sentence("{}: {} ± {}", name, *(amount_of(name, float(part[key])) for key in ("mean", "deviation")))
+        for name in indices.quantity.values.tolist()
+        for part in [indices.sel(quantity=name)]
     )
-    numbers = [(name, number, values) for name, each in results.items() for number, values in each["numbers"].items()]
-    pairs = [
-        (name, " x ".join(pair["parameters"]), pair)
-        for name, content in results.items()
-        for pair in content.get("pairs", ())
-    ]
-    correlation = summary.get("correlation")
+    entries = list(_entries(indices))
+    pairs = [entry for entry in entries if len(entry.parameters) == 2]
+    correlation = indices.attrs.get("correlation")
     return Answer(
         title=f"sensitivity, model {indices.attrs['model']}",
-        lines=[*means, *held_lines(summary["held"])],
+        lines=[*means, *held_lines(held_in(indices))],
         tables=[
-            _index_table("sensitivity", "Sensitivity", "number", numbers),
-            *([_index_table("pairs", "Pairs of parameters", "pair", pairs)] if pairs else []),
+            _table("sensitivity", "Sensitivity", "number", [entry for entry in entries if entry not in pairs]),
+            *([_table("pairs", "Pairs of parameters", "pair", pairs)] if pairs else []),
         ],
         notes=[f"rank correlations: {correlation}"] if correlation else [],
     )
 
 
-def _index_table(key: str, title: str, label: str, entries: Sequence[tuple[str, str, dict[str, Any]]]) -> Table:
+class _Entry(NamedTuple):
+    """Indices of one parameter or of a pair, with the ends of their intervals by names in `_low` and `_high`."""
+
+    quantity: str
+    parameters: list[str]
+    numbers: dict[str, Any]
+
+
+def _entries(indices: xarray.Dataset) -> Iterator[_Entry]:
+    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+        yield from (_Entry(quantity, [name], numbers) for name, numbers in content["numbers"].items())
+        yield from (_Entry(quantity, pair["parameters"], pair) for pair in content.get("pairs", ()))
+
+
+def _table(key: str, title: str, label: str, entries: Sequence[_Entry]) -> Table:
     """List indices with their intervals, if known; a narrow terminal has the interval of the main index only."""
-    first, several = entries[0][2], len({quantity for quantity, _, _ in entries}) > 1
-    names = [name for name in _HEADS if name in first]
+    known, several = entries[0].numbers, len({entry.quantity for entry in entries}) > 1
+    names = [name for name in _HEADS if name in known]
     columns = [Column.of_words(word) for word in (*["quantity"] * several, label)]
-    main = next(name for name in ("shapley", "total_order", "second_order") if name in first)
+    rows: list[list[Cell]] = [[*[entry.quantity] * several, " x ".join(entry.parameters)] for entry in entries]
+    main = next(name for name in ("shapley", "total_order", "second_order") if name in known)
     for name in names:
         columns.append(Column.of_number(name, _HEADS[name], digits=3 if name == "elasticity" else 2))
-        if f"{name}_low" in first:
-            rank = 0 if name == main else 1
-            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=rank))
-    rows = []
-    for quantity, number, values in entries:
-        cells: list[Cell] = [*[quantity] * several, number]
-        for name in names:
-            cells.append(values[name])
-            if f"{name}_low" in first:
-                low, high = (values[f"{name}_{end}"] for end in ("low", "high"))
-                cells.append(None if low is None else (low, high))
-        rows.append(Row(cells))
-    return Table(key, title, columns, rows)
+        if f"{name}_low" in known:
+            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=int(name != main)))
+        for cells, (_, _, numbers) in zip(rows, entries, strict=True):
+            low, high = (numbers.get(f"{name}_{end}") for end in ("low", "high"))
+            cells.append(numbers[name])
+            if f"{name}_low" in known:
+                cells.append(None if low is None or high is None else (low, high))
+    return Table(key, title, columns, [Row(cells) for cells in rows])
 
 
 def index_table(indices: xarray.Dataset) -> Table:
     """List all indices with their intervals, one in a row, as data for CSV."""
     words, ends = ("quantity", "index", "parameter", "other_parameter"), ("value", "low", "high")
-    rows = []
-    for quantity, content in sensitivity_summary(indices)["quantities"].items():
-        parts = [([name], numbers) for name, numbers in content["numbers"].items()]
-        parts += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
-        for parameters, numbers in parts:
-            for name in (name for name in _DATA_ORDER if name in numbers):
-                values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
-                rows.append(Row([quantity, name, *(*parameters, "")[:2], *values]))
-    columns = [*map(Column.of_words, words), *map(Column.of_number, ends)]
-    return Table("indices", "Indices", columns, rows)
+    rows = [
+        Row([quantity, name, *(*parameters, "")[:2], *(numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))])
+        for quantity, parameters, numbers in _entries(indices)
+        for name in _DATA_ORDER
+        if name in numbers
+    ]
+    return Table("indices", "Indices", [*map(Column.of_words, words), *map(Column.of_number, ends)], rows)
 
 
 def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:

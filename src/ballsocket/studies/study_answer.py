@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from ..contact.verdict import Verdict
-from ..core.answers import Answer, Cell, Column, Row, Table
-from .extremes import StudyReport, amount_of, coordinates, plain_values, point_text, result_names, varying_parameters
+from ..core.answers import Answer
+from .extremes import StudyReport, end_table, plain_values, result_names, varying_parameters
 from .file_formats import dimension_names
 from .metadata import held_in, held_lines
 from .task import BOUNDS, VERDICT
@@ -23,32 +22,15 @@ def describe_study(study: xarray.Dataset) -> Answer:
     """Describe a study by the ends of its results, with the coordinates of the ends."""
     report = StudyReport.of(study)
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
+    verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
+    line = f"{study.status.size} points, {report.valid} of them valid"
+    table = end_table(study, report.quantities(study), "study", "Study")
     return Answer(
         title="; ".join([f"{study.attrs['model']}, {shape or 'one point'}", *_comments(study)]),
         lines=held_lines(held_in(study)),
-        tables=[_table(study, report)],
+        tables=[table._replace(lines=[f"{line}; yield stress: {verdicts}" if verdicts else line])],
         notes=report.notes(study),
     )
-
-
-def _table(study: xarray.Dataset, report: StudyReport) -> Table:
-    columns = [
-        Column.of_words("quantity"),
-        *map(Column.of_number, ("least", "median", "largest")),
-        *(Column.of_words(f"{end}_at", f"{end} at") for end in ("least", "largest")),
-    ]
-    rows = []
-    for name, ends in report.ends.items():
-        cells: list[Cell] = [None] * 5
-        if not isnan(ends[0].value):
-            values = ends[0].value, report.median(name), ends[1].value
-            places = (point_text(study, coordinates(study, end.place)) for end in ends)
-            cells = [*(amount_of(name, value) for value in values), *places]
-        rows.append(Row([name, *cells]))
-    verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
-    yields = f"; yield stress: {verdicts}" if verdicts else ""
-    line = f"{study.status.size} points, {report.valid} of them valid{yields}"
-    return Table("study", "Study", columns, rows, [line])
 
 
 def _comments(study: xarray.Dataset) -> list[str]:
@@ -65,20 +47,9 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
         "valid": report.valid == size,
         **({"verdicts": {verdict.word: n for verdict, n in report.verdicts.items()}} if report.verdicts else {}),
         "notes": [*_comments(study), *report.notes(study)],
-        "quantities": {name: _ends_of(study, name, report) for name in report.ends},
+        "quantities": report.quantities(study),
         "values": _values(study) if size <= _MAX_LISTED else None,
     }
-
-
-def _ends_of(study: xarray.Dataset, name: str, report: StudyReport) -> dict[str, Any]:
-    low, high = report.ends[name]
-    if isnan(low.value):
-        return {"least": None, "median": None, "largest": None}
-    ends = {
-        end: {"value": extreme.value, "at": coordinates(study, extreme.place)}
-        for end, extreme in (("least", low), ("largest", high))
-    }
-    return {**ends, "median": report.median(name)}
 
 
 def _values(study: xarray.Dataset) -> dict[str, Any]:
