@@ -140,7 +140,9 @@ def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: 
     """
     load = needed_load(file)
     question = PressQuestion(
-        file=file, models={model.name: model for model in map(requested_model, names or ())}, sphere=rings.model()
+        file=file,
+        models={model.name: model for model in map(requested_model, names or ())},
+        sphere=rings.model(),
     )
     contacts = []
     for chosen in question.chosen.values():
