@@ -33,7 +33,8 @@ def _coefficients(fit: WearFit) -> Table:
 
 
 def _readings(fit: WearFit) -> Table:
-    columns = [Column.of_words("rate", "the same as another rate"), Column.of_number("coefficient", unit=Unit(fit.unit))]
+    columns = [Column.of_words("rate", "the same as another rate")]
+    columns.append(Column.of_number("coefficient", unit=Unit(fit.unit)))
     rows = [Row([description, coefficient]) for description, coefficient in fit.readings.items()]
     return Table("readings", "Rates of other kinds", columns, rows)
 
