@@ -179,7 +179,8 @@ def test_a_table_has_the_values_of_the_model_up_to_the_load_of_the_file(tmp_path
 
 def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     cup = bs.Cup(arc_of_cover=2.6)
-    inputs = read_table({"friction": 0.1, "restitution": 0.8, "impact_speed": "0.1 m/s"}, ForceElementInputs)
+    tables = {"friction": 0.1, "restitution": 0.8, "impact_speed": "0.1 m/s"}
+    inputs = read_table(tables, ForceElementInputs)
     element = inputs.element(JointFile(HIP, {}, cup), None, None)
     assert (element.cup, element.constants.rim) == (cup, 1.3)
     assert element.constants.sliding == 0.1

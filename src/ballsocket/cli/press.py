@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from math import pi
@@ -76,12 +76,12 @@ class ModelOptions:
         """True if the finite elements are requested."""
         return JUDGE in self.names
 
-    def models(self, file: JointFile, fem: Callable[[], Model]) -> dict[str, Model]:
+    def models(self, file: JointFile, mesh: MeshTable, meshes: int) -> dict[str, Model]:
         """Return the requested models by name: empty for the default, and every one that presses the joint for all."""
         if self.every:
             custom = [requested_model(name) for name in self.names if is_model_file(name)]
             return {**{model.name: model for model in custom}, **every_model(file)}
-        models = [fem() if name == JUDGE else requested_model(name) for name in self.names]
+        models = [mesh.model(meshes) if name == JUDGE else requested_model(name) for name in self.names]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):
             raise ValueError("two of the models have one name: give each custom model a different name")
@@ -229,7 +229,7 @@ def press(
         needed_load(complete(file)[0])
         question = PressQuestion(
             file=file,
-            models=model_options.models(file, lambda: mesh.model(meshes or 2)),
+            models=model_options.models(file, mesh, meshes or 2),
             sphere=rings.model(),
             gap=model_options.gap,
             pull_out=(friction_options.friction or 0.0) if friction_options.pull_out else None,
