@@ -11,7 +11,8 @@ import numpy
 
 from ..contact.verdict import Verdict
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Amount, Units
+from ..core.unit_systems import Sentence, Units
+from ..studies.extremes import amount_of
 from ..studies.limits import (
     Limit,
     allowed,
@@ -119,16 +120,12 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
 
 def _title(study: xarray.Dataset) -> str:
     fixed = [
-        _value_text(str(name), "=", float(coordinate))
+        Sentence("{} = {}", QUANTITIES[str(name)].title, amount_of(str(name), float(coordinate)))
         for name, coordinate in study.coords.items()
         if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
     joint = json.loads(study.attrs["joint"])["name"]
     return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
-
-
-def _value_text(name: str, sign: str, value: float) -> str:
-    return f"{QUANTITIES[name].title} {sign} {Units.SI.amount(Amount(value, QUANTITIES[name].shown))}"
 
 
 def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str]) -> None:
@@ -144,21 +141,11 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], nam
         dots.set_edgecolor("0.15")
         dots.set_linewidth(0)
     for limit in limits:
-        for end in _one_sided_limits(limit):
+        for end in (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf)):
             values = margin_on_plane(study, end, across, up).value
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
-                _label_lines(axes, line, _limit_text(end))
-
-
-def _one_sided_limits(limit: Limit) -> list[Limit]:
-    ends = (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf))
-    return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
-
-
-def _limit_text(limit: Limit) -> str:
-    sign, end = ("≤", limit.high) if limit.high < numpy.inf else ("≥", limit.low)
-    return _value_text(limit.name, sign, end)
+                _label_lines(axes, line, f"{QUANTITIES[end.name].title}{str(end).removeprefix(end.name)}")
 
 
 def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:

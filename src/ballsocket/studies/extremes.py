@@ -44,13 +44,8 @@ class StudyReport:
     def of(cls, study: xarray.Dataset) -> StudyReport:
         """Collect the values of a study."""
         names = result_names(study)
-        nothing = (End(float("nan"), 0), End(float("nan"), 0))
-        report = cls(
-            dict.fromkeys(names, nothing),
-            {name: [] for name in names},
-            Counter(),
-            {verdict: 0 for verdict in Verdict if VERDICT in study},
-        )
+        verdicts = {verdict: 0 for verdict in Verdict if VERDICT in study}
+        report = cls({}, {name: [] for name in names}, Counter(), verdicts)
         first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
         for part in iterate_chunks(study):
             for name in names:
@@ -68,14 +63,14 @@ class StudyReport:
     def quantities(self, study: xarray.Dataset) -> dict[str, dict[str, Any]]:
         """Return least and largest value of each result with coordinates, and its median; None without an answer."""
         return {
-            name: dict.fromkeys(_ENDS)
-            if numpy.isnan(low.value)
-            else {
-                "least": {"value": low.value, "at": coordinates(study, low.place)},
-                "median": float(numpy.nanmedian(numpy.concatenate(self.sampled[name]))),
-                "largest": {"value": high.value, "at": coordinates(study, high.place)},
+            name: {
+                "least": {"value": self.ends[name][0].value, "at": coordinates(study, self.ends[name][0].place)},
+                "median": float(numpy.nanmedian(numpy.concatenate(samples))),
+                "largest": {"value": self.ends[name][1].value, "at": coordinates(study, self.ends[name][1].place)},
             }
-            for name, (low, high) in self.ends.items()
+            if name in self.ends
+            else dict.fromkeys(_ENDS)
+            for name, samples in self.sampled.items()
         }
 
     def notes(self, study: xarray.Dataset) -> list[str]:
@@ -90,15 +85,11 @@ class StudyReport:
     def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
         """Add the values of one part of a result."""
         self.sampled[name].append(values[::stride].copy())
-        if numpy.isnan(values).all():
-            return
-        low, high = self.ends[name]
-        smallest, largest = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
-        if not values[smallest] >= low.value:
-            low = End(float(values[smallest]), first + smallest)
-        if not values[largest] <= high.value:
-            high = End(float(values[largest]), first + largest)
-        self.ends[name] = low, high
+        if not numpy.isnan(values).all():
+            places = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
+            found = [End(float(values[place]), first + place) for place in places]
+            low, high = self.ends.get(name, found)
+            self.ends[name] = min(low, found[0]), max(high, found[1], key=lambda end: end.value)
 
 
 _ENDS = ("least", "median", "largest")
@@ -125,11 +116,10 @@ def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
     """Return the parameters at a point, by its index in the order of the dimensions."""
     dims = dimension_names(study)
     index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
-    values = {}
-    for name, variable in study.coords.items():
-        value = variable.isel({dim: int(index[dim]) for dim in variable.dims})
-        values[str(name)] = value.values.item()
-    return values
+    return {
+        str(name): variable.isel({dim: int(index[dim]) for dim in variable.dims}).values.item()
+        for name, variable in study.coords.items()
+    }
 
 
 def plain_values(values: numpy.ndarray) -> Any:

@@ -24,6 +24,9 @@ _HEADS = {
 }
 """Heads of tables for the variables of a sensitivity."""
 
+_TABLES = {1: ("sensitivity", "Sensitivity", "number"), 2: ("pairs", "Pairs of parameters", "pair")}
+"""Key, title and head of the table of single parameters, and of pairs."""
+
 _DATA_ORDER = ("first_order", "total_order", "shapley", "second_order", "elasticity")
 
 
@@ -35,20 +38,20 @@ def describe_sensitivity(indices: xarray.Dataset) -> Answer:
         for part in [indices.sel(quantity=name)]
     )
     entries = list(_entries(indices))
-    pairs = [entry for entry in entries if len(entry.parameters) == 2]
     correlation = indices.attrs.get("correlation")
     return Answer(
         title=f"sensitivity, model {indices.attrs['model']}",
         lines=[*means, *held_lines(held_in(indices))],
         tables=[
-            _table("sensitivity", "Sensitivity", "number", [entry for entry in entries if entry not in pairs]),
-            *([_table("pairs", "Pairs of parameters", "pair", pairs)] if pairs else []),
+            share_table(key, title, ("quantity", head), chosen)
+            for count, (key, title, head) in _TABLES.items()
+            if (chosen := [entry for entry in entries if len(entry.parameters) == count])
         ],
         notes=[f"rank correlations: {correlation}"] if correlation else [],
     )
 
 
-class _Entry(NamedTuple):
+class IndexEntry(NamedTuple):
     """Indices of one parameter or of a pair, with the ends of their intervals by names in `_low` and `_high`."""
 
     quantity: str
@@ -56,17 +59,17 @@ class _Entry(NamedTuple):
     numbers: dict[str, Any]
 
 
-def _entries(indices: xarray.Dataset) -> Iterator[_Entry]:
+def _entries(indices: xarray.Dataset) -> Iterator[IndexEntry]:
     for quantity, content in sensitivity_summary(indices)["quantities"].items():
-        yield from (_Entry(quantity, [name], numbers) for name, numbers in content["numbers"].items())
-        yield from (_Entry(quantity, pair["parameters"], pair) for pair in content.get("pairs", ()))
+        yield from (IndexEntry(quantity, [name], numbers) for name, numbers in content["numbers"].items())
+        yield from (IndexEntry(quantity, pair["parameters"], pair) for pair in content.get("pairs", ()))
 
 
-def _table(key: str, title: str, label: str, entries: Sequence[_Entry]) -> Table:
+def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[IndexEntry]) -> Table:
     """List indices with their intervals, if known; a narrow terminal has the interval of the main index only."""
     known, several = entries[0].numbers, len({entry.quantity for entry in entries}) > 1
     names = [name for name in _HEADS if name in known]
-    columns = [Column.of_words(word) for word in (*["quantity"] * several, label)]
+    columns = [Column.of_words(word) for word in heads[not several :]]
     rows: list[list[Cell]] = [[*[entry.quantity] * several, " x ".join(entry.parameters)] for entry in entries]
     main = next(name for name in ("shapley", "total_order", "second_order") if name in known)
     for name in names:
@@ -95,37 +98,22 @@ def index_table(indices: xarray.Dataset) -> Table:
 
 def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
     """Summarise the shares of the variance with their intervals, and elasticities, by quantity and parameter."""
-    names = [str(name) for name, values in indices.data_vars.items() if values.dims == ("quantity", "parameter")]
-    summary: dict[str, Any] = {
-        "held": held_in(indices),
-        "samples": indices.attrs["samples"],
-        "quantities": {
-            quantity: {
-                "mean": float(indices["mean"].sel(quantity=quantity)),
-                "deviation": float(indices["deviation"].sel(quantity=quantity)),
-                "numbers": {
-                    parameter: {
-                        name: to_list(indices[name].sel(quantity=quantity, parameter=parameter).values)
-                        for name in names
-                    }
-                    for parameter in indices.parameter.values.tolist()
-                },
-                **_pairs_summary(indices.sel(quantity=quantity)),
-            }
-            for quantity in indices.quantity.values.tolist()
-        },
-    }
-    return summary | {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
+    parameters = indices.parameter.values.tolist()
+    single, paired = ([str(name) for name in indices.data_vars if indices[name].ndim == count] for count in (2, 3))
+    content: dict[str, Any]
+    quantities: dict[str, Any] = {}
+    for quantity in indices.quantity.values.tolist():
+        part = indices.sel(quantity=quantity)
+        quantities[quantity] = content = {name: float(part[name]) for name in ("mean", "deviation")}
+        content["numbers"] = {name: _numbers(part[single].sel(parameter=name)) for name in parameters}
+        if paired:
+            content["pairs"] = [
+                {"parameters": [one, other], **_numbers(part[paired].sel(parameter=one, other_parameter=other))}
+                for one, other in combinations(parameters, 2)
+            ]
+    options = {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
+    return {"held": held_in(indices), "samples": indices.attrs["samples"], "quantities": quantities, **options}
 
 
-def _pairs_summary(part: xarray.Dataset) -> dict[str, Any]:
-    """Summarise the indices of pairs of parameters for one quantity; empty without them."""
-    names = [str(name) for name, values in part.data_vars.items() if "other_parameter" in values.dims]
-    pairs = [
-        {
-            "parameters": [one, other],
-            **{name: to_list(part[name].sel(parameter=one, other_parameter=other).values) for name in names},
-        }
-        for one, other in combinations(part.parameter.values.tolist(), 2)
-    ]
-    return {"pairs": pairs} if names else {}
+def _numbers(part: xarray.Dataset) -> dict[str, Any]:
+    return {str(name): to_list(value.values) for name, value in part.data_vars.items()}
