@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..core.answers import Answer, Cell, Column, Row, Table
@@ -77,11 +78,15 @@ def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[
         if f"{name}_low" in known:
             columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=int(name != main)))
         for cells, (_, _, numbers) in zip(rows, entries, strict=True):
-            low, high = (numbers.get(f"{name}_{end}") for end in ("low", "high"))
-            cells.append(numbers[name])
+            cells.append(rounded(numbers[name]))
             if f"{name}_low" in known:
-                cells.append(None if low is None or high is None else (low, high))
+                cells.append(tuple(rounded(numbers[f"{name}_{end}"]) for end in ("low", "high")))
     return Table(key, title, columns, [Row(cells) for cells in rows])
+
+
+def rounded(share: float | None) -> float:
+    """Round a share of the variance or an elasticity, of which smaller parts are noise; NaN for none."""
+    return nan if share is None else round(share, 3) + 0.0
 
 
 def index_table(indices: xarray.Dataset) -> Table:
