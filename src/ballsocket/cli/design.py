@@ -13,10 +13,10 @@ from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending
-from ..files.joint_file import JointFile
+from ..files.joint_file import JointFile, aimed, tilted_cup
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
-from ..problem.cup import Cup
+from ..problem.cup import UP
 from ..reports import study_plots, study_tables
 from ..studies.axes import Span
 from ..studies.design import grid
@@ -77,7 +77,10 @@ class PressOptions:
         else:
             model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
-        return with_gap(model, self.gap).in_cup(file.cup)
+        model, remark = aimed(with_gap(model, self.gap), file)
+        if remark:
+            print_message(remark)
+        return model
 
     def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
         """Return the load in N or mm; empty if the load is one of the varied parameters."""
@@ -113,13 +116,13 @@ def design_map(
     output.check()
     _check_points(points)
     file = joint_options.read(joint)
-    limits = _limits(limit, file.cup)
+    limits = _limits(limit, file)
     ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     stated = joint_options.stated(file, ends)
     sizes = {name: [value] for name, value in stated.items()}
     load, model = press_options.load(file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
-    result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits))
+    result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
     output.print(lambda: study_tables.map_summary(result, limits), lambda: study_tables.print_map(result, limits))
     output.draw(lambda: study_plots.design_map(result, limits))
 
@@ -153,7 +156,7 @@ def optimise(
     output.check()
     _check_points(points)
     file, goals = joint_options.read(joint), minimise or ["max_pressure"]
-    limits = _limits(limit, file.cup)
+    limits = _limits(limit, file)
     lists = [parse_choices(phrase) for phrase in vary]
     choices = _unique(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
@@ -168,7 +171,7 @@ def optimise(
         count = points or _default_points(model)
         axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
         design = grid(**axes, **fixed, **load)
-        return study(model, joint, design, quantities=_quantities(goals, limits))
+        return study(model, joint, design, quantities=_quantities(goals, limits, model))
 
     if len(goals) == 2:
         result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
@@ -289,9 +292,10 @@ def _default_points(model: Model) -> int:
     return 41 if model.seconds_a_press < 1e-3 else 21
 
 
-def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
-    """Parse limits from text; distances from the edge are those of the cup."""
-    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
+def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
+    """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
+    cup, direction = tilted_cup(file.cup, file.aim), file.aim.get("direction", UP)
+    return [replace(parse_limit(phrase), cup=cup, direction=direction) for phrase in phrases or []]
 
 
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
@@ -310,6 +314,6 @@ def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     return values
 
 
-def _quantities(goals: Iterable[str], limits: Iterable[Limit]) -> list[str]:
+def _quantities(goals: Iterable[str], limits: Iterable[Limit], model: Model) -> list[str]:
     """Return the results to compute: the default ones, the goals and the limited ones."""
-    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited_quantities(limits))))
+    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited_quantities(limits, model))))

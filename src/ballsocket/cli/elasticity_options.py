@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import degrees, isfinite, pi
+from math import degrees, isfinite
 from time import perf_counter
 from typing import Annotated, Any
 
@@ -167,14 +167,6 @@ def orientation_remark(cup: Cup) -> str:
     angles = orientation_summary(cup)
     texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
     return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
-
-
-def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
-    """Return the cup tilted against a vertical load.
-
-    A direction in the body leaves the cup unchanged. Models that take every load as axial judge the rim by the tilt.
-    """
-    return cup.tilted(min(direction["tilt"], pi / 2)) if "tilt" in direction else cup
 
 
 @dataclass

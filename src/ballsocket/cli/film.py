@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..files.joint_file import JointFile
+from ..files.joint_file import JointFile, tilted_cup
 from ..files.units import parse
 from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
@@ -24,7 +24,7 @@ from ..problem.cup import UP
 from ..reports.film_results import film_figure, print_films
 from ..reports.unit_systems import Units
 from ..version import __version__
-from .elasticity_options import CupOptions, DirectionOptions, tilted_cup
+from .elasticity_options import CupOptions, DirectionOptions
 from .model_file import requested_model
 from .options import (
     GapName,

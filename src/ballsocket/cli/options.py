@@ -13,7 +13,6 @@ import typer
 
 from ..core.checks import nearest, normalise_name
 from ..core.input_files import resolve_input
-from ..core.quantities import JOINT
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
 from ..model_catalogue import listed_models
 from ..problem.dimensions import LENGTHS, fit_beside
@@ -191,7 +190,7 @@ class JointPartOptions:
     def stated(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
         """Return the lengths in mm that the options state beside those that vary, for a study to hold."""
         lengths = self.tables().get("joint", {})
-        return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths) if name in JOINT}
+        return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths)}
 
 
 _IN_FILE = "Default: as in [cup] of the joint file"

@@ -20,7 +20,7 @@ from ..core.quantities import CONTACT
 from ..core.validity import Status
 from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
-from ..files.joint_file import JointFile
+from ..files.joint_file import JointFile, tilted_cup
 from ..model_catalogue import catalogue, judge, off_axis, reference, with_gap
 from ..problem import Joint
 from ..problem.cup import UP, Cup
@@ -39,7 +39,6 @@ from .elasticity_options import (
     refuse_mesh_options,
     solve_mesh,
     sphere_remark,
-    tilted_cup,
 )
 from .json_answers import echo_json, several_joints
 from .model_file import is_model_file, requested_model

@@ -71,6 +71,8 @@ def study(
     if store is not None:
         check_store(store)
     study_file = read_study(file)
+    if study_file.remark:
+        print_message(study_file.remark)
     draw = None if figure is None else _choose_plot(study_file, figure)
     folder = store or study_file.store
     with _progress_bar(folder) as progress:

@@ -8,12 +8,13 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
+from ..contact import Model
 from ..contact.assembly import select_and_check_load
 from ..core.checks import check_text, nearest, normalise_name, require, shown
 from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
-from ..problem.cup import AngleDefinition, Cup, Interface, Side
+from ..problem.cup import UP, AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
@@ -224,6 +225,24 @@ def read_joint(path: str | Path) -> JointFile:
 def parse_joint(raw: bytes, title: str) -> JointFile:
     """Convert the content of a joint file; see `read_joint`. Messages begin with `title`."""
     return parse_toml(raw, title, "joint", joint_of)
+
+
+def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
+    """Return the cup tilted against a vertical load.
+
+    A direction in the body leaves the cup unchanged. Models that take every load as axial judge the rim by the tilt.
+    """
+    return cup.tilted(min(direction["tilt"], pi / 2)) if "tilt" in direction else cup
+
+
+def aimed(model: Model, file: JointFile) -> tuple[Model, str]:
+    """Give a model the cup and the load's direction of a file, with a remark if it presses along the axis instead."""
+    placed: Any = model.in_cup(file.cup)
+    if model.off_axis:
+        return placed.with_direction(**file.aim), ""
+    tilt = float(tilted_cup(file.cup, file.aim).tilt(file.aim.get("direction", UP)))
+    along = f"the load is {degrees(tilt):.3g}° from the cup's axis, but {model.name} presses along it; sphere does not"
+    return placed, along if tilt > 0 else ""
 
 
 def joint_of(content: Mapping[str, Any]) -> JointFile:

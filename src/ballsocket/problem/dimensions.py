@@ -173,7 +173,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
         Several choices; the message has each of them.
     """
     changed_names = tuple(changed)
-    new = {canonical(name) for name in changed_names}
+    new = {canonical(name) for name in changed_names if name in LENGTHS}
     old = {canonical(name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:

@@ -56,10 +56,23 @@ class Axis(ABC):
 
 @dataclass(frozen=True, eq=False)
 class GridAxis(Axis):
-    """Axis of one parameter with listed values."""
+    """Axis of one parameter with listed values.
+
+    Raises
+    ------
+    ValueError
+        The same value twice.
+    """
 
     name: str
     column: Numbers
+
+    def __post_init__(self) -> None:
+        values, counts = numpy.unique(self.column, return_counts=True)
+        if counts.max(initial=1) > 1:
+            unit = QUANTITIES[self.name].written
+            repeated = float(values[counts.argmax()]) * unit.factor
+            raise ValueError(f"{self.name} has {f'{repeated:g} {unit.text}'.strip()} twice: list each value once")
 
     @property
     def values(self) -> Mapping[str, Numbers]:

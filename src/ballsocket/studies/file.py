@@ -14,7 +14,7 @@ from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import address_of, check_local
 from ..files.columns import HeadKeys
-from ..files.joint_file import JointTables, joint_in
+from ..files.joint_file import JointTables, aimed, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
@@ -38,7 +38,7 @@ from .axes import Span
 from .design import Design, check_values, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .expressions import parse_correlations
-from .parameters import PARAMETERS
+from .parameters import LOADS, PARAMETERS
 from .sampling import Method
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -228,7 +228,7 @@ class StudyTable(JointTables, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, eq=False)
 class StudyFile:
-    """Contents of a study file."""
+    """Contents of a study file; `remark` is empty, or states that the model leaves out the load's direction."""
 
     model: Model
     joint: Joint
@@ -236,14 +236,15 @@ class StudyFile:
     quantities: tuple[str, ...]
     store: str | Path | None
     engine: Engine
+    remark: str = ""
 
 
 def read_study(path: str | Path) -> StudyFile:
     """Read a study file.
 
     The design is the product of `[axes]`, `[samples]` and the rows of a `[table]`. The joint is described as in joint
-    files, or named. The page "Keys of files" of the reference lists all tables and keys. Paths are relative to the
-    folder of the file.
+    files, or named. A design without a load has that of the joint file. The page "Keys of files" of the reference lists
+    all tables and keys. Paths are relative to the folder of the file.
 
     Raises
     ------
@@ -259,16 +260,20 @@ def read_study(path: str | Path) -> StudyFile:
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
-    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup)
+    model, remark = aimed(with_gap(named_models[tables.model], tables.gap), file)
+    design = _design(tables, content, folder)
+    if not any(name in LOADS for name in design.names):
+        design = design * grid(**file.load)
     store = None if tables.store is None else str(check_filled("store", tables.store))
     everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
         model=model,
         joint=file.joint,
-        design=_design(tables, content, folder),
+        design=design,
         quantities=tuple(map(str, tables.quantities or everything)),
         store=store if store is None or address_of(store) is not None else folder / store,
         engine=_engine(tables.engine),
+        remark=remark,
     )
 
 

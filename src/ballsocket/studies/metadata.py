@@ -104,6 +104,7 @@ def derived_lengths(study: xarray.Dataset, values: Mapping[str, Numbers]) -> dic
     names, shell = json.loads(study.attrs.get(_DERIVED, "[[], 0]"))
     if not names:
         return {}
+    shell = values.get("shell_thickness", shell)
     stored = derive_lengths({name: values[name] for name in values if name in LENGTHS}, shell)
     return {name: length_of(name, stored, shell) for name in names}
 
