@@ -32,6 +32,7 @@ curve {hip} --points x => --points
 fmu {hip} --out a.fmu --fmi 2.5 => --fmi
 deck {hip} --out a --steps 0 => --steps
 fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed must be a number of mm/s, or such as '0.1 m/s'
+map {hip} --limit 'max_pressure<=12 N' => max_pressure = '12 N' is not a pressure, stress or modulus, such as '12 MPa'
 press {hip} --force -3 => force = '-3' is not allowed: a force (N) is 0 or more and finite
 press {hip} --force 1 --indentation 1 => one load is needed, got force, indentation
 press {numbers} --clearance=-100um => clearance = '-100um' is not allowed: a radial clearance (mm) is
@@ -135,7 +136,7 @@ fmu {rod} --model exact --out a.fmu => the model exact does not solve a preloade
 {fmu} --fmi 4 => FMI version = 4 is not allowed: 2 or 3
 {fmu} --hysteresis -1 => hysteresis
 {fmu} --restitution 0.5 => a restitution and the speed of its impact belong together
-{fmu} --viscosity '2.5 mm' => viscosity must be a number of Pa s, or such as '2.5 mPa s'
+{fmu} --viscosity '2.5 mm' => viscosity = '2.5 mm' is not a viscosity, such as '2.5 mPa s'
 {fmu} --roughness '1 um' => add --viscosity
 """
 """Commands, and words of the message after the arrow."""

@@ -120,7 +120,7 @@ class ForceElementOptions:
             if self.roughness is not None:
                 raise ValueError("--roughness is that of a film: add --viscosity")
             return None
-        viscosity = _number_in("Pa s", "viscosity", self.viscosity, "2.5 mPa s")
+        viscosity = parse("viscosity", self.viscosity, Kind.VISCOSITY)
         if self.roughness is None:
             return Lubricant(viscosity=viscosity)
         roughness = parse("roughness", self.roughness, Kind.LENGTH)

@@ -50,6 +50,7 @@ class Kind(StrEnum):
     EDGE_COEFFICIENT = "edge coefficient"
     VISCOSITY = "viscosity"
     ROTATION_RATE = "rotation rate"
+    TIME = "time"
 
     @property
     def unit(self) -> str:
@@ -80,7 +81,7 @@ class Kind(StrEnum):
 _KINDS = {
     Kind.LENGTH: ("mm", "a length, such as '16 mm'"),
     Kind.FORCE: ("N", "a force, such as '3 kN'"),
-    Kind.MODULUS: ("MPa", "a modulus, such as '1 GPa'"),
+    Kind.MODULUS: ("MPa", "a pressure, stress or modulus, such as '12 MPa'"),
     Kind.ANGLE: ("rad", "an angle, such as '40 deg'"),
     Kind.NUMBER: ("1", "a number, such as 0.4"),
     Kind.AREA: ("mm2", "an area, such as '8 cm^2'"),
@@ -92,6 +93,7 @@ _KINDS = {
     Kind.MASS: ("kg", "a mass, such as '2 kg'"),
     Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
     Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
+    Kind.TIME: ("s", "a time, such as '1.1 s'"),
     Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
     Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }

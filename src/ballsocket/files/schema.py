@@ -213,6 +213,18 @@ class Pressure(QuantityValue):
     kind = Kind.MODULUS
 
 
+class Viscosity(QuantityValue):
+    """Dynamic viscosity in Pa s."""
+
+    kind = Kind.VISCOSITY
+
+
+class Time(QuantityValue):
+    """Time in s."""
+
+    kind = Kind.TIME
+
+
 class Angle(QuantityValue):
     """Angle in rad; a bare number of a file is in degrees."""
 

@@ -130,7 +130,7 @@ class Span:
 class MaterialAxis(Axis):
     """Axis of materials of the "liner" or the "ball", whose properties vary together.
 
-    The yield stress is NaN unless all of them have one.
+    An unknown yield stress is NaN.
 
     Raises
     ------
@@ -156,7 +156,7 @@ class MaterialAxis(Axis):
     def values(self) -> Mapping[str, Numbers]:
         yields = [nan if material.yield_stress is None else float(material.yield_stress) for material in self.materials]
         numbers = {name: [float(getattr(material, name)) for material in self.materials] for name in MATERIAL}
-        numbers["yield_stress"] = [nan] * len(yields) if numpy.isnan(yields).any() else yields
+        numbers["yield_stress"] = yields
         return {f"{self.name}_{name}": numpy.array(column) for name, column in numbers.items()}
 
     @property

@@ -10,7 +10,7 @@ from typing import Any
 from ..contact import Model
 from ..core import quantities
 from ..core.arrays import Array, all_true, where
-from ..core.quantities import MATERIAL, PARTS, SHELL, STRESS_LIMITS, Quantity
+from ..core.quantities import MATERIAL, PARTS, SHELL, STRENGTH, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, canonical, check_unique_lengths, derive_lengths, held_lengths
 from ..problem.material import make_unchecked
@@ -123,10 +123,12 @@ def _vary_material(material: Material | None, values: Mapping[str, Array], part:
     if not replaced:
         return material
     limits = dict.fromkeys(STRESS_LIMITS) if all(number in replaced for number in names) else {}
-    stress = replaced.get("yield_stress")
-    if stress is not None and all_true(stress == stress) is False:
-        del replaced["yield_stress"]
-    return Material(**replaced) if material is None else replace(material, **{**limits, **replaced})
+    stress = replaced.pop("yield_stress", None)
+    varied = Material(**replaced) if material is None else replace(material, **{**limits, **replaced})
+    if stress is None or all_true(stress != stress) is True:
+        return varied
+    STRENGTH["yield_stress"].check(where(stress == stress, stress, 1.0))
+    return make_unchecked(Material, **{**vars(varied), "yield_stress": stress})
 
 
 def nominal_value(joint: Joint, name: str) -> float | None:
