@@ -302,7 +302,7 @@ def test_an_interference_is_a_negative_clearance():
         ({"outer_diameter": 49.0}, "liner_thickness = 6 mm, but the others make 8.4 mm$"),
         ({"liner_thickness": None}, "liner_thickness is missing, or outer_radius"),
         ({"ball_radius": None, "clearance": None, "head_diameter": 32.0}, "two of .* are needed, got head_diameter"),
-        ({"liner_thickness": None, "outer_radius": 16.1}, "outer_radius = 16.1 is not .* ball_radius = 16 mm: above 16.2 mm"),
+        ({"liner_thickness": None, "outer_radius": 16.1}, "outer_radius = 16.1 is not .* 16 mm: above 16.1 mm"),
         ({"clearance": None, "socket_radius": 15.0}, "clearance = -1 is not allowed"),
         ({"clearance": None, "interference": 1.7}, "interference = 1.7 is not allowed: it is at most a tenth"),
         ({"head_diamter": 32.0}, "'head_diamter' .* is not known; did you mean 'head_diameter'"),
