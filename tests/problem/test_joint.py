@@ -87,6 +87,20 @@ def test_a_changed_joint_keeps_its_other_numbers():
         hip.replace(liner="uhmwpe")
 
 
+def test_joints_of_arrays_are_equal_if_all_their_numbers_are():
+    hip = bs.joints["hip-36"]
+    one, same, other, longer = (hip.replace(clearance=np.array(c)) for c in ([0.1, 0.2], [0.1, 0.2], [0.1, 0.3], [0.1]))
+    assert (one == same, one == other, one == longer, one == hip, one in [hip, same]) == (
+        True,
+        False,
+        False,
+        False,
+        True,
+    )
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(one)
+
+
 def test_a_backing_is_part_of_the_joint():
     joint = bs.Joint(**GOOD, ball=bs.COCR, backing=[SHELL, BONE], support=bs.Support.FREE)
     assert joint.backing == (SHELL, BONE)
