@@ -22,7 +22,7 @@ BOUNDED = {
     "studies/expressions.py": "texts of at most 200 characters",
     "core/sources.py": "the bibliography of the package",
     "elasticity/finite_elements/calculix.py": "results in a folder of decks",
-    "reports/unit_systems.py": "numbers of a sentence of the package, at most eight in a list",
+    "core/unit_systems.py": "numbers of a sentence of the package, at most eight in a list",
 }
 """Modules with patterns made at run time, which are not measured, and the texts that they read."""
 

@@ -12,8 +12,8 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.contact import Model
-from ballsocket.core.executors import Distributed, Engine, Processes, Serial
-from ballsocket.core.executors.dask import local_cluster
+from ballsocket.core.executors.dask import Distributed, local_cluster
+from ballsocket.core.executors.processes import Engine, Processes, Serial
 from ballsocket.studies.design import Design, Span, grid
 from ballsocket.studies.task import DEFAULT_QUANTITIES, DTYPES, Blocks
 

@@ -82,7 +82,7 @@ def _by_hand() -> float:
     depth, places = numpy.zeros(len(bed.areas)), SPRINGS.unworn.displacement.copy()
     for _ in range(round(MILLION / BLOCK)):
         worn = numpy.zeros_like(depth)
-        for i, load in enumerate(SPRINGS.loads):
+        for i, load in enumerate(SPRINGS.frame.loads):
             for _ in range(30):
                 overlap = places[i] @ bed.normals - bed.clearance - depth
                 pressure = bed.modulus * numpy.maximum(overlap, 0.0)
@@ -103,9 +103,10 @@ def patients_jobs(number: int) -> tuple[Job, Job]:
     use = replace(SPRINGS, ring_width=radians(8.0), cycle=iso_14242_1(32))
     springs: Any = use.foundation
     worn, factors = numpy.zeros(len(springs.areas)), numpy.linspace(0.6, 1.4, number)
-    contacts: list[SpringContact] = [springs.contact(factor * use.loads, worn, NO_LATERAL_SPRING) for factor in factors]
-    start = numpy.ascontiguousarray(numpy.broadcast_to(use.unworn.displacement, (number, *use.loads.shape)))
-    solver, pressure = spring_solver(), numpy.empty((len(use.loads), len(springs.areas)))
+    loads = use.frame.loads
+    contacts: list[SpringContact] = [springs.contact(factor * loads, worn, NO_LATERAL_SPRING) for factor in factors]
+    start = numpy.ascontiguousarray(numpy.broadcast_to(use.unworn.displacement, (number, *use.frame.loads.shape)))
+    solver, pressure = spring_solver(), numpy.empty((len(use.frame.loads), len(springs.areas)))
     with jax.enable_x64(True):
         joined, started = jax.tree.map(jax.numpy.asarray, (join_contacts(contacts), start))
 

@@ -46,7 +46,7 @@ for inclination, colour in INCLINATIONS.items():
     counts = [0.0, *(report.cycles / 1e6 for report in history.reports)]
     depths = [0.0, *(report.depth for report in history.reports)]
     depth.plot(counts, depths, "o-", ms=3, color=colour, label=f"{inclination}°")
-    rim.plot(100 * use.cycle.phases[use.loaded], use.edge_distance(use.unworn), color=colour)
+    rim.plot(100 * use.cycle.phases[use.frame.loaded], use.edge_distance(use.unworn), color=colour)
 depth.set_title("deepest wear [mm]", fontsize=10)
 depth.set_xlabel("million cycles")
 depth.legend(title="inclination", frameon=False)

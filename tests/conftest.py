@@ -1,5 +1,6 @@
 """Settings of the suite: `pytest` runs it in few cases, `pytest --long` completely."""
 
+import gc
 import signal
 from collections import Counter
 
@@ -9,7 +10,7 @@ from hypothesis import settings
 from . import environment, extent
 from .schedule import FileScheduling, start_rank
 
-settings.register_profile("quick", max_examples=15, deadline=None, derandomize=True, database=None)
+settings.register_profile("quick", max_examples=8, deadline=None, derandomize=True, database=None)
 settings.register_profile("long", max_examples=100, deadline=None, database=None)
 
 
@@ -32,6 +33,17 @@ def pytest_unconfigure():
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
     return FileScheduling(config, log)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Read the tests without searches for garbage: they are hundreds of thousands of objects that stay."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()
 
 
 @pytest.hookimpl(trylast=True)

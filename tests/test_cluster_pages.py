@@ -9,7 +9,7 @@ import sys
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Distributed
+from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.file import read_study
 
 from .places import ROOT

@@ -33,7 +33,7 @@ def fenced(text, language):
 
 SLOW = {
     *("clusters", "cup", "deck", "export", "film", "finite_elements", "gradients", "hip", "hip_validation"),
-    *("identify", "many", "notebook", "off_axis", "patients", "preloaded", "programs", "sensitivity"),
+    *("identify", "law", "many", "notebook", "off_axis", "patients", "preloaded", "programs", "sensitivity", "study"),
 }
 """Pages whose examples compute for half a second to four seconds each; they run with `--long`."""
 

@@ -7,7 +7,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors.processes import Serial
-from ballsocket.elasticity.off_axis import read_scan
+from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.hip import HipSimulation
 from ballsocket.hip.simulator_cycles import iso_14242_1
 from ballsocket.hip.wear_laws import Archard

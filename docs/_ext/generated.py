@@ -14,7 +14,7 @@ from ballsocket.core.sources import Source, bibliography
 from ballsocket.core.storage.pieces import fingerprint
 from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
-from ballsocket.files.schema_keys import Key, keys_of
+from ballsocket.files.inputs import Input, inputs_of
 from ballsocket.mcp.tools import FILE_TABLES, file_table
 from ballsocket.model_catalogue import listed_models
 from ballsocket.paper.claims import SCALE
@@ -172,8 +172,8 @@ _TITLES = {
 
 def _file_keys(kind: str) -> str:
     """Return the keys of a kind of file, table by table; tables that joint files have too are left out of others."""
-    keys = keys_of(file_table(kind))
-    joint = [] if kind == "joint" else keys_of(file_table("joint"))
+    keys = inputs_of(file_table(kind))
+    joint = [] if kind == "joint" else inputs_of(file_table("joint"))
     heads = [
         head for head in dict.fromkeys(key.table for key in keys) if not head or _of(keys, head) != _of(joint, head)
     ]
@@ -182,14 +182,14 @@ def _file_keys(kind: str) -> str:
     return "\n\n".join([*parts, *([f"As in joint files: {', '.join(shared)}."] if shared else [])]) + "\n"
 
 
-def _of(keys: list[Key], head: str) -> list[Key]:
+def _of(keys: tuple[Input, ...], head: str) -> tuple[Input, ...]:
     """Return the keys of one table."""
     return [key for key in keys if key.table == head]
 
 
-def _key_table(head: str, keys: list[Key]) -> str:
+def _key_table(head: str, keys: tuple[Input, ...]) -> str:
     """Return the keys of one table with their values, defaults and meanings."""
-    rows = [(f"`{key.name}`", key.values, f"`{key.default}`" if key.default else "", key.meaning) for key in keys]
+    rows = [(f"`{key.key}`", key.values, f"`{key.default}`" if key.default else "", key.meaning) for key in keys]
     return f"### {f'`{head}`' if head else 'At the top'}\n\n{_table(('key', 'value', 'default', 'meaning'), rows)}"
 
 

@@ -11,6 +11,7 @@ Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .core.lazy import imported_names
 from .reports.figure_files import register_plots
 from .version import __version__ as __version__
 
@@ -26,20 +27,12 @@ if TYPE_CHECKING:
     from .elasticity.exact.tabulated.model import Tabulated
     from .elasticity.finite_elements.model import FiniteElement
     from .elasticity.finite_elements.spacing import Adapted, Element, Uniform
-    from .elasticity.off_axis import (
-        BoreDeviation,
-        ClosedShell,
-        DepthTable,
-        Orientations,
-        OvalBore,
-        Preload,
-        RealCup,
-        Sphere,
-        Springs,
-        orient,
-        pull_out,
-        read_scan,
-    )
+    from .elasticity.off_axis.bore_shapes import BoreDeviation, DepthTable, OvalBore
+    from .elasticity.off_axis.model import Sphere
+    from .elasticity.off_axis.orientations import Orientations, orient
+    from .elasticity.off_axis.preload import Preload, pull_out
+    from .elasticity.off_axis.scans import read_scan
+    from .elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
     from .files.joint_file import read_joint
     from .identification import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
     from .lubrication import Lubricant
@@ -203,8 +196,12 @@ _NAMES_BY_MODULE = {
     "elasticity.exact.tabulated.model": "Tabulated",
     "elasticity.finite_elements.model": "FiniteElement",
     "elasticity.finite_elements.spacing": "Adapted Element Uniform",
-    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Preload RealCup "
-    "Sphere Springs orient pull_out read_scan",
+    "elasticity.off_axis.bore_shapes": "BoreDeviation DepthTable OvalBore",
+    "elasticity.off_axis.model": "Sphere",
+    "elasticity.off_axis.orientations": "Orientations orient",
+    "elasticity.off_axis.preload": "Preload pull_out",
+    "elasticity.off_axis.scans": "read_scan",
+    "elasticity.off_axis.surfaces": "ClosedShell RealCup Springs",
     "files.joint_file": "read_joint",
     "identification": "as_constant as_corrected_vessel as_polynomial calibrate identify",
     "lubrication": "Lubricant",
@@ -228,21 +225,15 @@ _NAMES_BY_MODULE = {
 }
 """Names for users by module. A module is imported on the first use of one of its names."""
 
-_MODULES = {name: module for module, names in _NAMES_BY_MODULE.items() for name in names.split()}
-
+_import_name = imported_names(__name__, _NAMES_BY_MODULE)
 
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
         """Import a name or a subpackage on first use."""
-        if name in _MODULES:
-            value = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-            globals()[name] = value
-            return value
-        if name not in _DOORS:
-            hint = f"; {_HINTS[name]}" if name in _HINTS else ""
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
-        return import_module(f"{__name__}.{name}")
+        if name in _HINTS:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}; {_HINTS[name]}")
+        return import_module(f"{__name__}.{name}") if name in _DOORS else _import_name(name)
 
 
 def __dir__() -> list[str]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from html import escape
-from math import inf, radians
+from math import inf, nan, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -85,12 +86,18 @@ class Comparison(Mapping[str, Contact]):
             Deviation of each column of `COLUMNS`, of the shape of the contact. None for the exact model itself, for
             a missing model, and in a comparison without the exact model.
         """
+        return self._deviations.get(name)
+
+    @cached_property
+    def _deviations(self) -> dict[str, dict[str, Array]]:
         exact = self.contacts.get(reference.name)
-        if exact is None or name == reference.name or name not in self.contacts:
-            return None
-        contact = self.contacts[name]
+        if exact is None:
+            return {}
+        truths = [(column, column.values_of(exact)) for column in COLUMNS]
         return {
-            column.name: relative_deviation(column.values_of(contact), column.values_of(exact)) for column in COLUMNS
+            name: {column.name: relative_deviation(column.values_of(contact), truth) for column, truth in truths}
+            for name, contact in self.contacts.items()
+            if name != reference.name
         }
 
     def rows(self) -> list[tuple[str, ...]]:
@@ -159,7 +166,7 @@ def relative_deviation(value: Array, truth: Array) -> Array:
     It is 0 where both are equal, and NaN where the truth is 0, infinite or NaN.
     """
     known = (truth > -inf) & (truth < inf) & (truth != 0)
-    return where(truth == value, 0.0, where(known, value / where(known, truth, 1.0) - 1, float("nan")))
+    return where(truth == value, 0.0, value / where(known, truth, nan) - 1)
 
 
 def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
@@ -179,6 +186,7 @@ def compare(
     half_angle: Array | None = None,
     models: Mapping[str, Model] | Sequence[Model | str] | None = None,
     cup: Cup | None = None,
+    **aim: Any,
 ) -> Comparison:
     """Compute the contact of one joint and load with several models.
 
@@ -191,6 +199,8 @@ def compare(
         Models by name, or models and names of the catalogue; all models of the catalogue by default.
     cup : Cup, optional
         Rim of the socket. Models without a rim are then invalid near it.
+    **aim
+        Direction of the load in the cup, as of `Model.in_cup`: `direction` or `tilt`.
 
     Returns
     -------
@@ -218,7 +228,8 @@ def compare(
     contacts, missing = {}, {}
     for name, model in named.items():
         try:
-            contacts[name] = (model if cup is None else model.in_cup(cup)).press(joint, **keyword)
+            placed = model.in_cup(cup or Cup(), **aim) if aim or cup is not None else model
+            contacts[name] = placed.press(joint, **keyword)
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)

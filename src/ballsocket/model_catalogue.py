@@ -2,60 +2,105 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import replace
+from functools import cache
+from importlib import import_module
 from typing import Any, TypeVar
 
-from .contact import Model
+from .contact import Model, ModelInfo
 from .contact.model import RimLimited
-from .contact.outcome import ModelInfo
-from .core.checks import NamedItems, known_name
-from .elasticity.exact.exact_curve import ExactCurve
-from .elasticity.exact.model import Exact
-from .elasticity.exact.tabulated.model import Tabulated
-from .elasticity.finite_elements.model import FiniteElement
-from .elasticity.off_axis.model import Sphere
-from .models.adhesion import AdhesiveSocket
-from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
-from .models.half_space import Hertz, LiuReconstruction, Steuermann
-from .models.pin_in_hole import PinInHole
-from .models.plane_layer import PlaneLayer
-from .models.refined import Refined
+from .core.checks import known_name, nearest, shown
+from .core.display import html_list
 from .problem.gaps import GAP_KINDS
 
-reference: Model = Exact()
-"""Exact elastic solution, the reference of every accuracy."""
+_MODELS = {
+    "exact": "elasticity.exact.model:Exact",
+    "tabulated": "elasticity.exact.tabulated.model:Tabulated",
+    "refined": "models.refined:Refined",
+    "hess-forsbach": "models.foundation:HessForsbach",
+    "vessel": "models.foundation:Vessel",
+    "bartel": "models.foundation:Bartel",
+    "bonded-layer": "models.foundation:BondedLayer",
+    "bonded-layer-exact": "models.foundation:BondedLayerExact",
+    "cosine-limit": "models.foundation:CosineLimit",
+    "hertz": "models.half_space:Hertz",
+    "steuermann": "models.half_space:Steuermann",
+    "plane-layer": "models.plane_layer:PlaneLayer",
+    "liu-reconstruction": "models.half_space:LiuReconstruction",
+    "adhesive": "models.adhesion:AdhesiveSocket",
+}
+"""Module and class of each model that presses in milliseconds or less, by its name."""
 
-judge: Model = FiniteElement()
-"""Finite-element model; slow, therefore not in the catalogue."""
+JUDGE = "fem"
+"""Name of the finite-element model; slow, therefore not in the catalogue."""
 
-off_axis: Sphere = Sphere()
-"""Elastic solution for loads in any direction; slow, therefore not in the catalogue."""
+OFF_AXIS = "sphere"
+"""Name of the elastic solution for loads in any direction; slow, therefore not in the catalogue."""
 
-_MODELS: tuple[Model, ...] = (
-    reference,
-    Tabulated(),
-    Refined(),
-    HessForsbach(),
-    Vessel(),
-    Bartel(),
-    BondedLayer(),
-    BondedLayerExact(),
-    CosineLimit(),
-    Hertz(),
-    Steuermann(),
-    PlaneLayer(),
-    LiuReconstruction(),
-    AdhesiveSocket(),
-)
+_SLOW_MODELS = {
+    JUDGE: "elasticity.finite_elements.model:FiniteElement",
+    OFF_AXIS: "elasticity.off_axis.model:Sphere",
+}
 
-catalogue: dict[str, Model] = NamedItems("model", {model.name: model for model in _MODELS})
+
+@cache
+def _load_model(entry: str) -> Any:
+    """Import the module of an entry such as "models.refined:Refined", and return a model of its class."""
+    module, _, name = entry.partition(":")
+    return getattr(import_module(f".{module}", __package__), name)()
+
+
+SomeInfo = TypeVar("SomeInfo", bound=ModelInfo)
+
+
+class Models(MutableMapping[str, SomeInfo]):
+    """Models by name; the module of a model is imported when the model is first used."""
+
+    def __init__(self, entries: Mapping[str, str]) -> None:
+        self._entries: dict[str, Any] = dict(entries)
+
+    def __getitem__(self, name: str) -> SomeInfo:
+        if name not in self._entries:
+            raise KeyError(f"model {shown(name)} is not known{nearest(name, self)}")
+        entry: Any = self._entries[name]
+        return _load_model(entry) if isinstance(entry, str) else entry
+
+    def __setitem__(self, name: str, model: SomeInfo) -> None:
+        self._entries[name] = model
+
+    def __delitem__(self, name: str) -> None:
+        del self._entries[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._entries
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} models: {', '.join(self)}>"
+
+    def _repr_html_(self) -> str:
+        return html_list(f"{len(self)} models", [(name, model.title) for name, model in self.items()])
+
+
+catalogue: Models[Model] = Models(_MODELS)
 """Models that press in milliseconds or less, by the name that files and the option `--model` use."""
 
-named_models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
+named_models: Models[Model] = Models(
+    {**_MODELS, "exact-curve": "elasticity.exact.exact_curve:ExactCurve", **_SLOW_MODELS}
+)
 """Models by the names that files and the command line use."""
 
-listed_models: dict[str, ModelInfo] = {model.name: model for model in (*_MODELS, judge, off_axis, PinInHole())}
+listed_models: Models[ModelInfo] = Models({**_MODELS, **_SLOW_MODELS, "pin-in-hole": "models.pin_in_hole:PinInHole"})
 """Models that are listed and cited: the catalogue, the slow models, and the plane model of a pin in a hole."""
+
+reference = catalogue["exact"]
+"""Exact elastic solution, the reference of every accuracy."""
 
 
 def named_model(name: Any) -> Model:

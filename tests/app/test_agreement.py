@@ -10,7 +10,6 @@ from urllib.parse import parse_qs
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.pressing import tilt_of
 from ballsocket.app.state.screen import read_link
 from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
@@ -161,7 +160,7 @@ def assert_inputs_agree(user, history):
     for name, value in shown["handles"]:
         assert value == pytest.approx(fields[name]["value"], rel=1e-5, abs=1e-9), (name, history)
     if shown["answer"]:
-        assert shown["real"] or not tilt_of(screen.file), history
+        assert shown["real"] or not screen.file.tilt, history
         assert float(shown["answer"]) == pytest.approx(answer_of(screen, shown["real"])[0], rel=1e-6), history
     elif shown["sentence"]:
         assert shown["sentence"] == answer_of(screen, shown["real"])[1], history

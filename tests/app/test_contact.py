@@ -26,11 +26,11 @@ from ballsocket.app.views.cup.view import _hint
 from ballsocket.app.views.cup.worker import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
+from ballsocket.core.unit_systems import Units
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.section_plots import gap_factor
-from ballsocket.reports.unit_systems import Units
 
 from ..extent import either
 from .asking import does, edits, opened, saved, told, trouble
@@ -68,7 +68,7 @@ def test_every_handle_is_an_input_and_says_its_number():
     assert page.screen.file.aim == {}
 
 
-@pytest.mark.parametrize("tilt", either([20.0, 75.0], [20.0, 45.0, 75.0]))
+@pytest.mark.parametrize("tilt", either([20.0], [20.0, 45.0, 75.0]))
 def test_a_tilted_contact_is_that_of_the_real_cup_in_this_view_and_in_the_view_cup(tilt, at_once):
     page = opened(f"{JOINT}&load.tilt={tilt} deg")
     contact = bs.Sphere().press(page.screen.file.joint, force=3000.0, tilt=radians(tilt))
@@ -76,10 +76,10 @@ def test_a_tilted_contact_is_that_of_the_real_cup_in_this_view_and_in_the_view_c
     assert f"data-name='max_pressure' data-value='{contact.max_pressure!r}'" in numbers
     assert checks_html(checks_of(contact, page.screen.file.cup), page.screen.reading.with_unit) in numbers
     assert ("✗ Exceeded" in numbers) == contact.edge_loaded == (tilt > 45)
-    assert "of the exact solution" not in page_text(page)
-    answering = [name for name in bs.catalogue if f"</svg>{name}</th><td colspan" not in table]
-    assert table.count("no: for an axial load: not valid at this tilt") == len(answering)
-    assert f"<td data-head='pmax [MPa]'>{contact.max_pressure:.4g}</td>" in table
+    assert "within" not in numbers
+    axial = bs.compare(page.screen.file.joint, force=3000.0, tilt=radians(tilt))  # in a cup that is tilted as much
+    assert table.count("<td class='text'>yes</td>") == sum(bool(each.valid) for each in (contact, *axial.values()))
+    assert f"<td data-head='pmax [MPa]'>{contact.max_pressure:.4g}<small>" in table
     assert page.channel.shown_value("=answered_by")["hidden"]
     cell = f"{contact.max_pressure:.4g} <span class='unit'>MPa"
     assert cell in numbers
@@ -95,13 +95,11 @@ def page_text(page):
 def test_an_axial_load_is_answered_by_the_chosen_model_unless_the_rim_is_near(at_once):
     page = opened(JOINT)
     assert "of the exact solution" in page_text(page)
-    assert "not valid at this tilt" not in page_text(page)
     page = opened(f"{JOINT}&cup.arc_of_cover=110")
     assert "outside the range in which this model can be trusted" in told(page, "press-numbers")
     edits(page, "press.run", True)
     assert "near the rim" in told(page, "press-numbers")
-    assert "not valid so near the rim" in told(page, "press-table")
-    assert "of the exact solution" not in page_text(page)
+    assert told(page, "press-table").count("distance to the rim") == len(bs.catalogue)
 
 
 def test_no_number_is_shown_while_the_real_cup_is_prepared(monkeypatch, asked):
@@ -194,6 +192,7 @@ def test_the_drawing_says_every_dimension_and_is_painted_with_stresses_when_they
     assert "this model has no stresses inside the liner" in drawing(page)
 
 
+@pytest.mark.long
 def test_a_report_is_printed_with_the_address_of_the_server(monkeypatch):
     """PDF is the page of HTML, printed in a process on the paper of the units; a refusal is a sentence."""
     printed = []

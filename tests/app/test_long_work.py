@@ -26,7 +26,7 @@ from ballsocket.app.views.wear.worker import wear_key
 from ballsocket.comparison import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile
-from ballsocket.model_catalogue import judge
+from ballsocket.model_catalogue import JUDGE
 from ballsocket.models.plane_layer import PlaneLayer
 from ballsocket.problem.cup import Cup
 
@@ -172,7 +172,7 @@ def test_a_run_answers_what_a_press_answers():
     contact = bs.FiniteElement().press(HIP, force=3000.0)
     assert found.numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-3)
     assert found.exact["max_pressure"] == pytest.approx(bs.Exact().press(HIP, force=3000.0).max_pressure)
-    angle, pressure = found.pressures[judge.name]
+    angle, pressure = found.pressures[JUDGE]
     assert pressure[0] == pytest.approx(contact.pressure(0.0), rel=1e-3)
     assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
     assert found.png.startswith(b"\x89PNG")

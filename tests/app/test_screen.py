@@ -211,7 +211,7 @@ def test_a_joint_file_keeps_the_page_and_names_no_picture_of_the_server():
     text = '[joint]\nball_radius = 18\nclearance = 0.1\nliner_thickness = 6\n[liner]\nmaterial = "pom"\n'
     screen = read_link(parse_qs("preset=hip-28&load.force=900&units=imperial"))
     (read,) = read_upload(f'{text}[report]\nlogo = "/etc/secret.png"\ncustomer = "A"\n', screen)
-    assert (read.units, read.file.load, read.file.report.logo) == ("imperial", {"force": 900.0}, "")
+    assert (read.units, read.file.load, read.file.report.logo) == ("imperial", {"force": 900.0}, None)
     assert read.file.joint.liner == bs.POM
     assert read_link(parse_qs(link_of(read), keep_blank_values=True)) == read
 
@@ -369,7 +369,12 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
     [
         ("", "load", "3,000", "Normal force '3,000' could be two numbers: write 3000 or 3.000"),
         ("", "load", HUGE, "the integer is too large"),
-        ("", "liner_poisson", "0,7", "Liner Poisson's ratio must be -0.999 to 0.5 (the limits of an isotropic solid)"),
+        (
+            "",
+            "liner_poisson",
+            "0,7",
+            "Poisson's ratio of the liner must be -0.999 to 0.5 (the limits of an isotropic solid)",
+        ),
         ("", "clearance", None, "Diametral clearance must be a number in mm, or a length such as '16 mm', got None"),
         ("", "clearence", "1", "'clearence' among the inputs is not known"),
         ("", "liner", 3, "liner = 3 is not a material"),

@@ -29,13 +29,13 @@ from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.contact.verdict import exact_number
+from ballsocket.core.unit_systems import Units
 from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 from ballsocket.reports.check_table import wear_check
-from ballsocket.reports.unit_systems import Units
 
 from .asking import does, edits, opened, saved, told, trouble
 
@@ -76,7 +76,7 @@ def test_a_cycle_is_that_of_python(page):
     assert found.force == pytest.approx(hip.cycle.force_magnitudes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
     assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
-    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.force_magnitudes)
+    assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.frame.forces[:, 0] / hip.cycle.force_magnitudes)
     cells = found.frames.cells
     assert cells.shape == (100, RINGS + 1, MERIDIANS)
     assert 240 <= cells.max() <= 255
@@ -263,7 +263,7 @@ def made(scale):
 
 def test_a_bore_worn_to_the_rim_fails_there_only_by_edge_loading():
     distances = np.array([0.0, 3.0, -1.0])
-    hip = SimpleNamespace(reach=1.5, joint=bs.joints["hip-36"])
+    hip = SimpleNamespace(frame=SimpleNamespace(reach=1.5), joint=bs.joints["hip-36"])
     (row,) = worker.worn_rim_rows(hip, distances, np.zeros(3, dtype=bool))
     assert (row.title, row.verdict.word) == ("reach of the contact", "undecided")
     assert worker.worn_rim_rows(hip, distances, np.array([False, False, True])) == []

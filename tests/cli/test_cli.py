@@ -182,11 +182,6 @@ def test_json_has_the_joint_and_a_result_per_model():
     assert (paper["valid"], len(paper["notes"])) == (True, 1)  # on the proportional limit
 
 
-def test_a_load_option_replaces_the_load_of_the_file():
-    for load, name, value in (("indentation", "indentation", 0.04), ("half-angle", "half_angle_deg", 30.0)):
-        assert answer("press", EXAMPLE, f"--{load}={value}")["results"][0][name] == pytest.approx(value, rel=1e-12)
-
-
 def pressed(*words):
     """The joint that is pressed, and the largest pressures, by JSON."""
     said = answer("press", *words, "--force", "3 kN")
@@ -269,8 +264,6 @@ def test_options_replace_values_of_a_preset_or_a_file():
     assert bs.HessForsbach().press(made, force=3000.0).max_pressure in pressures
     stiffer, _ = pressed("Hip_36", "--young", "2 GPa", "--model", "EXACT", "--model", " bartel")
     assert stiffer["liner"] == {**bs.joints["hip-36"].liner.summary(), "young": 2000.0}
-    joint, _ = pressed(EXAMPLE, "--poisson", "0.45", "--liner", "pom")
-    assert joint["liner"] == {**bs.POM.summary(), "poisson": 0.45}  # as in a file: numbers win over the material's
 
 
 def test_a_model_without_a_result_among_others_is_a_note():

@@ -28,10 +28,9 @@ press {hip} --force '3 kg' => force = '3 kg' is not a force, such as '3 kN'; a m
 press {hip} --force '3,000 N' => not a force, such as '3 kN'; write a decimal point, and nothing between thousands
 press {hip} --force '200 %BW' => not a force, such as '3 kN'; 2 times the weight of 75 kg is 1471 N
 press /proc/self/mem => /proc/self/mem
-curve {hip} --points x => --points
-fmu {hip} --out a.fmu --fmi 2.5 => --fmi
-deck {hip} --out a --steps 0 => --steps
-fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed must be a number of mm/s, or such as '0.1 m/s'
+curve {hip} --points x => --points must be a whole number, got 'x'
+fmu {hip} --out a.fmu --fmi 2.5 => --fmi must be a whole number, got '2.5'
+fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed = 'x' is not a speed, such as '0.1 m/s'
 map {hip} --limit 'max_pressure<=12 N' => max_pressure = '12 N' is not a pressure, stress or modulus, such as '12 MPa'
 press {hip} --force -3 => force = '-3' is not allowed: a force (N) is 0 or more and finite
 press {hip} --force 1 --indentation 1 => one load is needed, got force, indentation
@@ -63,11 +62,11 @@ study => file is missing: Study file
 optimise {hip} => --vary is missing: --vary 'clearance=50..200 um', for example
 study {hip} => this is a joint file: ballsocket press
 press {wear_test} --force 1 => this is a wear test file: ballsocket identify wear_test.toml
-press {hip} --model fem --meshes 0 => --meshes
+press {hip} --model fem --meshes 0 => --meshes must be at least 1, got '0'
 --foo => No such option: --foo; ballsocket -h lists them
 press --qqq => No such option: --qqq; ballsocket press -h lists them
-press {hip-36} --clearence 0.1 => --clearance
-press {hip-36} --friction much => --friction
+press {hip-36} --clearence 0.1 => No such option: --clearence (Possible options: --clearance
+press {hip-36} --friction much => --friction must be a number, got 'much'
 press {hip-36} --liner uhmwpe,pom => 'uhmwpe,pom' are several, and one is needed: optimise and studies choose
 optimise {hip-36} --vary clearance=0..1 --vary liner=uhmwpe,pom --figure a.png => two axes, and 1 numbers vary
 build-tables --out no/a.npz => no/a.npz: No such file or directory
@@ -81,13 +80,13 @@ curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models
 
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
-press {hip} --model fem --element triangle => element 'triangle' is not known
+press {hip} --model fem --element triangle => element = 'triangle' is not known
 press {hip} --model fem --element-size '9 mm' => liner_thickness = 6.75 is not allowed: a layer must have
 press {hip} --model fem --element-size '0.0005 mm' => GiB of memory
 press {hip} --model fem --vtk a.txt => 'a.txt' must end in .vtu, .vtk
 
-deck {hip} --out a --steps 0 => --steps
-deck {hip} --out a --steps 1000000 => --steps
+deck {hip} --out a --steps 0 => --steps must be at least 1, got '0'
+deck {hip} --out a --steps 1000000 => --steps must be at most 1000, got '1000000'
 deck {hip} --out a --scale 7 => scale = 7 is not allowed
 deck {hip} --out a --force 0 => need a contact under load
 
@@ -95,16 +94,16 @@ film {hip} --viscosity '-1 mPa s' => a viscosity (Pa s) is positive and finite
 film {hip} --spin inf => a rotation rate (rad/s) is finite
 film {hip} --spin '3 mm' => is not a rotation rate
 film {hip} --spin-axis 1,2 => spin_axis = '1,2' must be three numbers 'x,y,z'
-film {hip} --spin-axis 0,0,0 => an axis has a positive and finite length
-film {hip} --method magic => method
+film {hip} --spin-axis 0,0,0 => length of spin_axis = 0 is not allowed: a direction points somewhere
+film {hip} --method magic => method = 'magic' is not known; known: inlet, wave, reynolds
 film {hip} --interference '0.02 mm' --model sphere --ring-width 6 => interference = 0.02 mm is not allowed
-film {hip} --model refined --method reynolds => springs
+film {hip} --model refined --method reynolds => is not possible for refined: it needs a contact on springs
 
-press {hip-36} --tilt '200 deg' => tilt = 200
-press {hip-36} --direction 1,0 => three numbers
+press {hip-36} --tilt '200 deg' => tilt = 200 is not allowed: a tilt is 0 to 180 degrees
+press {hip-36} --direction 1,0 => direction = '1,0' must be three numbers 'x,y,z'
 press {hip-36} --direction 0,0,0 => points somewhere
-press {hip-36} --tilt 10 --direction 0,0,1 => both
-press {hip-36} --tilt 10 --model fem => use --model sphere
+press {hip-36} --tilt 10 --direction 0,0,1 => either a tilt or a direction is needed, got both
+press {hip-36} --tilt 10 --model fem => from the cup's axis: use sphere
 press {hip-36} --tilt 10 --ring-width '20 deg' => 0.5 to 6 degrees
 press {hip-36} --ring-width '2 deg' => --ring-width is for contact on the sphere: add --model sphere
 
@@ -118,8 +117,8 @@ orient {hip-36} --points 2 --step 5 => --step and --points are one too many: eit
 orient {hip-36} --points 2 --limit 'area<=3' => --limit of area is not possible here; possible:
 orient {hip-36} --points 2 --inclination 30..100 => inclination is 0 to 90 degrees
 
-press suspension-ball-joint --interference 0.03 --force 9 --pull-out => --pull-out needs the arc of cover: add
-press hip-28 --force 9 --pull-out --model exact => --pull-out is solved by the model sphere
+press suspension-ball-joint --interference 0.03 --force 9 --pull-out => needs the arc of cover: set arc_of_cover
+press hip-28 --force 9 --pull-out --model exact => a pull-out force is solved by the model sphere
 press hip-28 --force 9 --pull-out --ring-width 6 => a socket of 180 deg does not hold its ball
 press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coefficient of sliding
 press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1
@@ -134,7 +133,7 @@ fmu hip-28 --out hip.zip => out 'hip.zip' must end in .fmu
 fmu hip-28 --out no/hip.fmu => cannot write hip.fmu: 'no' is not a folder
 fmu {rod} --model exact --out a.fmu => the model exact does not solve a preloaded joint: use sphere
 {fmu} --fmi 4 => FMI version = 4 is not allowed: 2 or 3
-{fmu} --hysteresis -1 => hysteresis
+{fmu} --hysteresis -1 => hysteresis = -1 is not allowed: damping must be at least 0
 {fmu} --restitution 0.5 => a restitution and the speed of its impact belong together
 {fmu} --viscosity '2.5 mm' => viscosity = '2.5 mm' is not a viscosity, such as '2.5 mPa s'
 {fmu} --roughness '1 um' => add --viscosity

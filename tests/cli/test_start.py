@@ -4,16 +4,16 @@ import ast
 import re
 import subprocess
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
 import typer
 
 import ballsocket as bs
-from ballsocket.cli.options import JointOptions
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.files.inputs import inputs_of
+from ballsocket.files.joint_file import JointFileTable
 
 from .command import run
 
@@ -46,6 +46,7 @@ def modules_after(*words):
 def test_a_command_imports_its_own_modules_and_no_heavy_package(words, modules):
     loaded = modules_after(*words)
     assert HEAVY & loaded == set()
+    assert words == ("models",) or sum(name.startswith("ballsocket") for name in loaded) <= 85
     assert words != ("--help",) or not {"numpy", "ballsocket.model_catalogue"} & loaded
     commands = {"deck", "design", "evidence", "export", "film", "hip", "identify", "lists", "orient"}
     commands |= {"press", "press_files"}
@@ -66,10 +67,10 @@ def test_the_package_is_imported_name_by_name():
     assert {*HEAVY, "rich", "typer"} & set(modules.split()) == set()
 
 
-def test_every_name_of_the_package_is_imported_by_its_first_use():
+@pytest.mark.parametrize("room", [bs, bs.hip, bs.studies], ids=lambda room: room.__name__)
+def test_every_name_of_a_package_is_imported_by_its_first_use(room):
     """The names for type checkers are those of the table."""
-    assert set(bs.__all__) <= {*bs._MODULES, "studies"}
-    tree = ast.parse(Path(bs.__file__).read_bytes())
+    tree = ast.parse(Path(room.__file__).read_bytes())
     imported = {
         (node.module, alias.name)
         for block in tree.body
@@ -78,7 +79,7 @@ def test_every_name_of_the_package_is_imported_by_its_first_use():
         if isinstance(node, ast.ImportFrom) and node.module
         for alias in node.names
     }
-    assert imported == {(module, name) for name, module in bs._MODULES.items()}
+    assert imported == {(module, name) for module, names in room._NAMES_BY_MODULE.items() for name in names.split()}
 
 
 @pytest.mark.parametrize("words", [(), ("-h",)])
@@ -102,7 +103,7 @@ def test_help_of_a_command_fits_80_columns_and_begins_with_its_purpose(name):
     assert text.split("\n\n")[1].strip() == COMMANDS[name].__doc__.partition("\n")[0]
 
 
-JOINT_OPTIONS = {field.name for field in fields(JointOptions)}
+JOINT_OPTIONS = {entry.name for entry in inputs_of(JointFileTable)}
 """Options whose default is the joint file or the preset, as the help of the argument states."""
 
 SIZES = re.compile(r"ring_width|arc_of_cover|chamfer|element_size|tilt|hysteresis|impact_speed|longest|thickness")
@@ -116,7 +117,7 @@ def test_every_option_states_its_unit_and_its_default(name):
         if SIZES.fullmatch(option.name) or (quantity and quantity.unit not in ("", "1")):
             assert UNIT.search(text), f"--{option.name} has no unit: {text}"
         if option.name == "joint" and name != "calibrate":
-            assert "options of the joint replace its values" in text
+            assert "Options replace its values" in text
         elif option.name not in JOINT_OPTIONS and not (option.required or option.default is not None):
             stated = r"Default|^(fem: |sphere: )?[Ww]rite |Not with --|^Show this"
             assert re.search(stated, text), f"--{option.name} has no default: {text}"

@@ -54,7 +54,7 @@ def test_loads_that_are_not_compiled_use_the_python_model():
 
 
 def test_compiled_presses_fail_as_the_python_model():
-    fast, model = Compiled(model=bs.Bartel()), bs.Bartel()
+    fast, model = Compiled(model=MODELS[0]), MODELS[0]
     force = np.array([3000.0, 1e13])
     assert_same(fast.press(HIP, force=force), model.press(HIP, force=force))
     joint = HIP.replace(liner=bs.Material(young=1e3, poisson=np.array([0.4, 0.5])))

@@ -18,8 +18,8 @@ def test_the_check_of_the_page_fails_for_a_model_that_breaks_its_promise(promise
     """The model of the page is added to a copy of the package; springs on a plane are not within 2 %."""
     code = page_code("model")[0]
     assert code.count("\n") <= 48
-    lines = {"from .models.pin": "from .models.mattress import Mattress\n", "    Hertz(),": "    Mattress(),\n"}
-    changes = {"model_catalogue.py": {before: line + before for before, line in lines.items()}}
+    line = '    "mattress": "models.mattress:Mattress",\n'
+    changes = {"model_catalogue.py": {'    "hertz":': line + '    "hertz":'}}
     extend_package(tmp_path, {"models/mattress.py": code.replace("within=0.15", f"within={promise}")}, changes)
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     options = ("-n", "0", "--long", "-o", "pythonpath=", "-p", "no:cacheprovider", "-k", "mattress")

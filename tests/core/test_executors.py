@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ballsocket.core.executors import Distributed, Processes, Serial
+from ballsocket.core.executors import Processes, Serial
 from ballsocket.core.executors import processes as module
-from ballsocket.core.executors.dask import local_cluster
+from ballsocket.core.executors.dask import Distributed, local_cluster
 from ballsocket.core.executors.processes import available_cores
 
 KINDS = Processes, Distributed

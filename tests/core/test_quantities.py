@@ -52,12 +52,15 @@ def units():
 
 @EVERY
 def test_units_have_the_stated_factors_and_keys_of_angles_end_in_degrees(quantity):
-    for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
+    shown = quantity.written if quantity.name == "cycles" else quantity.shown  # "million" is no unit of pint
+    for unit in (Unit(quantity.unit), quantity.written, shown):
         text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
         assert parse(quantity.name, f"{unit.factor!r} {text}".strip(), quantity.kind) == pytest.approx(1.0, rel=1e-15)
-    inside = units().Quantity(quantity.unit.replace("mm2", "mm**2"))
-    for unit in (quantity.written, quantity.shown):
-        there = inside.to((unit.text or "1").replace("°", "deg").replace("²", "**2"))
+    inside = units().Quantity(quantity.unit.replace("mm2", "mm**2").replace("mm3", "mm**3"))
+    for unit in (quantity.written, shown):
+        there = inside.to(
+            (unit.text or "1").replace("°", "deg").replace("²", "**2").replace("³", "**3").replace("million", "1e6")
+        )
         assert there.magnitude == pytest.approx(unit.factor, rel=1e-15)
     assert (quantity.written.text == "°") == (quantity.unit == "rad") == quantity.key.endswith("_deg")
 
@@ -74,7 +77,7 @@ def test_tables_studies_and_json_use_the_same_quantities():
 
 def test_names_symbols_and_titles_are_unique():
     groups = [CONTACT, BEARING, JOINT, FIT, STRESS_LIMITS, DERIVED, quantities.MATERIAL, quantities.PARTS]
-    groups += [quantities.SHELL, quantities.LAYER, quantities.CUP, quantities.AIM, quantities.FIELD]
+    groups += [quantities.SHELL, quantities.LAYER, quantities.CUP, quantities.AIM, quantities.FIELD, quantities.WEAR]
     assert len(QUANTITIES) == sum(map(len, groups))
     shared = {each.symbol for each in (*quantities.MATERIAL.values(), *quantities.PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]

@@ -155,6 +155,7 @@ def run(*words):
     return CliRunner().invoke(app, ["evidence", *map(str, words)])
 
 
+@pytest.mark.long
 def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, out):
     for path in out.iterdir():
         path.unlink()

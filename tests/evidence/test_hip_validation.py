@@ -104,6 +104,7 @@ def page_column(label):
     return [row[head.index(label)] for row in rows]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("label", some(list(validation.LUBRICANTS)[::-1], 1))
 def test_page_has_the_computed_friction(label):
     column, computed = page_column(label), validation.friction_column(label)

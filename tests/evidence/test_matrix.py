@@ -98,6 +98,7 @@ def test_impossible_joints_have_a_status_and_no_numbers(tmp_path):
     assert rows[0].summary()["numbers"]["max_pressure"] is None
 
 
+@pytest.mark.long
 def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
     question = question_of(tmp_path, (CLEARANCE, 'inclination = "40 deg"'), (FORCE, 'force = "4 kN"'))
     (tilted,) = matrix.compute_rows(question, list_cases(question))

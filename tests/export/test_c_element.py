@@ -105,6 +105,7 @@ def test_a_state_of_nan_has_a_status(library, place):
     assert library.contact(far[0])[0] == library.tangent(far[0])[0] == ContactState.NO_NUMBER
 
 
+@pytest.mark.long
 def test_a_ball_through_the_wall_has_a_status(library, plain):
     for each in (library, plain):
         status, force, *_ = each.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))

@@ -50,6 +50,7 @@ def test_the_c_program_has_the_loads_of_the_element_and_their_slopes(element, tm
     assert_allclose(slope, (np.array(loads[1]) - loads[0]) / (2 * step), rtol=1e-5, atol=1e-6)
 
 
+@pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("version", some([3, 2], 1))
 def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp_path):
@@ -102,7 +103,7 @@ def test_a_table_has_the_forces_of_the_solver_along_two_axes(element):
 @pytest.mark.long
 def test_the_commands_export_an_interference_but_not_as_a_central_force(tmp_path):
     finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
-    assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
+    assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set arc_of_cover\n"
     assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
     refused = run("export", "opensim", *PRELOADED, "--arc-of-cover", "240", "--out", "hip", folder=tmp_path)
     assert not (tmp_path / "hip").exists()

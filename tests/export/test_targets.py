@@ -14,12 +14,13 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.cli.export import ForceElementOptions, identifier
+from ballsocket.cli.export import ForceElementInputs, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
 from ballsocket.files.joint_file import JointFile
+from ballsocket.files.tables import read_table
 
 from ..cli.command import run
 from ..joints import HIP
@@ -178,12 +179,13 @@ def test_a_table_has_the_values_of_the_model_up_to_the_load_of_the_file(tmp_path
 
 def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     cup = bs.Cup(arc_of_cover=2.6)
-    words = ForceElementOptions(friction=0.1, restitution=0.8, impact_speed="0.1 m/s")
-    element = words.element(JointFile(HIP, {}, cup))
+    tables = {"friction": 0.1, "restitution": 0.8, "impact_speed": "0.1 m/s"}
+    inputs = read_table(tables, ForceElementInputs)
+    element = inputs.element(JointFile(HIP, {}, cup), None, None)
     assert (element.cup, element.constants.rim) == (cup, 1.3)
     assert element.constants.sliding == 0.1
     assert_allclose(element.damping.restitution(100.0), 0.8, rtol=1e-6)
-    assert words.element(JointFile(HIP, {})).constants.rim == 0.0
+    assert inputs.element(JointFile(HIP, {}), None, None).constants.rim == 0.0
 
 
 @pytest.mark.long

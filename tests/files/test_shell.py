@@ -1,11 +1,13 @@
-"""Shells in joint files, whose thickness follows from an outer dimension; orientations of cups in files."""
+"""Shells, orientations of cups, and changes of joint files."""
 
+from dataclasses import replace
 from math import radians
 
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import joint_of, read_cup, varied
+from ballsocket.core.quantities import JOINT
+from ballsocket.files.joint_file import JointFile, joint_of, varied
 from ballsocket.files.joint_toml import tables_of
 
 LENGTHS = {"head_diameter": "36 mm", "diametral_clearance": "0.3 mm"}
@@ -58,6 +60,10 @@ def test_shells_that_do_not_follow_are_refused(shell, lengths, message):
         file_of(shell, **lengths)
 
 
+def read_cup(table, *base):
+    return varied(JointFile(bs.joints["hip-28"], {}, *base), {"cup": table}).cup
+
+
 def test_a_cup_has_the_angles_of_its_definition():
     cup = read_cup({"inclination": 43.0795, "anteversion": 20.7536, "orientation": "operative", "side": "left"})
     assert (cup.inclination, cup.anteversion) == pytest.approx((radians(45.0), radians(15.0)), abs=1e-6)
@@ -81,3 +87,57 @@ def test_a_cup_has_the_angles_of_its_definition():
 def test_orientations_that_are_not_allowed_are_refused(table, message):
     with pytest.raises(ValueError, match=message):
         read_cup(table)
+
+
+STATED = joint_of(
+    {
+        "joint": {"head_diameter": 36, "clearance": 0.1, "outer_diameter": 52},
+        "liner": {"material": "uhmwpe", "young": 900},
+        "load": {"force": "3 kN", "tilt": 20},
+        "cup": {"arc_of_cover": 170},
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("tables", "changed"),
+    [
+        ({"joint": {"diametral_clearance": 0.3}}, {"clearance": 0.15, "ball_radius": 18, "outer_radius": 26}),
+        ({"joint": {"ball_radius": 16}}, {"clearance": 0.1, "ball_radius": 16, "outer_radius": 26}),
+        (
+            {"joint": {"liner_thickness": 5, "head_diameter": 36}},
+            {"ball_radius": 18, "clearance": 0.1, "outer_radius": 23.1},
+        ),
+        ({"liner": {"material": "pom"}}, {"liner": bs.POM}),
+        ({"liner": {"young": "2 GPa"}}, {"liner": replace(bs.UHMWPE, young=2000.0)}),
+        ({"load": {"indentation": "40 um"}}, {"load": {"indentation": 0.04}, "aim": {"tilt": radians(20)}}),
+        ({"load": {"direction": "0,0,1"}}, {"load": {"force": 3000}, "aim": {"direction": (0, 0, 1)}}),
+        ({"cup": {"chamfer": 1}}, {"cup": bs.Cup(arc_of_cover=radians(170), chamfer=1.0)}),
+    ],
+)
+def test_tables_replace_values_of_a_file_and_the_values_that_exclude_them(tables, changed):
+    file = varied(STATED, tables)
+    values = {name: getattr(file if hasattr(file, name) else file.joint, name) for name in changed}
+    numbers = {name: value for name, value in changed.items() if name in JOINT}
+    assert {name: values[name] for name in numbers} == pytest.approx(numbers, rel=1e-12)
+    assert {**values, **numbers} == changed
+
+
+def test_a_length_of_the_file_that_changes_is_named():
+    thin = varied(STATED, {"joint": {"liner_thickness": 5, "head_diameter": 36}}).joint
+    assert thin.name == "varied: outer diameter 46.2 mm in place of 52 mm"
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        ({"joint": {"ball_radius": 16, "head_diameter": 32}}, "ball_radius and head_diameter are one too many"),
+        ({"joint": {"liner_thickness": 5}}, "liner_thickness would change another length .* add the one that stays"),
+        ({"load": {"force": 1, "half_angle": 20}}, "one load is needed, got force, half_angle"),
+        ({"load": {"tilt": 5, "direction": "0,0,1"}}, "either a tilt or a direction is needed, got both"),
+        ({"ball": {"young": "2 GPa"}}, "the ball needs a material, or young and poisson; missing: poisson"),
+    ],
+)
+def test_tables_that_exclude_each_other_or_leave_a_choice_are_refused(tables, message):
+    with pytest.raises(ValueError, match=message):
+        varied(STATED, tables)

@@ -288,7 +288,9 @@ def test_wear_of_a_mix_is_the_weighted_mean_of_its_activities():
     assert use.first.volume == pytest.approx(mean, rel=1e-9)
     report = report_after(use, 1e6)
     assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
-    assert use.slide == pytest.approx(0.9 * hip(cycle=WALK).slide + 0.1 * hip(cycle=stand).slide, rel=1e-9)
+    assert use.frame.slide == pytest.approx(
+        0.9 * hip(cycle=WALK).frame.slide + 0.1 * hip(cycle=stand).frame.slide, rel=1e-9
+    )
 
 
 def test_steps_of_a_mix_are_those_of_its_activities_one_after_the_other():
@@ -331,8 +333,8 @@ def test_notes_and_tilt_of_a_mix_are_the_common_ones():
     different = mixed((WALK, 1.0), (iso_14242_1(40), 1.0))
     assert different.cup_tilt is None
     assert different.notes[-1].startswith("no standard tilt of the cup is applied")
-    assert hip(cycle=different, cup=bs.Cup()).placed == bs.Cup()
-    assert hip(cycle=same, cup=bs.Cup()).placed.inclination == radians(30.0)
+    assert hip(cycle=different, cup=bs.Cup()).frame.placed == bs.Cup()
+    assert hip(cycle=same, cup=bs.Cup()).frame.placed.inclination == radians(30.0)
 
 
 def test_creep_of_a_mix_follows_the_mean_force_over_time():

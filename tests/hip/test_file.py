@@ -39,7 +39,7 @@ def test_a_file_without_counts_runs_five_million_cycles_with_ten_equal_reports(t
 @pytest.mark.parametrize("tilt", [30, 89])
 def test_tilt_and_inclination_orient_the_cup(tmp_path, tilt):
     changes = (('tilt = "30 deg"', f'{name} = "{tilt} deg"') for name in ("tilt", "inclination"))
-    by_tilt, by_inclination = (read(tmp_path, change).use.placed.dome for change in changes)
+    by_tilt, by_inclination = (read(tmp_path, change).use.frame.placed.dome for change in changes)
     assert degrees(acos(by_tilt[2])) == pytest.approx(tilt, abs=1e-5)
     assert by_tilt == pytest.approx(by_inclination)
 
@@ -79,7 +79,7 @@ def test_json_has_the_results_of_python(solved_file):
     file = read_hip(folder / "hip.toml")
     use, history = file.use, file.use.after(file.cycles, file.report_at)
     expected = {
-        "slide_mm": use.slide,
+        "slide_mm": use.frame.slide,
         "pressure_slide_integral_Nm": use.first.work,
         "cross_shear_mean": use.first.cross_shear,
         "crossing_angle_mean_deg": degrees(use.crossing_angle),
@@ -199,7 +199,7 @@ def test_a_stated_name_stands_in_table_csv_and_figure(files, tmp_path):
     names = ["conventional 28 (named_a)", "conventional 28 (named_b)", "named_c"]
     process = run("hip", *paths, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
     figure = (tmp_path / "n.svg").read_text(encoding="utf-8")
-    assert all(f"0.01 {name}" in process.stdout and name in figure for name in names)
+    assert all(name in " ".join(process.stdout.split()) and name in figure for name in names)
     assert list(dict.fromkeys(row["hip"] for row in read_csv(tmp_path / "n.csv"))) == names
     assert run("hip", paths[0]).stdout.startswith("conventional 28: R1 14 mm")
 
@@ -214,14 +214,14 @@ def test_a_history_is_a_frame_and_a_figure(monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     with pytest.raises(ImportError, match=r'pandas is not installed: pip install "ballsocket\[study\]"'):
         history.to_frame()
-    assert len(history.table()) == 2
+    assert len(history.table().rows) == 2
 
 
 def test_the_radiograph_shows_the_displacement_in_the_frontal_plane():
     """Of an anteverted cup it lacks the part to the front; the length is that of the two other components."""
     cup = bs.Cup(inclination=radians(45.0), anteversion=radians(30.0))
     history = hip(cup=cup, creep=logarithmic(), **QUICK).after(1e4)
-    frame = np.array(history.use.placed.frame)
+    frame = np.array(history.use.frame.placed.frame)
     body = frame.T @ history.last.displacement
     assert history.radiographic_displacement(history.last) == pytest.approx(body[[0, 2]])
     for moved, length in (([0.0, 0.3, 0.0], 0.0), ([sin(0.4), 5.0, cos(0.4)], 1.0)):

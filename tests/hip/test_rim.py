@@ -132,7 +132,7 @@ def test_a_ball_leaves_its_bore_if_it_moves_to_the_rim_against_its_spring(mismat
 
 def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
     use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(8.0))
-    apart = use.separation
+    apart = use.frame.separation
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
     assert apart.medial_lateral < 4.0  # the mismatch
     assert apart.medial_lateral < apart.centre_distance < 8.0
@@ -140,7 +140,7 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
     (note,) = (note for note in use.notes if note.startswith("microseparation from"))
     assert "wear by the contact with the rim is not included" in note
     assert "0.9 ± 0.2 mm and 2.1 ± 0.5 mm medial-lateral" in note
-    assert len(use.loaded) + len(apart.steps) == 100
+    assert len(use.frame.loaded) + len(apart.steps) == 100
     summary = use.after(1e4).summary()["cycle"]["microseparation"]
     assert summary["centre_distance_mm"] == apart.centre_distance
     assert (summary["from"], summary["to"]) == ("59.5 % of the cycle", "2.5 % of the cycle")  # of the next
@@ -148,13 +148,13 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
 
 def test_the_load_on_the_rim_points_from_the_centre_to_the_edge():
     use = hip(cycle=iso_14242_4(100, mismatch=3.0), cup=bs.Cup(inclination=radians(50.0), anteversion=radians(10.0)))
-    apart, radius = use.separation, use.joint.socket_radius
+    apart, radius = use.frame.separation, use.joint.socket_radius
     edge = radius * np.column_stack([np.cos(apart.azimuth), np.sin(apart.azimuth), 0 * apart.azimuth])
     along = edge - apart.displacement
     assert np.linalg.norm(along, axis=1) == pytest.approx(use.joint.ball_radius, rel=1e-9)
-    side = np.array(use.placed.frame)[:, 0]
+    side = np.array(use.frame.placed.frame)[:, 0]
     displacement = apart.displacement @ side
-    loads = use.forces[apart.steps] - 100.0 * displacement[:, None] * side
+    loads = use.frame.forces[apart.steps] - 100.0 * displacement[:, None] * side
     assert np.cross(along, loads) == pytest.approx(0.0, abs=1e-4)
     assert ((displacement > 0) & (displacement < 3.0)).all()
 
@@ -163,7 +163,7 @@ def test_wear_is_continuous_in_the_tilt_of_a_cup_with_microseparation():
     use = hip(36.0, 6.0, cycle=iso_14242_4(100), ring_width=radians(6.0))
     tilted = [replace(use, cup=bs.Cup().tilted(radians(tilt))) for tilt in np.arange(40.0, 46.0, 0.2)]
     for turned in tilted:
-        assert len(turned.loaded) + len(turned.separation.steps) == 100
+        assert len(turned.frame.loaded) + len(turned.frame.separation.steps) == 100
         assert turned.unworn.converged
         assert np.linalg.norm(turned.unworn.displacement, axis=1).max() < 0.6
     volumes = np.array([turned.first.volume for turned in tilted])
@@ -174,23 +174,25 @@ def test_wear_is_continuous_in_the_tilt_of_a_cup_with_microseparation():
 def test_the_bore_carries_the_load_less_the_relaxation_of_the_spring(surface):
     cup = bs.Cup(inclination=radians(40.0), anteversion=radians(8.0))
     use = hip(36.0, 6.0, cycle=iso_14242_4(50), cup=cup, ring_width=radians(6.0), surface=surface)
-    side = np.array(use.placed.frame)[:, 0]
-    expected = use.loads - 100.0 * (use.unworn.displacement @ side)[:, None] * side
-    assert np.linalg.norm(expected - use.loads, axis=1).max() > 5.0
-    error = 2e-6 * np.linalg.norm(use.loads, axis=1).max()
+    side = np.array(use.frame.placed.frame)[:, 0]
+    expected = use.frame.loads - 100.0 * (use.unworn.displacement @ side)[:, None] * side
+    assert np.linalg.norm(expected - use.frame.loads, axis=1).max() > 5.0
+    error = 2e-6 * np.linalg.norm(use.frame.loads, axis=1).max()
     assert socket_force(use.foundation, use.unworn) == pytest.approx(expected, rel=2e-6, abs=error)
 
 
 def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
     cups = (bs.Cup(inclination=radians(45.0), anteversion=radians(10.0), side=side) for side in bs.Side)
     right, left = (hip(cycle=iso_14242_4(50), cup=cup) for cup in cups)
-    assert left.separation.displacement == pytest.approx(right.separation.displacement * [1, -1, 1], abs=1e-9)
+    assert left.frame.separation.displacement == pytest.approx(
+        right.frame.separation.displacement * [1, -1, 1], abs=1e-9
+    )
     assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
 
 
 def test_a_mismatch_moves_the_contact_towards_the_rim():
     """The spring's 400 N tilt the load by their share of it."""
     pulled, straight = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
-    near, far = (use.edge_distance(use.unworn)[use.largest_load_index[0]] for use in (pulled, straight))
+    near, far = (use.edge_distance(use.unworn)[use.frame.largest_load_index[0]] for use in (pulled, straight))
     tilt = np.arctan2(400.0, straight.cycle.force_magnitudes.max())
     assert near == pytest.approx(far - straight.joint.socket_radius * tilt, abs=0.1)

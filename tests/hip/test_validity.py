@@ -123,8 +123,8 @@ def test_half_angles_of_round_patches():
     use = use_of(HIP, iso_14242_1(8))
     for angle in (0.2, 0.5, 0.9):  # beside the pole, on rings of 5°
         field = (np.array([np.sin(0.4), 0.0, np.cos(0.4)]) @ use.foundation.directions - np.cos(angle))[None]
-        assert half_angles(use.grid, use.reach, field)[0] == pytest.approx(angle, abs=4e-3)
-        assert half_angles(use.grid, use.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
+        assert half_angles(use.grid, use.frame.reach, field)[0] == pytest.approx(angle, abs=4e-3)
+        assert half_angles(use.grid, use.frame.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
 
 
 def test_a_run_without_contact_has_no_wear_no_check_and_no_figure():

@@ -3,6 +3,7 @@
 import pickle
 from dataclasses import replace
 from math import inf, radians
+from operator import attrgetter
 
 import numpy as np
 import pytest
@@ -35,7 +36,7 @@ def test_a_patient_has_the_values_of_its_sample():
     values = {"body_weight": 900.0, "inclination": 0.4, "anteversion": 0.1, "clearance": 0.15, "cycles_per_year": 2e6}
     patient = every.patient(values)
     assert patient.use.cycle.largest_force == pytest.approx(1.2 * every.coarse_simulation.cycle.largest_force)
-    assert patient.use.placed == bs.Cup(inclination=0.4, anteversion=0.1)
+    assert patient.use.frame.placed == bs.Cup(inclination=0.4, anteversion=0.1)
     assert patient.use.joint.clearance == 0.15
     assert patient.cycle_ratio == 2.0
     assert patient.use.seconds == 10.0  # the same time with twice as many cycles
@@ -46,13 +47,13 @@ def test_a_patient_has_the_nominal_values_of_what_is_not_sampled():
     one = variability(body_weight=WEIGHT, clearance=TIGHT, coefficient=COEFFICIENT)
     patient, nominal = one.patient({}), one.coarse_simulation
     assert patient.cycle_ratio == 1.0
-    for name in ("joint", "wear", "placed"):
-        assert getattr(patient.use, name) == getattr(one.use, name)
+    for name in ("joint", "wear", "frame.placed"):
+        assert attrgetter(name)(patient.use) == attrgetter(name)(one.use)
     assert patient.use.cycle is nominal.cycle
     heavy = one.patient({"body_weight": 1000.0})  # the forces of the cycle are those of the median weight
     assert heavy.use.cycle.largest_force == pytest.approx(1.25 * nominal.cycle.largest_force)
-    tilted = variability(tilt=Rectangular(low=0.0, high=1.0)).patient({"tilt": 0.3}).use.placed
-    assert tilted == nominal.cup.tilted(0.3) != one.use.placed
+    tilted = variability(tilt=Rectangular(low=0.0, high=1.0)).patient({"tilt": 0.3}).use.frame.placed
+    assert tilted == nominal.cup.tilted(0.3) != one.use.frame.placed
     law = variability(hip(wear=CrossShear(straight=1e-7, circular=5e-7), **QUICK), coefficient=COEFFICIENT)
     wear = law.patient({"coefficient": 3e-7}).use.wear
     assert (wear.straight, wear.circular) == pytest.approx((3e-7, 1.5e-6))  # their ratio is kept

@@ -47,7 +47,7 @@ def test_worn_volume_equals_the_work_of_friction_and_a_worn_bore_balances_its_lo
     assert (report.wear * areas).sum() == pytest.approx(1e-3 * K * report.work, rel=1e-6)
     assert report.volume == pytest.approx((report.wear * areas).sum(), rel=1e-12)
     worn = use.solve_equilibrium(report.wear.ravel())
-    assert socket_force(use.foundation, worn) == pytest.approx(use.loads, abs=1e-6 * 300)
+    assert socket_force(use.foundation, worn) == pytest.approx(use.frame.loads, abs=1e-6 * 300)
     assert worn.pressure.max() == pytest.approx(report.max_pressure, rel=1e-6)
 
 
@@ -74,7 +74,7 @@ def test_left_hip_wears_as_a_right_hip():
     cup, walk = bs.Cup(inclination=radians(30.0), anteversion=radians(20.0)), iso_14242_1(72)
     leaning = replace(walk, force=lambda t: np.stack([200 + 0 * t, 100 * t, walk.force(t)]))
     right, left = (hip(cycle=leaning, cup=replace(cup, side=side)) for side in bs.Side)
-    assert (left.first.volume, left.slide) == pytest.approx((right.first.volume, right.slide), rel=1e-9)
+    assert (left.first.volume, left.frame.slide) == pytest.approx((right.first.volume, right.frame.slide), rel=1e-9)
     assert left.unworn.displacement == pytest.approx(right.unworn.displacement * [1, -1, 1], rel=1e-6, abs=1e-9)
 
 
@@ -178,7 +178,7 @@ def test_unloaded_instants_do_not_wear_and_limits_of_a_run_are_noted():
     half = hip(cycle=walked(2000.0, -100.0))
     whole = hip(cycle=walked(2000.0, 1e-9))
     assert half.first.volume == pytest.approx(whole.first.volume, rel=1e-9)
-    assert len(half.loaded) == 50
+    assert len(half.frame.loaded) == 50
     told = "the ball lifts off, first at 50.5 % of the cycle: 50 of 100 instants have no contact"
     assert any(note.startswith(told) for note in half.notes)
     assert report_after(half, 1e6).volume > 0
@@ -187,7 +187,7 @@ def test_unloaded_instants_do_not_wear_and_limits_of_a_run_are_noted():
     assert any("its stiffness is still that of the unworn liner" in note for note in thin.after(1e6).notes)
     assert not any("worn" in note for note in history(hip(**QUICK), 1e4).notes)
     untilted = hip(cup=bs.Cup(), **QUICK)
-    assert untilted.placed == TILTED
+    assert untilted.frame.placed == TILTED
     assert any("tilted by 30° from the load" in note for note in untilted.notes)
 
 

@@ -198,7 +198,7 @@ def test_creep_without_wear_balances_its_loads():
     use = hip(wear=Archard(coefficient=0.0), creep=LADDER, **QUICK)
     report = report_after(use, 1e7)
     rest = use.solve_equilibrium((report.wear + report.crept).ravel())
-    assert socket_force(use.foundation, rest) == pytest.approx(use.loads, abs=1e-6 * 300)
+    assert socket_force(use.foundation, rest) == pytest.approx(use.frame.loads, abs=1e-6 * 300)
     mean = rest.pressure.sum(axis=0) / use.cycle.n_steps
     fully = use.joint.liner_thickness * sum(LADDER.compliances) * mean  # 1e7 s are many times of each element
     assert report.crept.ravel() == pytest.approx(fully, abs=2e-2 * fully.max())
@@ -258,5 +258,5 @@ def test_fast_creep_softens_the_springs():
     fast, walk = KelvinVoigtChain(compliances=(1e-4,), times=(1.0,)), replace(WALK, force=lambda t: 2000.0 + 0 * t)
     use = hip(cycle=walk, wear=Archard(coefficient=0.0), creep=fast)
     bed = replace(use.foundation, modulus=1 / (1 / use.foundation.modulus + 8.0 * 1e-4))
-    expected = bed.solve_equilibrium(use.loads, np.zeros(len(bed.areas))).pressure.max()
+    expected = bed.solve_equilibrium(use.frame.loads, np.zeros(len(bed.areas))).pressure.max()
     assert report_after(use, 1e4).max_pressure == pytest.approx(expected, rel=2e-3)

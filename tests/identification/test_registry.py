@@ -100,6 +100,7 @@ def identified(data, free=FRICTION):
     return bs.identify(bs.HessForsbach(), HIP, data, free)
 
 
+@pytest.mark.long
 def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis():
     for axis_angle in some([0.7, 0.0, pi / 2], 1):
         result = identified(torques(axis_angle=axis_angle))

@@ -71,6 +71,7 @@ def test_finite_elements_confirm_the_finite_volumes():
     assert (volumes.central, volumes.minimum) == pytest.approx(elements, rel=0.003)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", some(reversed(CASES), 1))
 def test_the_wave_keeps_its_stated_error(case):
     """Central and least film against Reynolds' equation, which has errors of 0.5 % on springs and 3 % elsewhere."""

@@ -43,6 +43,7 @@ def test_an_axial_load_in_a_hemisphere_has_the_film_of_exact():
     assert cup.displacement == pytest.approx(axial.displacement, abs=1e-5)
 
 
+@pytest.mark.long
 def test_a_tilted_load_in_a_real_cup_confirms_the_wave():
     """The rim lies 10° from the contact. In the limit of small viscosity the pressure is that of `Sphere`."""
     viscosity, rate = either(quick=(1e-2, 30.0), long=(2.5e-4, 1.5))

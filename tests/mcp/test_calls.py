@@ -36,7 +36,7 @@ def test_a_tool_describes_its_arguments_with_units_and_offers_no_file_to_write(n
     properties = schema(TOOLS[name], COMMANDS)["properties"]
     assert all(each["description"] for each in properties.values())
     assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
-    units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
+    units = {"ball_radius": " in mm", "force": " in N", "young": " in MPa", "half_angle": " in degrees"}
     assert name != "press" or all(unit in properties[number]["description"] for number, unit in units.items())
 
 

@@ -178,6 +178,7 @@ def test_custom_moduli_are_accepted():
     assert fixed.press(HIP, force=3000.0).max_pressure == pytest.approx(11.27, abs=5e-4)
 
 
+@pytest.mark.long
 def test_plane_layer_too_thin_to_compute_does_not_change_other_points():
     contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 0.01])), half_angle=0.3)
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN])

@@ -36,6 +36,7 @@ def test_every_random_point_has_numbers_or_a_status(model):
     assert np.mean(harder.indentation[both] > contact.indentation[both]) > 0.999999
 
 
+@pytest.mark.long
 def test_force_and_indentation_of_random_plane_layers_are_inverse():
     """The one numerical model of the catalogue, on fewer."""
     size = either(quick=200, long=1_000)

@@ -7,7 +7,7 @@ import pytest
 
 from ballsocket.planning import Mesh, fit_head, fit_liner, read_mesh
 
-from ..extent import either
+from ..extent import either, some
 from . import scans
 
 HALF = {"arc_of_cover": 180.0, "steps": 30, "segments": 64}
@@ -67,7 +67,8 @@ def test_a_liner_is_measured_within_its_tolerances(triangles, arc_of_cover, wall
 
 
 @pytest.mark.parametrize(
-    ("lip", "offset", "outer", "ring"), [(15.0, 0.0, True, True), (20.0, -4.0, True, True), (10.0, 0.0, False, False)]
+    ("lip", "offset", "outer", "ring"),
+    some([(20.0, -4.0, True, True), (15.0, 0.0, True, True), (10.0, 0.0, False, False)], 1),
 )
 def test_a_lip_moves_neither_axis_nor_arc_however_the_file_is_turned(lip, offset, outer, ring):
     triangles = scans.lipped(RAISED, lip, offset, outer=outer)

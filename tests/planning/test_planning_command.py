@@ -81,7 +81,7 @@ def test_no_clearance_is_derived_from_two_files(folder):
         ((*LANDMARKS, "--clearance", "0.1 mm", "--out", "a.toml"), "a joint needs a radius"),
         ((*LINER, "--head", "small.stl"), r"radius 1[34]\.\d+ mm does not belong to the bore of radius 1[56]\.\d+ mm"),
         ((*LINER, "--stl-units", "m"), r"4\d\.\d m large"),
-        ((*LINER, "--placed", "ijk"), "placed = 'ijk' is not allowed: RAS or LPS"),
+        ((*LINER, "--placed", "ijk"), "placed = 'ijk' is not known; known: ras, lps"),
         ((*LANDMARKS, "--side", "left"), "but its side is stated as left: the sides are mirrored"),
         ((*LANDMARKS, "--vertical", "0,0"), "vertical"),
         ((*LANDMARKS, "--coordinates", "RAS"), "the file states LPS coordinates, not RAS"),

@@ -12,6 +12,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import read_joint
+from ballsocket.core.unit_systems import Units
 from ballsocket.dynamics import Damping, Prony, Viscoelastic, simulate
 from ballsocket.elasticity.off_axis.vtk import BALL, BORE, write_vtk
 from ballsocket.evidence.matrix import NAMES, WEAR
@@ -21,7 +22,6 @@ from ballsocket.reports.cup_map import on_page, shown_maximum, shown_pressure
 from ballsocket.reports.cup_plots import cup_figure, save_view
 from ballsocket.reports.figure_files import save
 from ballsocket.reports.press_plots import energy_balance, loop_figure, motion_figure, press_figure
-from ballsocket.reports.unit_systems import Units
 
 from ..joints import HIP
 from ..places import EXAMPLES
@@ -55,6 +55,7 @@ def test_figure_draws_the_result(comparison):
     assert "17.9 mm" in figure.get_suptitle()
 
 
+@pytest.mark.long
 def test_of_many_models_those_that_matter_are_drawn_and_the_others_named(comparison):
     figure = comparison.plot()
     drawn = [line.get_label() for line in figure.axes[0].lines]
@@ -197,6 +198,7 @@ def test_the_pressure_ends_at_the_outline_and_is_the_band_on_the_section(contact
     assert depth.max() == pytest.approx(0.45, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_loaded_rim_is_marked_and_an_edge_that_digs_in_has_no_largest_pressure_on_the_figure():
     sphere = replace(SPHERE, cup=replace(CUP, chamfer=1.0))
     over = sphere.press(HIP, force=3000.0, tilt=radians(65.0))

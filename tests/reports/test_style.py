@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex, to_rgb
 
 import ballsocket as bs
 from ballsocket.comparison import force_curves
-from ballsocket.model_catalogue import judge
+from ballsocket.model_catalogue import JUDGE
 from ballsocket.paper import claims, curves
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
@@ -23,8 +23,8 @@ from ballsocket.reports.style import INK, LineStyle, line_of
 from ..joints import HIP
 from ..places import DATA
 
-MODELS = [*bs.catalogue, judge.name]
-PAPERS = [*quick_plan().parts["figure_3"], judge.name]
+MODELS = [*bs.catalogue, JUDGE]
+PAPERS = [*quick_plan().parts["figure_3"], JUDGE]
 """Those that the paper's figures compare."""
 
 
@@ -85,7 +85,7 @@ def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
     assert [as_drawn(curve) for curve in panel.lines] == list(pressed.values())
     # the exact model stands for the finite elements, whose figure is made in no time
     (curve,) = draw(figure_3_or_4(3, {ELEMENTS: bs.Exact()})).axes[0].lines
-    assert (as_drawn(curve).colour, curve.get_marker()) == (line_of(judge.name).colour, "o")
+    assert (as_drawn(curve).colour, curve.get_marker()) == (line_of(JUDGE).colour, "o")
 
 
 @pytest.mark.skipif(find_spec("tornado") is None, reason="the explorer's extra is not installed")

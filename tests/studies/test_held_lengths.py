@@ -126,13 +126,16 @@ TILTED = f"{FILE[: FILE.index('[shell]')]}[load]\nforce = '3 kN'\ntilt = '50 deg
 UNBACKED = bs.Joint(head_diameter=28.0, clearance=0.1, outer_diameter=52.0, liner=bs.UHMWPE)
 
 
-def test_a_study_takes_the_load_of_the_joint_file_and_names_a_tilt_it_leaves_out(tmp_path):
+def test_a_study_takes_the_load_and_the_tilt_of_the_joint_file(tmp_path):
     (tmp_path / "cup.toml").write_text(TILTED, encoding="utf-8")
     (tmp_path / "study.toml").write_text("joint = 'cup.toml'\n[axes]\nclearance = [0.1]", encoding="utf-8")
-    axial = run("study", "study.toml", "--json", folder=tmp_path)
-    expected = bs.HessForsbach().press(UNBACKED, force=3000.0).max_pressure
-    assert json.loads(axial.stdout)["values"]["max_pressure"] == pytest.approx([expected], rel=1e-9)
-    assert "the load is 50° from the cup's axis, but hess-forsbach presses along it" in axial.stderr
+    run("study", "study.toml", "--out=study.csv", folder=tmp_path)
+    row = next(csv.DictReader((tmp_path / "study.csv").open(encoding="utf-8")))
+    expected = bs.HessForsbach().press(UNBACKED, force=3000.0)
+    assert float(row["max_pressure_MPa"]) == pytest.approx(expected.max_pressure, rel=1e-9)
+    distance = bs.Cup().tilted(np.radians(50.0)).edge_distance(14.1, expected.half_angle)
+    assert 0 < distance < UNBACKED.liner_thickness  # the full sphere of this model ends at the rim
+    assert "near the rim" in row["why_not_valid"]
 
 
 @pytest.mark.long

@@ -337,7 +337,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
     [
         (MODEL, 'model = "hess-forsbch"', "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'"),
         (MODEL, 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
-        ('joint = "hip.toml"', 'joint = "hop.toml"', "joint 'hop.toml' is neither a file nor a preset"),
+        ('joint = "hip.toml"', 'joint = "hop.toml"', "'hop.toml' is neither a file nor a preset"),
         ("count = 5", "count = 1e12", "16 000 000 000 000 points take about"),
         ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),

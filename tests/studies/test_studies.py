@@ -246,6 +246,7 @@ def test_rows_of_a_table(tmp_path):
     assert bs.study(bs.HessForsbach(), HIP, table(tmp_path / "rows.parquet")).max_pressure.shape == (1,)
 
 
+@pytest.mark.long
 def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, monkeypatch):
     (tmp_path / "rows.parquet").write_bytes(b"PAR1" * 100)
     with pytest.raises(ValueError, match="rows.parquet: it is not a readable Parquet file"):

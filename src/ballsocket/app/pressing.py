@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from math import cbrt, ceil, degrees, log10, pi
+from math import cbrt, ceil, log10, pi
+from typing import Any
 
 import numpy
 
@@ -17,7 +17,8 @@ from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue
 from ..problem import Joint
-from ..problem.cup import UP, Cup
+from ..problem.cup import Cup
+from ..question import complete
 from ..reports.press_plots import force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
@@ -27,7 +28,6 @@ from .widgets.reading import Reading
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
 _WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
-AXIAL_TILT = 1e-9  # tilt in rad up to which a load counts as axial
 _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
 _SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
 Profile = tuple[numpy.ndarray, numpy.ndarray, bool]  # angles (rad), pressures (MPa), and True where they can be trusted
@@ -37,6 +37,7 @@ def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
     """Press a joint by several models; slow models have a result once `solving` has finished."""
     contacts: dict[str, Contact] = {}
     missing: dict[str, str] = {}
+    file, _ = complete(file)
     for name in names:
         if heavy(file.joint, name):
             result = solved(file, name) or _WAITING.format(name, file.joint.thickness_ratio)
@@ -45,7 +46,7 @@ def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
             else:
                 contacts[name] = result
         else:
-            comparison = _pressed(file.joint, file.cup, tuple(file.load.items()), name)
+            comparison = _pressed(file.joint, file.cup, (*file.load.items(), *file.aim.items()), name)
             contacts |= comparison.contacts
             missing |= comparison.missing
     return Comparison(file.joint, contacts, missing)
@@ -57,45 +58,8 @@ def is_waiting(file: JointFile, name: str) -> bool:
 
 
 @lru_cache(maxsize=1024)
-def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, float], ...], name: str) -> Comparison:
+def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, Any], ...], name: str) -> Comparison:
     return compare(joint, models={name: catalogue[name]}, cup=cup, **dict(load))
-
-
-@dataclass(frozen=True)
-class AxialLimit:
-    """Reason why models of a load along the cup's axis do not apply, and the words of their rows in a table."""
-
-    reason: str
-    excluded: str
-
-
-def axial_limit(file: JointFile, contact: Contact | None) -> AxialLimit | None:
-    """Return the reason why a load needs the real cup; None where models of a load along the axis hold.
-
-    They hold up to one liner thickness from the rim, as their validity states.
-    """
-    tilt = tilt_of(file)
-    if tilt > AXIAL_TILT:
-        reason = f"the load is tilted {degrees(tilt):.3g}° against the axis of the cup"
-        return AxialLimit(reason, "for an axial load: not valid at this tilt")
-    if contact is None or contact.status.failed:
-        return None
-    radius = float(file.joint.socket_radius)
-    if file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius):
-        return AxialLimit(
-            "the contact ends near the rim of the cup", "for a bore without a rim: not valid so near the rim"
-        )
-    return None
-
-
-def tilt_of(file: JointFile) -> float:
-    """Return the angle in rad between the load and the axis of the cup."""
-    return float(file.aim["tilt"]) if "tilt" in file.aim else _tilt_to(file.cup, tuple(file.aim.get("direction", UP)))
-
-
-@lru_cache(maxsize=256)
-def _tilt_to(cup: Cup, direction: tuple[float, ...]) -> float:
-    return float(cup.tilt(direction))
 
 
 _DEFAULT_LOADS = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}

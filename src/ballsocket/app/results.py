@@ -6,7 +6,7 @@ import pickle
 import time
 from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..problem import Joint
@@ -16,7 +16,7 @@ SECONDS = 86_400.0  # seconds that a result is stored
 
 def without_name(joint: Joint) -> Joint:
     """Return a joint without its name and source, on which no result depends."""
-    return replace(joint, name="", source="")
+    return joint.replace(name="", source="")
 
 
 @dataclass(eq=False)

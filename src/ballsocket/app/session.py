@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import parse_qs
 
 from ..core.checks import check_names, shown
-from ..reports.unit_systems import Units
+from ..core.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused
@@ -78,7 +78,7 @@ class Page:
 
     def ask(self, **changes: Any) -> None:
         screen = replace(self.screen, **changes)
-        if screen == self.screen:
+        if screen == self.screen and screen.link == self.screen.link:  # a default and the same number typed are equal
             return
         _check_link(screen)
         self.refuse("")

@@ -21,7 +21,7 @@ from .running import Report, RunRefused
 PRESS_SECONDS = 20.0  # seconds that the presses of one joint may take
 _MAX_SOLVED = 256
 
-Key = tuple[Joint, Cup, tuple[tuple[str, float], ...], str]
+Key = tuple[Joint, Cup, tuple[tuple[str, Any], ...], str]
 _solved: OrderedDict[Key, SolvedPress] = OrderedDict()  # results of slow presses: a contact precedes its curve
 
 
@@ -59,7 +59,7 @@ def _unfinished(file: JointFile, names: Iterable[str]) -> tuple[str, ...]:
 
 
 def _key(file: JointFile, name: str) -> Key:
-    return file.joint, file.cup, tuple(file.load.items()), name
+    return file.joint, file.cup, (*file.load.items(), *file.aim.items()), name
 
 
 def _store(file: JointFile, name: str, press: SolvedPress) -> None:
@@ -83,7 +83,7 @@ def solve(file: JointFile, names: Sequence[str], report: Report) -> None:
 def _press(file: JointFile, name: str) -> Contact | str:
     """Press one model; the contact carries the slow numbers that a page shows."""
     try:
-        contact = catalogue[name].in_cup(file.cup).press(file.joint, **file.load)
+        contact = catalogue[name].in_cup(file.cup, **file.aim).press(file.joint, **file.load)
     except OutsideDomainError as error:
         return str(error)
     if not contact.status.failed:

@@ -13,12 +13,12 @@ from typing import Any, Protocol, TypeVar
 
 from ..contact import Contact
 from ..core.checks import check_names
+from ..core.unit_systems import Units
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
 from ..reports.pages import pdf_of, picture
 from ..reports.press_report import joint_report
-from ..reports.unit_systems import Units
 from .channel import Channel
 from .jobs import run_in_thread
 from .running import Report

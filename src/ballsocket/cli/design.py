@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from math import pi
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,10 +14,10 @@ from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending
-from ..files.joint_file import JointFile, aimed, tilted_cup
+from ..files.inputs import PARTS
+from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
-from ..problem.cup import UP
 from ..reports import study_plots, study_tables
 from ..studies.axes import Span
 from ..studies.design import grid
@@ -31,16 +32,13 @@ from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
 from .options import (
-    Force,
     GapName,
-    Indentation,
     JointName,
     JointOptions,
     ModelName,
     OutputOptions,
-    drop_missing,
     expand_groups,
-    read_load_option,
+    needed_load,
 )
 from .root import app, print_message
 
@@ -55,12 +53,10 @@ LimitOption = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class PressOptions:
-    """Options of the model and the load of a design study."""
+    """Options of the model of a design study."""
 
     model: ModelName = None
     gap: GapName = None
-    force: Force = None
-    indentation: Indentation = None
 
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
@@ -77,18 +73,7 @@ class PressOptions:
         else:
             model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
-        model, remark = aimed(with_gap(model, self.gap), file)
-        if remark:
-            print_message(remark)
-        return model
-
-    def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
-        """Return the load in N or mm; empty if the load is one of the varied parameters."""
-        options = {"force": self.force, "indentation": self.indentation}
-        loads = [name for name in parameters if name in LOADS]
-        if loads and drop_missing(options):
-            raise ValueError(f"{loads[0]} varies, and a load is given too; one is needed")
-        return {} if loads else read_load_option(options, file)
+        return with_gap(model, self.gap).in_cup(file.cup, **file.aim)
 
 
 @app.command(name="map")
@@ -96,7 +81,7 @@ class PressOptions:
 def design_map(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     x: Annotated[
         str, typer.Option(help="Parameter and range of the horizontal axis: 'ball_radius=11..23 mm'.")
     ] = "ball_radius=11..23 mm",
@@ -120,7 +105,7 @@ def design_map(
     ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     stated = joint_options.stated(file, ends)
     sizes = {name: [value] for name, value in stated.items()}
-    load, model = press_options.load(file, ends), press_options.choose_model(file, {**ends, **sizes})
+    load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
     output.print(lambda: study_tables.map_summary(result, limits), lambda: study_tables.print_map(result, limits))
@@ -132,7 +117,7 @@ def design_map(
 def optimise(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     vary: Annotated[
         list[str],
         typer.Option(
@@ -164,7 +149,7 @@ def optimise(
     choices |= {name: [value] for name, value in joint_options.stated(file, {**ranges, **choices}).items()}
     if output.figure is not None and len(goals) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
-    load = press_options.load(file, {**ranges, **choices})
+    load = _load(joint_options, file, {**ranges, **choices})
     model = press_options.choose_model(file, {**ranges, **choices})
 
     def study_ranges(joint: Joint, fixed: Mapping[str, Any]) -> Any:
@@ -207,7 +192,7 @@ _SENSITIVITY_RESULTS = ("indentation", "half_angle", "max_pressure", "area")
 def sensitivity(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     spread: Annotated[
         list[str],
         typer.Option(
@@ -260,7 +245,7 @@ def sensitivity(
     stated = joint_options.stated(file, distributions)
     means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
     means |= {name: [value] for name, value in stated.items()}
-    load, model = press_options.load(file, distributions), press_options.choose_model(file, means)
+    load, model = _load(joint_options, file, distributions), press_options.choose_model(file, means)
     result = find_sensitivity(
         model,
         file.joint,
@@ -282,6 +267,14 @@ def sensitivity(
         study_tables.write_sensitivity(result, csv)
 
 
+def _load(options: JointOptions, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
+    """Return the load in N, mm or rad; empty if the load is one of the varied parameters."""
+    loads = [name for name in parameters if name in LOADS]
+    if loads and set(LOADS) & set(options.tables.get("load", {})):
+        raise ValueError(f"{loads[0]} varies, and a load is given too; one is needed")
+    return {} if loads else needed_load(file)
+
+
 def _check_points(points: int | None) -> None:
     if points is not None:
         require("points", points, points > 1, "an axis has 2 values or more")
@@ -294,8 +287,8 @@ def _default_points(model: Model) -> int:
 
 def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
     """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
-    cup, direction = tilted_cup(file.cup, file.aim), file.aim.get("direction", UP)
-    return [replace(parse_limit(phrase), cup=cup, direction=direction) for phrase in phrases or []]
+    cup = file.cup.tilted(min(file.tilt, pi / 2))
+    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
 
 
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:

@@ -5,30 +5,32 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from dataclasses import dataclass, replace
-from math import degrees, radians
+from dataclasses import replace
+from math import radians
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from ..core.checks import known_name, shown
-from ..core.kinds import Kind
+from ..core.checks import known_name
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
-from ..elasticity.off_axis import Sphere
+from ..elasticity.off_axis.model import Sphere
 from ..export.targets import TARGETS, ExportJob
-from ..files.joint_file import JointFile, read_aim, read_cup
-from ..files.units import convert, parse, parse_units, split_quantity
+from ..files.inputs import JOINT, PARTS
+from ..files.joint_file import JointFile
+from ..files.schema import Length, PlainNumber, Speed, Table, Viscosity, meaning
+from ..files.tables import written_in
+from ..files.units import as_given
 from ..lubrication import Lubricant
-from ..model_catalogue import off_axis, reference, with_gap
-from ..problem import Joint
-from ..problem.cup import Cup
+from ..model_catalogue import OFF_AXIS, reference, with_gap
+from ..problem.cup import AXIAL_TILT, Cup
+from ..question import complete
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .elasticity_options import MeshTable, mesh_progress
 from .model_file import requested_model
-from .options import ArcOfCover, GapName, JointName, JointOptions, LoadOptions, ModelName, expand_groups
+from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)
@@ -38,39 +40,32 @@ _NOTED_ERROR = 0.02
 """Relative error of the force of a preloaded element above which a message states it."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ForceElementOptions:
-    """Options of a force element, in addition to its joint."""
+class ForceElementInputs(Table, frozen=True, kw_only=True):
+    """Inputs of a force element, in addition to its joint and model."""
 
-    model: ModelName = None
-    gap: GapName = None
     hysteresis: Annotated[
-        float | None,
-        typer.Option(help="Damping factor in s/mm: damping force / (contact force * speed). Default: no damping."),
+        PlainNumber | None,
+        meaning("damping factor in s/mm: damping force / (contact force * speed)", default="no damping"),
     ] = None
     restitution: Annotated[
-        float | None,
-        typer.Option(help="Coefficient of restitution, 0 to 1, with --impact-speed. Not with --hysteresis."),
+        PlainNumber | None,
+        meaning("coefficient of restitution, 0 to 1, with --impact-speed, not with --hysteresis", default="none"),
     ] = None
     impact_speed: Annotated[
-        str | None,
-        typer.Option(
-            help="Impact speed in mm/s, or such as '0.1 m/s', at which the restitution was measured. "
-            "Default: none, with --hysteresis."
+        Speed | None,
+        meaning(
+            "impact speed at which the restitution was measured", example="0.1 m/s", default="none, with --hysteresis"
         ),
     ] = None
-    friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
+    friction: Annotated[PlainNumber | None, meaning("coefficient of friction", default="no friction")] = None
     viscosity: Annotated[
-        str | None,
-        typer.Option(help="Viscosity of a lubricant in Pa s, or such as '2.5 mPa s'. Default: a dry socket."),
+        Viscosity | None, meaning("viscosity of a lubricant", example="2.5 mPa s", default="a dry socket")
     ] = None
     roughness: Annotated[
-        str | None,
-        typer.Option(help="Combined roughness, the least film of --viscosity. Default: 0.001 mm."),
+        Length | None, meaning("combined roughness, the least film of --viscosity", default="0.001 mm")
     ] = None
-    arc_of_cover: ArcOfCover = None
 
-    def element(self, file: JointFile) -> ForceElement | PreloadedElement:
+    def element(self, file: JointFile, name: str | None, gap: str | None) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
 
         A joint with an interference has a tabulated element of the model sphere.
@@ -80,35 +75,30 @@ class ForceElementOptions:
         ValueError
             The model has no force law, or a value is not allowed.
         """
-        friction = None if self.friction is None else Friction(coefficient=self.friction)
-        stated_cup = file.cup
-        if self.arc_of_cover is not None:
-            stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
+        friction = None if self.friction is None else Friction(coefficient=float(self.friction))
         if file.joint.clearance < 0:
-            return self._preloaded_element(file.joint, stated_cup, friction)
-        default = default_model(file.joint, {}) if self.gap is None else reference
-        model = with_gap(default if self.model is None else requested_model(self.model), self.gap)
+            return self._preloaded_element(file, name, friction)
+        default = default_model(file.joint, {}) if gap is None else reference
+        model = with_gap(default if name is None else requested_model(name), gap)
         lubricant = self._lubricant()
-        cup = None if stated_cup == Cup() and lubricant is None else stated_cup
+        cup = None if file.cup == Cup() and lubricant is None else file.cup
         damping = self._damping()
         try:
             return ForceElement(model, file.joint, damping, friction, cup, lubricant=lubricant)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
-    def _preloaded_element(self, joint: Joint, stated_cup: Cup, friction: Friction | None) -> PreloadedElement:
+    def _preloaded_element(self, file: JointFile, name: str | None, friction: Friction | None) -> PreloadedElement:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
-        if self.model not in (None, off_axis.name):
-            raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {off_axis.name}")
+        if name not in (None, OFF_AXIS):
+            raise ValueError(f"the model {name} does not solve a preloaded joint: use {OFF_AXIS}")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
-        cup = stated_cup.around_ball(joint.clearance)
-        if cup is not stated_cup:
-            print_message(
-                f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover"
-            )
+        assumed, sentences = complete(file)
+        if "arc_of_cover" in sentences:
+            print_message(sentences["arc_of_cover"])
         element = PreloadedElement(
-            Sphere(cup=cup, ring_width=_RING_WIDTH), joint, damping=self._damping(), friction=friction
+            Sphere(cup=assumed.cup, ring_width=_RING_WIDTH), file.joint, damping=self._damping(), friction=friction
         )
         error = element.table.error
         if error > _NOTED_ERROR:
@@ -120,29 +110,19 @@ class ForceElementOptions:
             if self.roughness is not None:
                 raise ValueError("--roughness is that of a film: add --viscosity")
             return None
-        viscosity = parse("viscosity", self.viscosity, Kind.VISCOSITY)
-        if self.roughness is None:
-            return Lubricant(viscosity=viscosity)
-        roughness = parse("roughness", self.roughness, Kind.LENGTH)
-        return Lubricant(viscosity=viscosity, ball_roughness=0.0, cup_roughness=roughness)
+        roughness = {} if self.roughness is None else {"ball_roughness": 0.0, "cup_roughness": float(self.roughness)}
+        with as_given(written_in(self)):
+            return Lubricant(viscosity=float(self.viscosity), **roughness)
 
     def _damping(self) -> Damping | None:
         if self.restitution is None and self.impact_speed is None:
-            return None if self.hysteresis is None else Damping(hysteresis=self.hysteresis)
+            return None if self.hysteresis is None else Damping(hysteresis=float(self.hysteresis))
         if self.hysteresis is not None:
             raise ValueError("a hysteresis and a restitution are given; one is needed")
         if self.restitution is None or self.impact_speed is None:
             raise ValueError("a restitution and the speed of its impact belong together: --restitution --impact-speed")
-        speed = _number_in("mm/s", "impact_speed", self.impact_speed, "0.1 m/s")
-        return Restitution(restitution=self.restitution, impact_speed=speed)
-
-
-def _number_in(target: str, name: str, text: str, example: str) -> float:
-    try:
-        number, unit = split_quantity(text)
-        return convert(number, parse_units(unit or target), parse_units(target))
-    except ValueError as error:
-        raise ValueError(f"{name} must be a number of {target}, or such as {example!r}, got {shown(text)}") from error
+        with as_given(written_in(self)):
+            return Restitution(restitution=float(self.restitution), impact_speed=float(self.impact_speed))
 
 
 _FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}
@@ -155,8 +135,10 @@ def export(
     *,
     target: Annotated[str, typer.Argument(help=f"Program: {', '.join(TARGETS)}.")],
     joint: JointName = None,
-    joint_options: JointOptions,
-    element_options: ForceElementOptions,
+    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover")],
+    model: ModelName = None,
+    gap: GapName = None,
+    inputs: ForceElementInputs,
     out: Annotated[
         Path,
         typer.Option(
@@ -174,7 +156,7 @@ def export(
         raise ValueError(f"{str(existing)!r} is a file; a folder is needed")
     file = joint_options.read(joint)
     chosen.check(file.joint)
-    element = element_options.element(file)
+    element = inputs.element(file, model, gap)
     job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
     if folder != out and out.name not in (names := tuple(chosen.texts(job))):
         raise ValueError(f"out {str(out)!r}: {target} writes {', '.join(names)}; give one of them, or a folder")
@@ -189,8 +171,10 @@ def export(
 def fmu(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
-    element_options: ForceElementOptions,
+    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover")],
+    model: ModelName = None,
+    gap: GapName = None,
+    inputs: ForceElementInputs,
     out: Annotated[Path, typer.Option(help="File to write (.fmu); files of the FMI cross-check are put beside it.")],
     fmi: Annotated[int, typer.Option(help="Version of the FMI standard: 2 or 3.")] = 3,
 ) -> None:
@@ -201,7 +185,7 @@ def fmu(
     from ..export.fmu import Fmu, write_cross_check
 
     check_ending("out", out, ".fmu")
-    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(out), version=fmi)
+    unit = Fmu(element=inputs.element(joint_options.read(joint), model, gap), name=identifier(out), version=fmi)
     written = unit.write(out)
     start = ""
     if isinstance(unit.element, PreloadedElement):
@@ -234,9 +218,8 @@ _TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 def deck(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     out: Annotated[Path, typer.Option(help="Output folder, or the deck itself (.inp); created if it does not exist.")],
-    load_options: LoadOptions,
     steps: Annotated[
         int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
     ] = 8,
@@ -246,20 +229,12 @@ def deck(
             help="Factor on clearance and indentation; small: contact on the undeformed shape, 1: on the deformed."
         ),
     ] = 1e-3,
-    tilt: Annotated[
-        str | None,
-        typer.Option(
-            help="Angle between load and cup axis in degrees: '45 deg'. Writes a three-dimensional model. "
-            "Default: 0 deg."
-        ),
-    ] = None,
-    cup: CupOptions,
-    mesh: MeshOptions,
+    mesh: MeshTable,
     run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
 ) -> None:
     """Write a finite-element input file for CalculiX or Abaqus.
 
-    The folder also gets the results to expect.
+    The folder also gets the results to expect. A tilted load makes a three-dimensional model.
     """
     if out.suffix.lower() in _FILE_ENDINGS:
         check_ending("out", out, ".inp")
@@ -269,12 +244,12 @@ def deck(
             f"a deck needs a clearance of 0 or more, got interference = {file.joint.interference:g} mm: press solves a "
             "preloaded joint (model sphere), and export table has its forces"
         )
-    load = load_options.read(file)
-    if tilt is not None:
-        angle = read_aim({"tilt": tilt})["tilt"]
-        _write_tilted(replace(file, cup=cup.apply_to(file.cup)), load, angle, out, mesh, run)
+    load = needed_load(file)
+    if file.tilt > AXIAL_TILT:
+        _write_tilted(file, load, file.tilt, out, mesh, run)
         return
-    contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
+    with mesh_progress():
+        contact: Any = replace(mesh.model(meshes=1), cup=file.cup).press(file.joint, **load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.calculix import run as run_ccx
@@ -286,16 +261,14 @@ def deck(
         print_rival(made.expected, run_ccx(out))
 
 
-def _write_tilted(
-    file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshOptions, run: bool
-) -> None:
+def _write_tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshTable, run: bool) -> None:
     """Write the input file of a ball that is displaced at a tilt in rad."""
     from ..elasticity.off_axis.deck import TiltedDeck
     from ..elasticity.off_axis.deck import run as run_ccx
 
     if "indentation" not in load:
         raise ValueError("a tilted deck displaces the ball: give an indentation")
-    size = mesh.size or radians(_TILTED_ELEMENT_ANGLE) * float(file.joint.socket_radius)
+    size = float(mesh.element_size or 0) or radians(_TILTED_ELEMENT_ANGLE) * float(file.joint.socket_radius)
     made = TiltedDeck(
         joint=replace(file.joint, ball=None),
         cup=file.cup,

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.atomic_files import check_ending
-from ..reports.unit_systems import Units
+from ..core.unit_systems import Units
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
@@ -21,9 +21,9 @@ from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
     from ..hip.bands import Bands
+    from ..hip.comparison_answer import HipRun
     from ..hip.config import HipFile
     from ..hip.history import History
-    from ..reports.hip_comparison import HipRun
 
 
 @app.command()
@@ -66,12 +66,16 @@ def hip(
 
     Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
+    from ..hip.bands_answer import describe_bands
+    from ..hip.comparison_answer import HipRun, describe_hips
     from ..hip.config import read_hip
+    from ..hip.history_answer import describe_history
     from ..reports.figure_files import check_format, save
-    from ..reports.hip_comparison import HipRun, comparison_figure, print_comparison, write_table
+    from ..reports.hip_comparison import comparison_figure, write_table
     from ..reports.hip_report import hip_report
-    from ..reports.hip_tables import print_bands, print_hip
     from ..reports.pages import check_page_path, letterhead, write_page
+    from ..reports.style import in_units
+    from ..reports.terminal import print_answer
 
     for path, check in ((report, check_page_path), (figure, check_format)):
         if path is not None:
@@ -90,8 +94,6 @@ def hip(
             raise ValueError(f"--patients needs one file, got {len(files)}")
         _simulate_cohort(hip_files[0], patients, method, engine, store, as_json, units)
         return
-    if report is not None and units is not Units.SI:
-        raise ValueError("--report of a hip is in mm, N and MPa: leave out --units or --report")
     if several and report is not None:
         raise ValueError(f"--report shows one hip, got {len(files)} files: use --figure or --csv to compare them")
     if report is not None:
@@ -108,15 +110,16 @@ def hip(
     if as_json:
         _echo_runs(runs, files)
     elif several:
-        print_comparison(runs, units)
+        print_answer(describe_hips(runs), units)
     else:
-        print_hip(runs[0].history, units, runs[0].name)
+        print_answer(describe_history(runs[0].history, runs[0].name), units)
         if runs[0].bands is not None:
-            print_bands(runs[0].bands, units)
+            print_answer(describe_bands(runs[0].bands), units)
     if report is not None:  # last: if a file cannot be written, the result is already printed
-        write_page(hip_report(runs[0].history, runs[0].bands, runs[0].name, hip_files[0].report), report)
+        page = hip_report(runs[0].history, runs[0].bands, runs[0].name, hip_files[0].report, units)
+        write_page(page, report, units.paper)
     if figure is not None:
-        save(comparison_figure(runs, units), figure)
+        save(in_units(comparison_figure(runs), units), figure)
     if csv is not None:
         write_table(csv, runs)
     if not all(run.history.converged for run in runs):
@@ -140,11 +143,11 @@ def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
 
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
-    from ..hip.wear_uncertainty import uncertainty
-
     scatter = hip_file.uncertain
     if scatter is None:
         return None
+    from ..hip.wear_uncertainty import uncertainty
+
     samples, noun = scatter.count * (len(scatter.variability.distributions) + 2), scatter.variability.noun
     with _progress_bar(f"other {noun}", samples, noun) as progress:
         return uncertainty(
@@ -183,9 +186,10 @@ def _simulate_cohort(
     units: Units,
 ) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
+    from ..hip.bands_answer import describe_cohort
     from ..hip.cohort import cohort_store, write_csv
     from ..hip.wear_uncertainty import population
-    from ..reports.hip_tables import print_bands, print_notes
+    from ..reports.terminal import print_answer
 
     scatter = hip_file.uncertain
     if scatter is None:
@@ -207,8 +211,7 @@ def _simulate_cohort(
         notes = [*bands.nominal_notes, *bands.notes]
         echo_json({"version": __version__, "valid": bands.valid, **bands.summary(), "notes": notes})
     else:
-        print_bands(bands, units)
-        print_notes(bands.nominal_notes, units)
+        print_answer(describe_cohort(bands), units)
     if store is not None:
         path = write_csv(store / "patients.csv", cohort, bands.cohort)
         if not as_json:

@@ -11,6 +11,7 @@ import typer
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..files.joint_file import named_joint
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..identification import as_constant, as_corrected_vessel, as_polynomial
@@ -24,7 +25,7 @@ from ..reports.identify_results import print_identified
 from ..studies.calibration import FORCES, Form
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, named_joint
+from .options import AsJson
 from .root import app, echo_path, fail
 
 _FORMATS = "(.png, .svg, .pdf)"
@@ -106,7 +107,9 @@ def _has_measured_wear(file: Path) -> bool:
 def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
     from ..hip.config import read_wear_test
     from ..hip.wear_fit import fit_wear_coefficient
-    from ..reports.hip_comparison import print_wear_fit, wear_fit_figure
+    from ..hip.wear_fit_answer import describe_wear_fit
+    from ..reports.hip_comparison import wear_fit_figure
+    from ..reports.terminal import print_answer
 
     hip_file = read_wear_test(file)
     fit = fit_wear_coefficient(hip_file.use, hip_file.data)
@@ -114,7 +117,7 @@ def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
         valid = all(check.valid for check in fit.simulation.unworn_checks)
         echo_json({"version": __version__, "joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()})
     else:
-        print_wear_fit(fit)
+        print_answer(describe_wear_fit(fit))
     if figure is not None:
         save(wear_fit_figure(fit, hip_file.cycles), figure)
 

@@ -17,11 +17,10 @@ import typer
 from ..contact.closed_sphere import NOTED_CHANGE
 from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
-from ..model_catalogue import judge, listed_models, off_axis, reference
+from ..model_catalogue import JUDGE, OFF_AXIS, listed_models, reference
 from ..problem import Joint, Material
-from ..problem.dimensions import DIAMETERS, LENGTHS
+from ..problem.dimensions import DIAMETERS
 from ..problem.presets import joints, materials
-from ..reports.catalogue_lists import source_summary
 
 Answer = Mapping[str, Any]
 """JSON answer of a command."""
@@ -65,7 +64,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         "valid": answer.get("valid", all(result["valid"] for result in requested) if results else None),
         "error": answer.get("error", _errors(results)),
         "notes": answer.get("notes", notes),
-        "sources": [source_summary(source) for source in dict.fromkeys(_sources(answer))],
+        "sources": [source.summary() for source in dict.fromkeys(_sources(answer))],
     }
     return {**full, "next": [step.summary() for step in next_steps(full, arguments)]}
 
@@ -154,16 +153,16 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         why = f"{invalid[0]} is outside its valid range here, {valid_models[0]} is valid: see the notes"
         yield NextStep((*bare, "--model", valid_models[0]), why)
     if not valid_models:
-        alternatives = [name for name in (reference.name, off_axis.name, judge.name) if name not in results]
+        alternatives = [name for name in (reference.name, OFF_AXIS, JUDGE) if name not in results]
         why = "no model of this answer is valid here"
         yield from (NextStep((*bare, "--model", name), why) for name in alternatives)
-    elif not {judge.name, off_axis.name} & set(results):
+    elif not {JUDGE, OFF_AXIS} & set(results):
         changes = chain(*(result.get("hemisphere", {}).values() for result in answer["results"]))
         if (abs(numpy.hstack([0.0, *changes]).astype(float)) > NOTED_CHANGE).any():
             why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
-            yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
+            yield from (NextStep((*bare, "--model", name), why) for name in (JUDGE, OFF_AXIS))
         else:
-            yield NextStep((*bare, "--model", judge.name), "check by finite elements, with estimated errors")
+            yield NextStep((*bare, "--model", JUDGE), "check by finite elements, with estimated errors")
     cited = [name for name in valid_models[:1] if name in requested and name in listed_models]
     yield from (NextStep(("cite", name), "references of the model") for name in cited)
 
@@ -181,6 +180,8 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    from ..files.inputs import PARTS, inputs_in
+
     if "point" in answer:
         point = answer["point"]
     else:  # of a map, with the smallest peak pressure or the smallest value of the first quantity
@@ -188,14 +189,14 @@ def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         point = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
     chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
     numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
-    has_load = any(name in point for name in ("force", "indentation"))
-    load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
-    varied, replaced = set(map(_dimension_of, point)), []
-    for option in _JOINT_OPTIONS:
-        name = option.removeprefix("--").replace("-", "_")
-        if {_dimension_of(name), _dimension_of(f"liner_{name}")} & varied:
-            replaced.append(option)
-    step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
+    varied = set(map(_dimension_of, point))
+    replaced = [
+        entry.option
+        for entry in inputs_in((*PARTS, "load"))
+        if set(map(_dimension_of, (entry.key, f"{entry.part}_{entry.key}", *entry.rivals))) & varied
+    ]
+    stated = _without_options(arguments, *replaced)
+    step = ("press", *_joint_arguments(stated), *chosen, *numbers, *_load_options(stated), "--all")
     yield NextStep(step, "the best joint by every model")
 
 
@@ -217,7 +218,7 @@ _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 
 def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
-    load = _selected_options(arguments, "--force", "--indentation")
+    load = _load_options(arguments)
     yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
 
 
@@ -230,7 +231,7 @@ def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
     if known:
-        load = _selected_options(arguments, "--force", "--indentation", "--half-angle")
+        load = _load_options(arguments)
         step = ("press", *_joint_arguments(arguments), *load, "--tilt", f"{max(known)[1]:.4g} deg")
         yield NextStep(step, "the orientation with the largest distance to the rim")
 
@@ -272,17 +273,20 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         yield NextStep(("cite", model["name"]), "BibTeX")
 
 
+def _load_options(arguments: Arguments) -> list[str]:
+    """Return the options of the load; of its direction only where the next command has the same cup."""
+    from ..files.inputs import LOAD, inputs_in
+
+    inputs = inputs_in(LOAD if arguments[0] == "orient" else ("load",))
+    return _selected_options(arguments, *(entry.option for entry in inputs))
+
+
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
-    """Return the file or preset of the joint, and the options that change it."""
-    angles = () if arguments[0] == "orient" else _ANGLE_OPTIONS  # there they are ranges
-    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS, *angles))
+    """Return the file or preset of the joint, and the options that change joint and cup."""
+    from ..files.inputs import PARTS, RIM, inputs_in
 
-
-_PART_OPTIONS = ("young", "poisson", "liner", "ball_young", "ball_poisson", "ball", "shell", "shell_thickness")
-
-_JOINT_OPTIONS = tuple(f"--{name}".replace("_", "-") for name in (*LENGTHS, *_PART_OPTIONS))
-
-_ANGLE_OPTIONS = ("--inclination", "--anteversion", "--side", "--orientation", "--pelvic-tilt")
+    inputs = inputs_in((*PARTS, *RIM) if arguments[0] == "orient" else (*PARTS, "cup"))  # its angles are ranges
+    return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
 
 
 def _joint_name(arguments: Arguments) -> list[str]:

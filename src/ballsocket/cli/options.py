@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from copy import copy
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
-from ..core.checks import nearest, normalise_name
-from ..core.input_files import resolve_input
-from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
+from ..core.quantities import LOADS
+from ..core.unit_systems import Units
+from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
+from ..files.joint_file import JointFile, joint_of, named_joint, varied
+from ..files.schema import Table
+from ..files.tables import read_table
 from ..model_catalogue import listed_models
-from ..problem.dimensions import LENGTHS, fit_beside
-from ..problem.presets import joints, materials
+from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
-from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..core.executors.processes import Engine
-
-
-def complete_material(start: str) -> list[str]:
-    """List the preset materials whose names have this start, for a shell."""
-    return [name for name in materials if name.startswith(start.lower())]
 
 
 def complete_model(start: str) -> list[str]:
@@ -39,14 +34,13 @@ def complete_model(start: str) -> list[str]:
 
 JointName = Annotated[
     str | None,
-    typer.Argument(help="Joint file (TOML), or name of a preset. The options of the joint replace its values."),
+    typer.Argument(help="Joint file (TOML), or name of a preset. Options replace its values."),
 ]
 JointNames = Annotated[
     list[str] | None,
     typer.Argument(
         metavar="JOINT",
-        help="Joint file (TOML), or name of a preset. The options of the joint replace its values. "
-        "Several joints share one report.",
+        help="Joint file (TOML), or name of a preset. Options replace its values. Several joints share one report.",
         show_default=False,
     ),
 ]
@@ -82,93 +76,15 @@ GapName = Annotated[
 ]
 
 
-Force = Annotated[
-    str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
-]
-Indentation = Annotated[
-    str | None,
-    typer.Option(help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."),
-]
-ArcOfCover = Annotated[
-    str | None,
-    typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
-]
+@dataclass(frozen=True)
+class JointOptions:
+    """Options of a joint, its cup and its load; they replace single values of a joint file or preset.
 
+    A parameter of this type is annotated with the parts of a joint file that the command offers as options,
+    `Annotated[JointOptions, JOINT + LOAD]`. `tables` has the texts of the options by table and key.
+    """
 
-@dataclass(frozen=True, kw_only=True)
-class JointPartOptions:
-    """Options of a joint without its orientation; they replace single values of a joint file or preset."""
-
-    ball_radius: Annotated[str | None, typer.Option(help="Ball radius R1 in mm, or with a unit: '1.6 cm'.")] = None
-    head_diameter: Annotated[
-        str | None, typer.Option(help="Ball diameter 2 R1 in mm: '32 mm'. Not with --ball-radius.")
-    ] = None
-    clearance: Annotated[
-        str | None, typer.Option(help="Radial clearance (socket minus ball radius) in mm: '0.1 mm'.")
-    ] = None
-    diametral_clearance: Annotated[
-        str | None, typer.Option(help="Twice the radial clearance in mm: '0.2 mm'. Not with --clearance.")
-    ] = None
-    interference: Annotated[
-        str | None,
-        typer.Option(
-            help="Interference of a preloaded joint in mm: '0.02 mm'. Solved by model sphere. Not with --clearance."
-        ),
-    ] = None
-    liner_thickness: Annotated[
-        str | None, typer.Option(help="Thickness of the liner in mm: '6 mm'; inf for a massive socket.")
-    ] = None
-    outer_radius: Annotated[
-        str | None,
-        typer.Option(help="Outer radius of liner or shell in mm: '24 mm'."),
-    ] = None
-    outer_diameter: Annotated[
-        str | None,
-        typer.Option(help="Outer diameter of liner or shell in mm: '52 mm'."),
-    ] = None
-    shell: Annotated[
-        str | None,
-        typer.Option(
-            help="Name of the material of a shell right behind the liner: 'titanium'. Its thickness follows from "
-            "--outer-diameter and --liner-thickness, or is --shell-thickness.",
-            autocompletion=complete_material,
-        ),
-    ] = None
-    shell_thickness: Annotated[str | None, typer.Option(help="Thickness of the shell in mm: '2 mm'.")] = None
-    young: Annotated[str | None, typer.Option(help="Young's modulus of the liner in MPa, or with a unit: '1 GPa'.")] = (
-        None
-    )
-    poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the liner, from 0 to 0.5.")] = None
-    liner: Annotated[
-        str | None,
-        typer.Option(
-            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values.",
-            autocompletion=complete_material,
-        ),
-    ] = None
-    ball_young: Annotated[
-        str | None,
-        typer.Option(
-            help="Young's modulus of the ball in MPa, or with a unit: '230 GPa'. Default: as in the file, or rigid."
-        ),
-    ] = None
-    ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball, from 0 to 0.5.")] = None
-    ball: Annotated[
-        str | None,
-        typer.Option(
-            help="Name of the ball material, see `ballsocket presets`. --ball-young and --ball-poisson replace it.",
-            autocompletion=complete_material,
-        ),
-    ] = None
-
-    def tables(self) -> dict[str, dict[str, str]]:
-        """Return the options as tables of a joint file."""
-        lengths = {name: getattr(self, name) for name in LENGTHS if hasattr(self, name)}
-        liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
-        ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
-        shell = {"material": self.shell, "thickness": self.shell_thickness}
-        tables = {"joint": lengths, "liner": liner, "ball": ball, "shell": shell}
-        return {name: drop_missing(table) for name, table in tables.items() if drop_missing(table)}
+    tables: Mapping[str, Mapping[str, str]]
 
     def read(self, name: str | None) -> JointFile:
         """Read a joint from a file, a preset or the options alone; options replace single values.
@@ -178,85 +94,31 @@ class JointPartOptions:
         ValueError
             Neither a name nor options, or a value that is not allowed.
         """
-        tables = self.tables()
-        if name is None and not tables:
+        if name is not None:
+            return varied(named_joint(name), self.tables)
+        if not {*PARTS} & {*self.tables}:
             raise ValueError(
                 "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
             )
-        if name is None:
-            return joint_of(tables)
-        return varied(named_joint(name), tables) if tables else named_joint(name)
+        return joint_of(self.tables)
 
     def stated(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
         """Return the lengths in mm that the options state beside those that vary, for a study to hold."""
-        lengths = self.tables().get("joint", {})
+        lengths = self.tables.get("joint", {})
         return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths)}
-
-
-_IN_FILE = "Default: as in [cup] of the joint file"
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointOptions(JointPartOptions):
-    """Options of a joint and of the orientation of its cup in the body."""
-
-    inclination: Annotated[
-        str | None, typer.Option(help=f"Inclination of the cup in degrees: '45 deg'. {_IN_FILE}, or 0.")
-    ] = None
-    anteversion: Annotated[
-        str | None, typer.Option(help=f"Anteversion of the cup in degrees: '15 deg'. {_IN_FILE}, or 0.")
-    ] = None
-    side: Annotated[str | None, typer.Option(help=f"Side of the body: 'right' or 'left'. {_IN_FILE}, or right.")] = None
-    orientation: Annotated[
-        str | None,
-        typer.Option(
-            help="Definition of both angles (Murray 1993): 'radiographic', 'operative' or 'anatomical'. "
-            "Default: radiographic."
-        ),
-    ] = None
-    pelvic_tilt: Annotated[
-        str | None,
-        typer.Option(
-            help="Tilt of the pelvis in degrees, positive with its top to the front: '10 deg'. The angles of the cup "
-            "are those in the pelvis. Default: 0."
-        ),
-    ] = None
 
     @property
     def orients(self) -> bool:
         """True if an option orients the cup."""
-        return bool(self._angles())
-
-    def _angles(self) -> dict[str, str]:
-        return drop_missing({key: getattr(self, key) for key in CUP_ANGLES})
-
-    def read(self, name: str | None) -> JointFile:
-        """Read a joint as `JointPartOptions.read`, and turn its cup as the options state."""
-        file = super().read(name)
-        return replace(file, cup=read_cup(self._angles(), file.cup))
+        return any(f"cup.{key}" in ORIENTATION for key in self.tables.get("cup", {}))
 
 
-CUP_ANGLES = ("inclination", "anteversion", "side", "orientation", "pelvic_tilt")
-"""Options of the orientation of a cup, which are also keys of the table [cup]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class LoadOptions:
-    """Options of a load; one of them replaces the load of the joint file."""
-
-    force: Force = None
-    indentation: Indentation = None
-    half_angle: Annotated[
-        str | None, typer.Option(help="Half angle of the contact in degrees: '40 deg'. Not with --force.")
-    ] = None
-
-    def read(self, file: JointFile) -> dict[str, float]:
-        """Read the load from the options, or take that of the joint file, in N, mm or rad."""
-        return read_load_option(vars(self), file)
-
-    def are_missing(self, file: JointFile) -> bool:
-        """Return True if neither the options nor the joint file have a load."""
-        return not (drop_missing(vars(self)) or file.load)
+def needed_load(file: JointFile) -> dict[str, float]:
+    """Return the load of a joint file with its options in N, mm or rad; raise ValueError without one."""
+    if not file.load:
+        names = [f"--{name.replace('_', '-')}" for name in LOADS]
+        raise ValueError(f"a load is needed: {', '.join(names[:-1])} or {names[-1]}, such as --force '3 kN'")
+    return file.load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -284,48 +146,6 @@ class OutputOptions:
             save(draw(), self.figure)
 
 
-def drop_missing(options: dict[str, str | None]) -> dict[str, str]:
-    """Return the options that have a value."""
-    return {name: text for name, text in options.items() if text is not None}
-
-
-def read_load_option(options: dict[str, str | None], file: JointFile) -> dict[str, float]:
-    """Read the load from some options, or take that of the joint file, in N, mm or rad.
-
-    Raises
-    ------
-    ValueError
-        No load, several loads, or a value that is not allowed.
-    """
-    load = read_load(drop_missing(options)) or file.load
-    if not load:
-        names = [f"--{name.replace('_', '-')}" for name in options]
-        raise ValueError(f"a load is needed: {', '.join(names[:-1])} or {names[-1]}, such as --force '3 kN'")
-    return load
-
-
-def named_joint(name: str) -> JointFile:
-    """Return the joint of a file, or the preset of that name.
-
-    Raises
-    ------
-    ValueError
-        No such file or preset.
-    """
-    if not name:
-        raise ValueError("the joint's name is empty")
-    path = resolve_input(Path(name))
-    if path.is_dir():
-        raise ValueError(f"{name!r} is a folder; a joint file is needed")
-    if path.exists():
-        return read_joint(path)
-    if normalise_name(name) in joints:
-        return JointFile(joints[normalise_name(name)], {})
-    if not path.parent.is_dir():
-        raise ValueError(f"{name!r} does not exist: there is no folder {str(path.parent)!r}")
-    raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
-
-
 def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:
     """Return the executor that the options select, or the default."""
     if scheduler is not None:
@@ -345,47 +165,73 @@ def choose_executor(workers: int | None, scheduler: str | None, default: Engine)
 def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command whose groups of options are expanded to single parameters, for typer.
 
-    typer makes an option of each parameter in the signature of a function. A group is a dataclass whose fields are
-    annotated like such parameters. The returned function has a signature in which the fields of each group replace the
-    group; called with their values, it builds the groups and calls the command.
+    typer makes an option of each parameter in the signature of a function. A group is a table of files, whose keys
+    become options; `JointOptions`; or a dataclass whose fields are annotated like parameters. The returned function has
+    a signature in which the options of each group replace the group; called with their values, it builds the groups and
+    calls the command.
 
-    A text in the annotation of a group, `mesh: Annotated[MeshOptions, "fem"]`, is put before the help of its options.
+    A text in the annotation of a group, `mesh: Annotated[MeshTable, "fem"]`, is put before the help of its options.
     """
     parameters = signature(command, eval_str=True).parameters.values()
-    types = {parameter.name: _group_type(parameter)[0] for parameter in parameters}
-    groups: dict[str, Any] = {name: kind for name, kind in types.items() if is_dataclass(kind)}
+    types = {parameter.name: _group_type(parameter) for parameter in parameters}
+    groups: dict[str, Any] = {name: entry for name, entry in types.items() if _is_group(entry[0])}
 
     def expanded_command(**options: Any) -> None:
-        built = {
-            name: group(**{field.name: options.pop(field.name) for field in fields(group)})
-            for name, group in groups.items()
-        }
+        built = {name: _built(group, annotation, options) for name, (group, annotation) in groups.items()}
         command(**options, **built)
 
     expanded_command.__name__, expanded_command.__doc__ = command.__name__, command.__doc__
     flat = [
         option
         for parameter in parameters
-        for option in (_group_options(parameter) if parameter.name in groups else (parameter,))
+        for option in (_group_options(*groups[parameter.name]) if parameter.name in groups else (parameter,))
     ]
     expanded_command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
     return expanded_command
 
 
-def _group_type(parameter: Parameter) -> tuple[Any, str]:
-    """Return the type of a parameter, and the text in its annotation."""
+def _group_type(parameter: Parameter) -> tuple[Any, Any]:
+    """Return the type of a parameter, and the rest of its annotation."""
     if get_origin(parameter.annotation) is not Annotated:
         return parameter.annotation, ""
-    kind, text = get_args(parameter.annotation)
-    return kind, text
+    return get_args(parameter.annotation)
 
 
-def _group_options(parameter: Parameter) -> Iterator[Parameter]:
-    """Return the fields of a group as single parameters."""
-    group, prefix = _group_type(parameter)
-    for field in signature(group, eval_str=True).parameters.values():
-        kind, option = get_args(field.annotation)
-        if prefix:
-            option = copy(option)
-            option.help = f"{prefix}: {option.help[0].lower()}{option.help[1:]}"
-        yield field.replace(annotation=Annotated[kind, option])
+def _is_group(kind: Any) -> bool:
+    return isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, Table))
+
+
+def _built(group: Any, annotation: Any, options: dict[str, Any]) -> Any:
+    """Take the values of a group out of the options of a command, and return the group."""
+    if not (group is JointOptions or issubclass(group, Table)):
+        return group(**{field.name: options.pop(field.name) for field in fields(group)})
+    tables: dict[str, dict[str, str]] = {}
+    for entry in inputs_in(annotation) if group is JointOptions else inputs_of(group):
+        if (text := options.pop(entry.name)) is not None:
+            tables.setdefault(entry.part, {})[entry.key] = text
+    return JointOptions(tables) if group is JointOptions else read_table(tables.get("", {}), group)
+
+
+def _group_options(group: Any, annotation: Any) -> Iterator[Parameter]:
+    """Return the options of a group as single parameters."""
+    if group is JointOptions:
+        yield from (_parameter(entry, entry.help, None) for entry in inputs_in(annotation))
+    elif issubclass(group, Table):
+        for entry in inputs_of(group):
+            text = f"{annotation}: {entry.help[0].lower()}{entry.help[1:]}" if annotation else entry.help
+            yield _parameter(entry, text, plain_default(entry.field))
+    else:
+        for field in signature(group, eval_str=True).parameters.values():
+            kind, option = get_args(field.annotation)
+            yield field.replace(annotation=Annotated[kind, option])
+
+
+def _parameter(entry: Input, text: str, default: Any) -> Parameter:
+    """Return the parameter of an input, for typer."""
+
+    def complete(start: str) -> list[str]:
+        return [name for name in entry.choices if name.startswith(start.lower())]
+
+    option = typer.Option(help=text, autocompletion=complete if entry.choices else None)
+    kind: Any = Annotated[str if default else str | None, option]
+    return Parameter(entry.name, Parameter.KEYWORD_ONLY, default=default, annotation=kind)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import degrees
 from typing import Annotated, Any
@@ -15,26 +14,25 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
 from ..core.quantities import CUP
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.inputs import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
-from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
-from .elasticity_options import CupOptions, DirectionOptions
+from .elasticity_options import RingTable
 from .options import (
     GapName,
     JointName,
-    JointPartOptions,
-    LoadOptions,
+    JointOptions,
     OutputOptions,
     UnitSystem,
-    drop_missing,
     expand_groups,
+    needed_load,
 )
 from .root import app, fail
 
@@ -43,12 +41,6 @@ from .root import app, fail
 class OrientationOptions:
     """Options of the load's direction and of the orientations of the cup."""
 
-    direction: Annotated[
-        str | None,
-        typer.Option(
-            help="Direction of the load 'x,y,z' in the body: right, front, up. Default: as in the file, or up."
-        ),
-    ] = None
     inclination: Annotated[
         str, typer.Option(help="Radiographic inclinations in degrees: a range '30..60 deg', or one angle '45 deg'.")
     ] = "30..60 deg"
@@ -63,20 +55,11 @@ class OrientationOptions:
         int | None, typer.Option(min=1, max=91, help="Number of equally spaced values of each angle. Not with --step.")
     ] = None
     gap: GapName = None
-    side: Annotated[
-        str | None, typer.Option(help="Side of the body: 'right' or 'left'. Default: as in the file, or right.")
-    ] = None
     limit: Annotated[
         list[str] | None,
         typer.Option(
             help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeat for several. "
             "Default: no limit."
-        ),
-    ] = None
-    ring_width: Annotated[
-        str | None,
-        typer.Option(
-            help="Width of the rings of the model in degrees. Default: 2 deg; finer is slower and more exact."
         ),
     ] = None
 
@@ -118,19 +101,6 @@ class OrientationOptions:
                 raise ValueError(f"--limit of {limit.name} is not possible here; possible: {', '.join(LIMITED_FIELDS)}")
         return limits
 
-    def read_direction(self, file: JointFile) -> Mapping[str, Any]:
-        """Read the direction from the options or the joint file.
-
-        Raises
-        ------
-        ValueError
-            The file has a tilt from the cup's axis, which is not a direction in the body.
-        """
-        direction = read_aim(drop_missing({"direction": self.direction})) or file.aim
-        if "tilt" in direction:
-            raise ValueError("the load of the file has a tilt from the cup's axis; give its --direction in the body")
-        return direction
-
 
 _ROUND_STEPS = (0.5, 1.0, 2.0, 2.5, 5.0, 10.0, 15.0)
 """Steps in degrees that are used without a request."""
@@ -159,10 +129,9 @@ def _even_degrees(low: float, high: float, step: float | None) -> Numbers:
 def orient(
     *,
     joint: JointName = None,
-    joint_options: JointPartOptions,
-    load: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, *LOAD, "load.direction", "cup.side", *RIM)],
     orientation: OrientationOptions,
-    cup: CupOptions,
+    rings: Annotated[RingTable, "sphere"],
     units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:
@@ -179,13 +148,12 @@ def orient(
     if output.figure is not None and all(len(values) == 1 for values in angles.values()):
         raise ValueError("--figure needs a range of an angle, such as --inclination 30..60; got one orientation")
     file = joint_options.read(joint)
-    side = drop_missing({"side": orientation.side})
-    rim = read_cup(side, cup.apply_to(file.cup))
-    sphere = with_gap(DirectionOptions(ring_width=orientation.ring_width).model(), orientation.gap)
-    model = replace(sphere, cup=rim).with_direction(**orientation.read_direction(file))
+    if "tilt" in file.aim:
+        raise ValueError("the load of the file has a tilt from the cup's axis; give its --direction in the body")
+    model = replace(with_gap(rings.model(), orientation.gap), cup=file.cup).with_direction(**file.aim)
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
-        orientations: Orientations = press_orientations(file.joint, model=model, **angles, **load.read(file))
+        orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))
     output.print(
         lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
         lambda: print_orientations(orientations, limits, units),

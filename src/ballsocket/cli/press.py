@@ -3,41 +3,38 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import degrees, pi
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from math import pi
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy
 import typer
 
-from ..comparison import Comparison, compare, successful_contacts
+from ..comparison import Comparison, successful_contacts
 from ..contact import Contact, Model
 from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
+from ..core.unit_systems import Units
 from ..core.validity import Status
-from ..elasticity.off_axis import Preload, PullOut
-from ..elasticity.off_axis import pull_out as compute_pull_out
-from ..files.joint_file import JointFile, tilted_cup
-from ..model_catalogue import catalogue, judge, off_axis, reference, with_gap
-from ..problem import Joint
-from ..problem.cup import UP, Cup
-from ..problem.presets import long_term_note
+from ..files.inputs import PARTS
+from ..files.joint_file import JointFile
+from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
+from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_curve, print_press
-from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
-    CupOptions,
-    DirectionOptions,
-    MeshOptions,
-    TimedModel,
+    MeshTable,
+    ModelNames,
+    RingTable,
+    mesh_progress,
     mesh_remark,
     orientation_remark,
     orientation_summary,
     refuse_mesh_options,
-    solve_mesh,
     sphere_remark,
 )
 from .json_answers import echo_json, several_joints
@@ -48,57 +45,43 @@ from .options import (
     JointName,
     JointNames,
     JointOptions,
-    LoadOptions,
     UnitSystem,
-    complete_model,
     expand_groups,
+    needed_load,
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
-
-DEFAULT_MODEL = "hess-forsbach"
+    from ..elasticity.off_axis.preload import PullOut
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelOptions:
     """Options of the models that press a joint."""
 
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}.",
-            autocompletion=complete_model,
-        ),
-    ] = None
+    model: ModelNames = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
     gap: GapName = None
 
     @property
     def names(self) -> list[str]:
         """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
-        known = (*catalogue, judge.name, off_axis.name)
+        known = (*catalogue, JUDGE, OFF_AXIS)
         return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
         """True if the finite elements are requested."""
-        return judge.name in self.names
+        return JUDGE in self.names
 
-    def choose_gaps(self, models: Mapping[str, Model]) -> dict[str, Model]:
-        """Return the models and the exact one, with the requested gap where they have a choice."""
-        chosen = {**models, reference.name: models.get(reference.name, reference)}
-        return {name: with_gap(model, self.gap if hasattr(model, "gap") else None) for name, model in chosen.items()}
-
-    def models(self, default: str) -> dict[str, Model]:
-        """Return the requested models by name, or the default one."""
+    def models(self, file: JointFile, mesh: MeshTable, meshes: int) -> dict[str, Model]:
+        """Return the requested models by name: empty for the default, and every one that presses the joint for all."""
         if self.every:
             custom = [requested_model(name) for name in self.names if is_model_file(name)]
-            return {**{model.name: model for model in custom}, **catalogue}
-        models = [requested_model(name) for name in self.names or [default]]
+            return {**{model.name: model for model in custom}, **every_model(file)}
+        models = [mesh.model(meshes) if name == JUDGE else requested_model(name) for name in self.names]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):
             raise ValueError("two of the models have one name: give each custom model a different name")
@@ -138,15 +121,6 @@ class FrictionOptions:
 
         return Friction(coefficient=coefficient, static_coefficient=self.static_friction)
 
-    def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
-        """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
-        if self.pull_out and off_axis.name not in models:
-            raise ValueError(f"--pull-out is solved by the model {off_axis.name}: add --model {off_axis.name}")
-        if self.pull_out and assumed_arc:
-            raise ValueError(
-                "--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file"
-            )
-
     def torques(self, contact: Contact) -> dict[str, Any]:
         """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
         if self.friction is None:
@@ -183,30 +157,25 @@ class FrictionOptions:
 class PressedJoint:
     """Results of one joint of the command, with remarks on their computation.
 
-    For a preloaded joint, `assumptions` are sentences, and `wear_depth_to_loosen` is the uniform wear of the bore in mm
-    that ends the preload. `orientation` has the angles of the cup in degrees by each definition, if it has any.
+    `orientation` has the angles of the cup in degrees by each definition, if it has any.
     """
 
-    file: JointFile
-    comparison: Comparison
-    models: Mapping[str, Model]
+    answer: PressAnswer
     remarks: list[str]
-    assumptions: list[str]
-    wear_depth_to_loosen: float | None
     orientation: dict[str, Any]
-    pulled: PullOut | None
 
     def summary(self, friction: FrictionOptions) -> dict[str, Any]:
         """Return the results as plain data, with the friction torques and the pull-out force if requested."""
-        summary = self.comparison.summary()
+        comparison, pulled, wear_depth = self.answer.comparison, self.answer.pulled, self.answer.wear_depth_to_loosen
+        summary = comparison.summary()
         for result in summary["results"]:
-            result.update(_strength_summary(self.comparison.get(result["model"])))
+            result.update(_strength_summary(comparison.get(result["model"])))
         for result in summary["results"] if friction.friction is not None else ():
-            contact = self.comparison.get(result["model"])
+            contact = comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
-        pull_out = None if self.pulled is None else self.pulled.summary()
-        preload = {} if self.wear_depth_to_loosen is None else {"wear_depth_to_loosen": self.wear_depth_to_loosen}
-        further = {"assumptions": self.assumptions, "preload": preload, "orientation": self.orientation}
+        pull_out = None if pulled is None else pulled.summary()
+        preload = {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth}
+        further = {"assumptions": list(self.answer.assumptions), "preload": preload, "orientation": self.orientation}
         return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
 
 
@@ -224,17 +193,15 @@ def _strength_summary(contact: Contact | None) -> dict[str, Any]:
 def press(
     *,
     joint: JointNames = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     friction_options: FrictionOptions,
     model_options: ModelOptions,
     units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
-    direction_options: DirectionOptions,
-    cup_options: CupOptions,
-    mesh: Annotated[MeshOptions, "fem"],
+    rings: Annotated[RingTable, "sphere"],
+    mesh: Annotated[MeshTable, "fem"],
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
     ] = None,
@@ -249,7 +216,7 @@ def press(
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
     if not model_options.has_finite_elements:
-        refuse_mesh_options({**vars(mesh), "meshes": meshes})
+        refuse_mesh_options({**mesh.stated(), "meshes": meshes})
     files.check()
     report.check()
     friction_options.check()
@@ -259,65 +226,43 @@ def press(
     def press_joint(name: str | None) -> PressedJoint:
         """Press one joint by the requested models."""
         file = joint_options.read(name)
-        is_at_rest = file.joint.clearance < 0 and load_options.are_missing(file)
-        load = {"force": 0.0} if is_at_rest else load_options.read(file)
-        direction, remarks = direction_options.read(file), []
-        stated_cup = cup_options.apply_to(file.cup)
-        held_cup = stated_cup.around_ball(file.joint.clearance)
-        assumed_arc = held_cup is not stated_cup
-        assumptions = ["force 0 assumed, the ball is at rest in its socket; set --force"] if is_at_rest else []
-        assumptions += _preload_assumptions(file.joint, held_cup if assumed_arc else None)
-        orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
-        remarks += [orientation_remark(stated_cup)] if orientation and joint_options.orients else []
-        cup = tilted_cup(held_cup, direction)
-        needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
-        models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
-        if model_options.has_finite_elements and direction:
-            raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
-        files.check_models(models)
-        friction_options.check_pull_out(models, assumed_arc)
-        if off_axis.name not in models:
-            direction_options.refuse()
-        else:
-            sphere = replace(direction_options.model(), cup=cup).with_direction(**direction)
-            timed: Any = TimedModel(with_gap(sphere, model_options.gap))
-            models[off_axis.name] = timed
-        if model_options.has_finite_elements:
-            fem: Any = with_gap(mesh.model(cup, meshes or 2), model_options.gap)
-            models[judge.name] = fem
-            remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
-        comparison = _compare(replace(file, cup=cup), load, models, model_options.choose_gaps(models))
-        if off_axis.name in comparison:
-            remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
+        needed_load(complete(file)[0])
+        question = PressQuestion(
+            file=file,
+            models=model_options.models(file, mesh, meshes or 2),
+            sphere=rings.stated_model(),
+            gap=model_options.gap,
+            pull_out=(friction_options.friction or 0.0) if friction_options.pull_out else None,
+        )
+        files.check_models(question.chosen)
+        if OFF_AXIS not in question.chosen:
+            rings.refuse()
+        with mesh_progress() if model_options.has_finite_elements else nullcontext():
+            answered = answer(question)
+        comparison = answered.comparison
+        orientation = {} if "tilt" in file.aim else orientation_summary(file.cup)
+        remarks = [orientation_remark(file.cup)] if orientation and joint_options.orients else []
+        if JUDGE in comparison:
+            meshed: Any = comparison[JUDGE]
+            remarks.append(mesh_remark(meshed, answered.seconds[JUDGE]))
+        if OFF_AXIS in comparison:
+            remarks.append(sphere_remark(comparison[OFF_AXIS], answered.seconds[OFF_AXIS], units))
         if friction_options.friction is not None:
             contacts = successful_contacts(comparison)
-            remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
-        remarks += assumptions
-        wear_depth = None
-        if off_axis.name in comparison and file.joint.clearance < 0 and held_cup.arc_of_cover > pi:
-            wear_depth = Preload(model=timed.model, joint=file.joint).wear_depth_to_loosen()
-            remarks.append(f"uniform wear of the bore by {units.length(wear_depth)} ends the preload")
-        pulled = None
-        if friction_options.pull_out:
-            pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
-            remarks += _pull_out_remarks(pulled, units)
-        return PressedJoint(
-            file=replace(file, cup=held_cup, load=load, aim=direction),
-            comparison=comparison,
-            models=models,
-            remarks=remarks,
-            assumptions=assumptions,
-            wear_depth_to_loosen=wear_depth,
-            orientation=orientation,
-            pulled=pulled,
-        )
+            named = [name for name in answered.models if name in contacts]
+            remarks += [friction_options.remark(name, contacts[name], units) for name in named]
+        remarks += answered.assumptions
+        if answered.wear_depth_to_loosen is not None:
+            wear_depth = units.length(answered.wear_depth_to_loosen)
+            remarks.append(f"uniform wear of the bore by {wear_depth} ends the preload")
+        if answered.pulled is not None:
+            remarks += _pull_out_remarks(answered.pulled, units)
+        return PressedJoint(answer=answered, remarks=remarks, orientation=orientation)
 
     joints = [press_joint(name) for name in names]
     for pressed in joints:
-        files.write(pressed.comparison, next(iter(pressed.models)), units)
-    designs = [
-        report.design(pressed.comparison, pressed.file, pressed.models, units, pressed.remarks) for pressed in joints
-    ]
+        files.write(pressed.answer.comparison, pressed.answer.models[0], units)
+    designs = [report.design(pressed.answer, units, pressed.remarks) for pressed in joints]
     report.write(designs, units)
     if as_json:
         summaries = [pressed.summary(friction_options) for pressed in joints]
@@ -325,18 +270,9 @@ def press(
         echo_json(summaries[0] if single else several_joints(summaries, joint or (), sys.argv[1:]))
     else:
         for pressed in joints:
-            print_press(pressed.comparison, pressed.remarks, units)
+            print_press(pressed.answer.comparison, pressed.remarks, units)
     for pressed in joints:
-        _exit_on_failure(pressed.comparison, pressed.models)
-
-
-def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
-    """Return sentences on an assumed cup and on the long-term modulus of a preloaded joint; empty for a clearance."""
-    if joint.clearance >= 0:
-        return []
-    arc = "" if assumed_cup is None else f"{degrees(assumed_cup.arc_of_cover):g}°"
-    cover = f"arc of cover {arc} assumed for a preloaded joint; set --arc-of-cover" if arc else ""
-    return list(filter(None, (cover, long_term_note(joint.liner))))
+        _exit_on_failure(pressed.answer.comparison, pressed.answer.models)
 
 
 def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
@@ -345,22 +281,6 @@ def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
         return list(pulled.notes)
     force, displacement = units.text_of(CONTACT["force"], pulled.force), units.length(pulled.displacement)
     return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
-
-
-def _compare(
-    file: JointFile, load: Mapping[str, float], names: Container[str], models: Mapping[str, Model]
-) -> Comparison:
-    """Press a joint by models, of which those with some names are requested.
-
-    Raises
-    ------
-    ValueError
-        None of the models has a result for such a joint.
-    """
-    comparison = compare(file.joint, models=models, cup=file.cup, **load)
-    if not any(name in names for name in comparison):
-        raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in names))
-    return comparison
 
 
 def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
@@ -377,14 +297,12 @@ def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
 def curve(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
-    load_options: LoadOptions,
+    joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
     model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     gap: GapName = None,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
-    cup: CupOptions,
     as_json: AsJson = False,
 ) -> None:
     """Press a joint in equal steps from zero to a load.
@@ -395,8 +313,8 @@ def curve(
     """
     file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
     fractions = numpy.linspace(0.0, 1.0, points)
-    steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
-    contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
+    steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
+    contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
     if as_json:
         summary: Any = contact.summary()
         valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}

@@ -12,11 +12,11 @@ import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
+from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
-from ..model_catalogue import judge, off_axis, reference
+from ..model_catalogue import JUDGE, OFF_AXIS, reference
+from ..question import PressAnswer
 from ..reports.figure_files import check_format, save
-from ..reports.pages import check_page_path, write_page
-from ..reports.unit_systems import Units
 from .root import print_message
 
 if TYPE_CHECKING:
@@ -58,13 +58,13 @@ class FigureOptions:
 
     def check_models(self, models: Container[str]) -> None:
         """Raise ValueError for a file that needs a model which is not among the named ones."""
-        has_mesh, has_view = judge.name in models, off_axis.name in models
+        has_mesh, has_view = JUDGE in models, OFF_AXIS in models
         if self.section is not None and not has_mesh:
-            raise ValueError(f"--section is for the finite elements: add --model {judge.name}")
+            raise ValueError(f"--section is for the finite elements: add --model {JUDGE}")
         if self.vtk is not None and not (has_mesh or has_view):
-            raise ValueError(f"--vtk is for the finite elements: add --model {judge.name}, or {off_axis.name}")
+            raise ValueError(f"--vtk is for the finite elements: add --model {JUDGE}, or {OFF_AXIS}")
         if self.view is not None and not has_view:
-            raise ValueError(f"--view is for contacts off the axis: add --model {off_axis.name}")
+            raise ValueError(f"--view is for contacts off the axis: add --model {OFF_AXIS}")
 
     def check_single(self, count: int) -> None:
         """Raise ValueError for a file that shows one joint, if there are several."""
@@ -78,11 +78,11 @@ class FigureOptions:
         if self.figure is not None and contacts:
             from ..reports import press_plots
 
-            alone = first_model == off_axis.name and first_model in contacts
+            alone = first_model == OFF_AXIS and first_model in contacts
             save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts, units), self.figure)
         loaded = {name: contact for name, contact in contacts.items() if contact.max_pressure > 0}
-        meshed: Any = loaded.get(judge.name)
-        tilted: Any = loaded.get(off_axis.name)
+        meshed: Any = loaded.get(JUDGE)
+        tilted: Any = loaded.get(OFF_AXIS)
         if _can_write(self.section, meshed):
             from ..reports.section_plots import section_figure
 
@@ -91,11 +91,11 @@ class FigureOptions:
             from ..reports.cup_plots import save_view
 
             save_view(tilted, self.view)
-        if judge.name in comparison and _can_write(self.vtk, meshed):
+        if JUDGE in comparison and _can_write(self.vtk, meshed):
             from ..elasticity.finite_elements.section import write_vtk as write_meshes
 
             write_meshes(meshed.section, self.vtk)
-        elif judge.name not in comparison and _can_write(self.vtk, tilted):
+        elif JUDGE not in comparison and _can_write(self.vtk, tilted):
             from ..elasticity.off_axis.vtk import write_vtk as write_surfaces
 
             write_surfaces(tilted, self.vtk)
@@ -124,6 +124,8 @@ class ReportOptions:
         """Raise an error for a page that cannot be written, an unknown tolerance, or tolerances without a report."""
         _ = self.tolerances
         if self.report is not None:
+            from ..reports.pages import check_page_path
+
             check_page_path(self.report)
         elif self.tolerance:
             raise ValueError(f"--tolerance {self.tolerance[0]!r} is for the report: add --report press.html")
@@ -144,21 +146,18 @@ class ReportOptions:
                 raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
         return dict(parsed)
 
-    def design(
-        self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units, remarks: Sequence[str]
-    ) -> Any:
+    def design(self, answer: PressAnswer, units: Units, remarks: Sequence[str]) -> Any:
         """Return a design of the report with the effect of its tolerances; None without a report."""
         if self.report is None:
             return None
         from ..reports.press_report import PressedDesign
 
-        best = [name for name in (off_axis.name, reference.name) if name in comparison and comparison[name].valid]
         return PressedDesign(
-            comparison=comparison,
-            file=file,
-            leading=[*best, *comparison][0],
-            uncertainty=self._tolerance_study(comparison, file),
-            command=self._command(comparison, models, units),
+            comparison=answer.comparison,
+            file=answer.file,
+            leading=answer.leading,
+            uncertainty=self._tolerance_study(answer.comparison, answer.file),
+            command=self._command(answer.comparison, answer.models, units),
             remarks=remarks,
         )
 
@@ -166,6 +165,7 @@ class ReportOptions:
         """Write the report of designs if there is a file for it."""
         if self.report is None:
             return
+        from ..reports.pages import write_page
         from ..reports.press_report import designs_report
 
         write_page(designs_report(designs, units), self.report, units.paper)
@@ -173,9 +173,9 @@ class ReportOptions:
     def _command(self, comparison: Comparison, models: Iterable[str], units: Units) -> str:
         """Return the options that compute the results from the joint file: models, rings, tolerances and units."""
         words = [f"--model {name}" for name in models]
-        model: Any = comparison[off_axis.name].model if off_axis.name in comparison else off_axis
-        if model.ring_width != off_axis.ring_width:
-            words.append(f'--ring-width "{degrees(model.ring_width):.6g} deg"')
+        tilted: Any = comparison.get(OFF_AXIS)
+        if tilted is not None and tilted.model.ring_width != type(tilted.model).ring_width:
+            words.append(f'--ring-width "{degrees(tilted.model.ring_width):.6g} deg"')
         words += [f'--tolerance "{text}"' for text in self.tolerance or ()]
         words += ["--report again.html"] if self.tolerance else []
         words += [f"--units {units}"] if units is not Units.SI else []
@@ -188,9 +188,9 @@ class ReportOptions:
         load = {name: float(value) for name, value in file.load.items()}
         if not any(value > 0 for value in load.values()):
             return None
-        if off_axis.name not in comparison:
+        if OFF_AXIS not in comparison:
             return local_uncertainty(file.joint, file.cup, load, self.tolerances)
         if not self.tolerances:
             return None
-        model = comparison[off_axis.name].model
+        model = comparison[OFF_AXIS].model
         return off_axis_uncertainty(file.joint, model, load, self.tolerances, file.aim.get("tilt"))

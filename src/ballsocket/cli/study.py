@@ -16,10 +16,10 @@ from rich.progress import BarColumn, Progress, TextColumn
 from ..core.executors.processes import count_text
 from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
+from ..core.unit_systems import Units
 from ..model_catalogue import with_gap
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
-from ..reports.unit_systems import Units
 from ..studies.file import StudyFile, read_study
 from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener
@@ -71,8 +71,6 @@ def study(
     if store is not None:
         check_store(store)
     study_file = read_study(file)
-    if study_file.remark:
-        print_message(study_file.remark)
     draw = None if figure is None else _choose_plot(study_file, figure)
     folder = store or study_file.store
     with _progress_bar(folder) as progress:

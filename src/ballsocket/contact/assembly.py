@@ -22,21 +22,13 @@ from .outcome import ModelInfo
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolverResult:
-    """Result of a solver, before the status of its points is determined.
+    """Result of a solver, before the status of its points is determined."""
 
-    Attributes
-    ----------
-    laws : Laws
-        Formulas or solution of the other quantities.
-    force, indentation : array
-        In N and mm; not finite where the load is not reached.
-    failures : mapping of Status to array
-        Mask of the points with each failure. A point that is not finite needs no mask.
-    """
-
-    laws: Laws
+    laws: Laws  # formulas or solution of the other quantities
+    # in N and mm; not finite where the load is not reached
     force: Array
     indentation: Array
+    # mask of the points with each failure. A point that is not finite needs no mask.
     failures: Mapping[Status, Array] = field(default_factory=dict)
 
 
@@ -91,10 +83,7 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
     Joint, array
         The joint and the load of arrays.
 
-    Raises
-    ------
-    ValueError
-        Arrays whose shapes do not broadcast.
+    Raises ValueError: arrays whose shapes do not broadcast.
     """
     numbers = (*joint.numbers(), load)
     all_plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))

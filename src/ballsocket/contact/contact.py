@@ -11,6 +11,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
+from ..core.bounded import Bounded
 from ..core.checks import check_numeric, check_vectors, degrees_hint, require, shown
 from ..core.display import load_plot
 from ..core.kinds import Unit
@@ -18,7 +19,6 @@ from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from . import describe, strength
-from .bounded import Bounded
 from .outcome import Outcome
 from .stress_ratio import von_mises_ratio
 
@@ -143,7 +143,7 @@ class Contact(Outcome):
         """Compute the ratio of von Mises to yield stress from the von Mises stress of the liner in MPa."""
         return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
-    @property
+    @cached_property
     def quick_von_mises(self) -> Bounded:
         """Largest von Mises stress in the liner in MPa with its bounds, from the table instead of solved stresses.
 
@@ -179,15 +179,13 @@ class Contact(Outcome):
     @property
     def notes(self) -> tuple[str, ...]:
         """Messages on failed points, points outside the model's validity, and exceeded material limits."""
-        unchecked = (
-            [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
-        )
+        failed, unchecked = self._failed, self.utilisation_note
         compared = (
             note
             for acceptable, text in strength.strength_remarks(self)
-            for note in self._note_on_invalid_points(acceptable | self._failed, text)
+            for note in self._note_on_invalid_points(acceptable | failed, text)
         )
-        return (*super().notes, *unchecked, *compared)
+        return (*super().notes, *([unchecked] if unchecked and arrays.all_true(failed) is not True else []), *compared)
 
     @property
     def utilisation_note(self) -> str:

@@ -26,3 +26,9 @@ def half_angle_at(coordinate: Array, ratio: Array) -> Array:
     """Compute the half angle ε in rad from its table coordinate, which runs from -1 to 1."""
     scale, share = ANGLE_SCALE * (1 + ratio), (1 + coordinate) / 2
     return (exp(share * share * log(1 + scale * LIMIT)) - 1) / scale
+
+
+def log_angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
+    """Compute the derivative of ln ε with respect to the table coordinate 2 root - 1."""
+    near = ANGLE_SCALE * (1 + ratio)
+    return (1 + near * angle) * log1p(near * LIMIT) * root / (near * angle)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, reduce
 from html import escape
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -11,8 +13,10 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import needs
-from ..core.kinds import Unit
+from ..core.kinds import Kind, Unit
 from ..core.quantities import BEARING, CONTACT, Quantity
+from ..core.unit_systems import Units
+from ..problem import Joint, elementwise_maximum
 
 if TYPE_CHECKING:
     import pandas
@@ -20,54 +24,47 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Column:
-    """Column of a table of contacts: a quantity in a unit.
-
-    Attributes
-    ----------
-    quantity : Quantity
-    reading : Unit
-        Unit of the column.
-    """
+    """Column of a table of contacts: a quantity in a unit."""
 
     quantity: Quantity
-    reading: Unit
+    reading: Unit  # unit of the column
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Key of the quantity in JSON, such as "max_pressure"."""
         return self.quantity.key
 
-    @property
+    @cached_property
     def attribute(self) -> str:
         """Name of the `Contact` attribute that has the quantity."""
         return self.quantity.name
 
-    @property
+    @cached_property
     def symbol(self) -> str:
         """Symbol of the quantity, such as "pmax"."""
         return self.quantity.symbol
 
-    @property
+    @cached_property
     def title(self) -> str:
         """Name of the quantity in words."""
         return self.quantity.title
 
-    @property
+    @cached_property
     def unit(self) -> str:
         """Unit of the column as text, such as "MPa"."""
         return self.reading.text
 
-    @property
+    @cached_property
     def factor(self) -> float:
         """Factor from the internal unit to the unit of the column."""
         return self.reading.factor
 
-    @property
+    @cached_property
     def head(self) -> str:
         """Heading of the column: symbol and unit, such as "pmax [MPa]"."""
         return self.quantity.head(self.reading)
 
-    @property
+    @cached_property
     def label(self) -> str:
         """Axis label of a plot: title, symbol and unit of the quantity."""
         return self.quantity.label(self.reading)
@@ -85,6 +82,44 @@ COLUMNS = tuple(Column(quantity, quantity.written) for quantity in CONTACT.value
 
 UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
 """Column of the utilisation, printed if a strength is known."""
+
+
+class PressureRatioColumn(Column):
+    """Column of the largest pressure over the allowable pressure, the larger of liner and ball."""
+
+    def values_of(self, contact: Any) -> Any:
+        """Return the ratios of a contact; NaN without an allowable pressure."""
+        materials = (contact.joint.liner, contact.joint.ball)
+        allowed = [material.allowable_pressure for material in materials if material is not None]
+        ratios = [contact.max_pressure / pressure for pressure in allowed if pressure is not None]
+        return reduce(elementwise_maximum, ratios) if ratios else nan * contact.max_pressure
+
+
+PRESSURE_RATIO = PressureRatioColumn(
+    Quantity(
+        "pressure_ratio",
+        "pmax/pa",
+        "largest over allowable pressure",
+        Kind.NUMBER,
+        "Largest pressure over the allowable pressure, the larger of liner and ball.",
+    ),
+    Unit(""),
+)
+"""Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
+
+
+def columns_in(units: Units) -> tuple[Column, ...]:
+    """Return the columns of a contact, each with its unit."""
+    return (*(Column(quantity, units.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
+
+
+def columns_of(joint: Joint, units: Units) -> tuple[Column, ...]:
+    """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
+    materials = [material for material in (joint.liner, joint.ball) if material is not None]
+    known = {name for material in materials for name in material.strengths}
+    ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
+    return (*columns_in(units)[:-1], *(column for name, column in ratios.items() if name in known))
+
 
 UTILISATION_NOTE = "utilisation_note"
 """Key in JSON of the reason why the utilisation does not cover the liner."""
@@ -140,6 +175,8 @@ def count_text(valid: Array) -> str:
 
 def number_text(value: Array, digits: int, gap: str) -> str:
     """Format a number, or the range of an array, such as "3 to 5"; `gap` if all are NaN."""
+    if type(value) is float:
+        return gap if value != value else f"{value:.{digits}g}"
     values = arrays.to_numpy(value)
     numbers = values[~numpy.isnan(values)]
     if not numbers.size:

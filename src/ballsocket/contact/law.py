@@ -117,10 +117,7 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
     shallowest, deepest : float
         Ends of the curve in mm. It ends earlier if the loads do.
 
-    Raises
-    ------
-    TypeError
-        A load at the shallowest indentation that is not above 0.
+    Raises TypeError: a load at the shallowest indentation that is not above 0.
     """
     last_indentation = _deepest_indentation(force, shallowest, deepest)
     for piece_count in _PIECE_COUNTS:

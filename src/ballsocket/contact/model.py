@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import partial
+from math import pi
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -189,12 +190,25 @@ class Model(ModelInfo):
         shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
         return fit_curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
-    def in_cup(self, cup: Cup) -> Model:
+    def in_cup(self, cup: Cup, **aim: Any) -> Model:
         """Return a model for this joint in a cup with a rim.
 
         By default, its validity then ends near the rim (`RimLimited`).
+
+        Parameters
+        ----------
+        cup : Cup
+        **aim
+            Direction of the load, upwards by default: `direction` in the body, or `tilt` from the cup's axis in rad.
+            A model of a full sphere is loaded along its axis: the cup is tilted against the load.
+
+        Raises
+        ------
+        OutsideDomainError
+            A load at an angle to the axis of the cup, of a model with a rim for axial loads only.
         """
-        return self if cup == Cup() else RimLimited(model=self, cup=cup)
+        tilted = cup.tilted(min(cup.load_tilt(**aim), pi / 2)) if aim else cup
+        return self if tilted == Cup() else RimLimited(model=self, cup=tilted)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.
@@ -289,9 +303,9 @@ class RimLimited(ModelWrapper):
         )
         return (*self.model.validity, rim_range, *((sliding_liner,) if self.cup.interface is Interface.SLIDING else ()))
 
-    def in_cup(self, cup: Cup) -> Model:
+    def in_cup(self, cup: Cup, **aim: Any) -> Model:
         """Return the wrapped model for another cup."""
-        return self.model.in_cup(cup)
+        return self.model.in_cup(cup, **aim)
 
 
 _RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"

@@ -67,20 +67,11 @@ class ModelInfo(ABC):
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Outcome(ABC):
-    """Base class of results, with status, validity and notes of each point.
+    """Base class of results, with status, validity and notes of each point."""
 
-    Attributes
-    ----------
-    model : ModelInfo
-        The model that computed the result.
-    joint : Joint
-    status : Status or array of int
-        Success, or the reason of the failure, of each point.
-    """
-
-    model: ModelInfo
+    model: ModelInfo  # the model that computed the result
     joint: Joint
-    status: Array
+    status: Array  # success, or the reason of the failure, of each point
 
     @property
     @abstractmethod
@@ -128,12 +119,13 @@ class Outcome(ABC):
     @property
     def notes(self) -> tuple[str, ...]:
         """Messages on failed points, points outside the model's validity, remarks of the model, and on units."""
-        notes = []
-        for status in list(Status)[1:]:
+        notes, failed = [], self._failed
+        for status in () if arrays.all_true(self.status == int(Status.OK)) else list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
             notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
-        for limit in (*self.model.validity, *self.model.remarks, *UNIT_REMARKS):
-            acceptable = limit.holds(self) | self._failed
+        limits = () if arrays.all_true(self.valid) else self.model.validity
+        for limit in (*limits, *self.model.remarks, *UNIT_REMARKS):
+            acceptable = limit.holds(self) | failed
             if arrays.all_true(acceptable) is False:
                 notes += self._note_on_invalid_points(acceptable, limit.note(self))
         return tuple(notes)
@@ -150,7 +142,7 @@ class Outcome(ABC):
         """Mask of the points whose results are NaN."""
         return is_missing(self.status)
 
-    @property
+    @cached_property
     def _is_plain(self) -> bool:
         """True if the numbers of the result are Python numbers, not arrays."""
         return isinstance(self._load, float)

@@ -33,27 +33,13 @@ QUANTITIES = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointContacts:
-    """Solved contacts of one joint under several loads.
+    """Solved contacts of one joint under several loads."""
 
-    Attributes
-    ----------
-    load : array
-        Load of each contact.
-    touching : array of bool
-        Mask of the loads whose contact is solved; the others are zero.
-    state : object
-        Solution of the touching contacts: `QUANTITIES`, `max_pressure_angle` and `pressure(angle)`.
-    reached : array of bool
-        Mask of the touching contacts that have a solution.
-    error : dict of str to array
-        Relative error of each quantity of the touching contacts.
-    """
-
-    load: numpy.ndarray
-    touching: numpy.ndarray
-    state: Any
-    reached: numpy.ndarray
-    error: dict[str, numpy.ndarray]
+    load: numpy.ndarray  # load of each contact
+    touching: numpy.ndarray  # mask of the loads whose contact is solved; the others are zero
+    state: Any  # solution of the touching contacts: `QUANTITIES`, `max_pressure_angle` and `pressure(angle)`
+    reached: numpy.ndarray  # mask of the touching contacts that have a solution
+    error: dict[str, numpy.ndarray]  # relative error of each quantity of the touching contacts
 
     def expand_to_all_loads(self, values: numpy.ndarray) -> numpy.ndarray:
         """Expand values of the touching contacts (..., touching) to all loads (..., loads).
@@ -83,10 +69,7 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
     *parameters : array
         Arrays that broadcast against joint and load; `solve` gets them after the loads.
 
-    Raises
-    ------
-    TypeError
-        Traced numbers without a value (inside `jax.jit`, `jax.grad`).
+    Raises TypeError: traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
     numbers = [_to_concrete_array(model, number) for number in joint.numbers()]
@@ -145,19 +128,11 @@ class CombinedSolution:
     """Solutions of all joints, combined to arrays: the `Laws` of their contact.
 
     Its arrays have the library of the load.
-
-    Attributes
-    ----------
-    like : array
-        Load, whose library, dtype and device the quantities have.
-    shape : tuple of int
-        Common shape of joint and load.
-    pieces : tuple of (array, JointContacts)
-        Indices in the flattened shape and contacts of each joint.
     """
 
-    like: Array
-    shape: tuple[int, ...]
+    like: Array  # load, whose library, dtype and device the quantities have
+    shape: tuple[int, ...]  # common shape of joint and load
+    # (array, JointContacts), indices in the flattened shape and contacts of each joint
     pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
     def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
@@ -181,9 +156,7 @@ class CombinedSolution:
 
     def _match_load_array(self, values: numpy.ndarray, leading_shape: tuple[int, ...] = ()) -> Array:
         """Convert NumPy values to the shape, library, data type and device of the load."""
-        values = values.reshape((*leading_shape, *self.shape))
-        xp = arrays.namespace(self.like)
-        return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
+        return arrays.convert_like(values.reshape((*leading_shape, *self.shape)), self.like)
 
     def _combine_relative_error(self, name: str) -> Array:
         return self.combine(lambda contacts: contacts.error[name])
@@ -274,10 +247,7 @@ class SolvedContact(Contact):
     def single_state(self) -> Any:
         """Solved state of a single contact; the ball must touch the socket.
 
-        Raises
-        ------
-        ValueError
-            More than one contact; a contact that does not touch or has no result.
+        Raises ValueError: more than one contact; a contact that does not touch or has no result.
         """
         if prod(self.laws.shape) != 1:
             raise ValueError(f"{self._inside} are for one contact, got the shape {self.laws.shape}: press one load")

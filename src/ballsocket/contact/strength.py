@@ -11,10 +11,10 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Array, all_true, clip, exp, logical_not, sqrt, to_numpy, where
+from ..core.bounded import Bounded
 from ..core.quantities import LINEARITY, STRENGTH
 from ..core.validity import RIGID_BACKING, Range
 from ..problem import Joint, Material, elementwise_maximum
-from .bounded import Bounded
 from .coordinates import LIMIT
 from .stress_ratio import MAX_THICKNESS_RATIO, POISSON
 

@@ -15,9 +15,8 @@ from math import log
 import numpy
 
 from ..core import arrays
-from ..core.arrays import Array, Numbers, clip, log1p, safe_divisor, where
+from ..core.arrays import Array, Numbers, clip, convert_like, log1p, safe_divisor, where
 from ..core.arrays import log as ln
-from ..core.chebyshev import convert_like
 from ..problem import elementwise_maximum
 from .coordinates import LIMIT, RATIO_SHIFT, angle_root
 

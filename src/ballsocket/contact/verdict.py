@@ -14,11 +14,11 @@ from math import inf, nextafter
 from math import isfinite as is_finite_number
 
 from ..core.arrays import isfinite, where
+from ..core.bounded import Bounded as Bounded
+from ..core.bounded import Verdict as Verdict
+from ..core.bounded import exact_number as exact_number
 from ..core.quantities import STRENGTH
 from ..problem import Joint, Material
-from .bounded import Bounded as Bounded
-from .bounded import Verdict as Verdict
-from .bounded import exact_number as exact_number
 from .contact import Contact
 from .strength import joint_ball_stress_ratio, unchecked_strength_reason, utilisation
 
@@ -76,24 +76,12 @@ def rim_verdict(contact: Contact) -> Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class StrengthUse:
-    """Comparison of a contact's stress with one strength of the liner or the ball.
+    """Comparison of a contact's stress with one strength of the liner or the ball."""
 
-    Attributes
-    ----------
-    part : str
-        "liner" or "ball".
-    strength : str
-        Name of the strength.
-    stress : Bounded
-        Stress of the contact in MPa with its error bar.
-    allowed : float
-        Strength in MPa.
-    """
-
-    part: str
-    strength: str
-    stress: Bounded
-    allowed: float
+    part: str  # "liner" or "ball"
+    strength: str  # name of the strength
+    stress: Bounded  # stress of the contact in MPa with its error bar
+    allowed: float  # strength in MPa
 
     @property
     def ratio(self) -> Bounded:

@@ -41,10 +41,7 @@ def is_plain_number(value: Any) -> bool:
 def namespace(*values: Array) -> Any:
     """Return the array library of the given values, such as NumPy or JAX; NumPy for plain numbers.
 
-    Raises
-    ------
-    TypeError
-        Arrays of several libraries.
+    Raises TypeError: arrays of several libraries.
     """
     if all(isinstance(value, _NUMPY_TYPES) for value in values):
         return numpy
@@ -218,6 +215,14 @@ def safe_divisor(x: Array) -> Array:
 def device(x: Array) -> Any:
     """Return the device (CPU or GPU) that stores the array `x`."""
     return array_api_compat.device(x)
+
+
+def convert_like(values: numpy.ndarray, like: Array) -> Array:
+    """Convert NumPy values to the library, dtype and device of another array."""
+    xp = namespace(like)
+    if xp is numpy and like.dtype == values.dtype:
+        return values
+    return xp.asarray(values, dtype=like.dtype, device=device(like))
 
 
 def machine_epsilon(x: Array) -> float:

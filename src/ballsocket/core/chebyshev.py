@@ -97,7 +97,7 @@ def stored_series(coefficients: Array, x: Array) -> Pair:
     """Evaluate a Chebyshev series and its slope at x from all polynomials; shapes as in `traced_series`."""
     waves, xp = chebyshev_polynomials(x, coefficients.shape[0]), arrays.namespace(x)
     shape = (coefficients.shape[0], *(1 for _ in x.shape[1:]), coefficients.shape[1])
-    slopes = convert_like(derivative_matrix(shape[0]), x) @ coefficients
+    slopes = arrays.convert_like(derivative_matrix(shape[0]), x) @ coefficients
     value, slope = (xp.sum(xp.reshape(series, shape) * waves, axis=0) for series in (coefficients, slopes))
     return value, slope
 
@@ -141,11 +141,3 @@ def contract_factors(matrix: Array, *factors: Array) -> Pair:
     for factor in varying[1:]:
         products = xp.reshape(products[:, None, :] * factor[None, :, :], (-1, products.shape[1]))
     return xp.reshape(cube, (matrix.shape[0], -1)), products
-
-
-def convert_like(values: numpy.ndarray, like: Array) -> Array:
-    """Convert a table to the library, dtype and device of the caller's array."""
-    xp = arrays.namespace(like)
-    if xp is numpy and like.dtype == values.dtype:
-        return values
-    return xp.asarray(values, dtype=like.dtype, device=arrays.device(like))

@@ -77,12 +77,8 @@ def check_numeric(name: str, value: Any) -> Array:
 
     The caller may reuse the array without a change of what was made from it.
 
-    Raises
-    ------
-    TypeError
-        Any other value, such as text, booleans, complex numbers or masked arrays.
-    ValueError
-        An integer that is too large for a float.
+    Raises TypeError: any other value, such as text, booleans, complex numbers or masked arrays.
+    Raises ValueError: an integer that is too large for a float.
     """
     if isinstance(value, list | tuple):
         value = _list_to_array(name, value)
@@ -94,7 +90,7 @@ def check_numeric(name: str, value: Any) -> Array:
         return value
     if (
         not hasattr(value, "dtype")
-        or isinstance(value, numpy.ma.MaskedArray | numpy.matrix)
+        or any(kind.__name__ in _REJECTED_ARRAYS for kind in type(value).__mro__)
         or hasattr(value, "to_numpy")
         or not _has_real_numbers(value)
     ):
@@ -115,10 +111,7 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
 
     `axes` describes the last axis in the message, such as "x, y, z (mm)".
 
-    Raises
-    ------
-    ValueError
-        A last axis that is not of length 3.
+    Raises ValueError: a last axis that is not of length 3.
     """
     value = check_numeric(name, value)
     shape = _array_shape(value)
@@ -130,12 +123,8 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
 def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> Array:
     """Check that a value has real numbers and one of several shapes, and return it.
 
-    Raises
-    ------
-    TypeError
-        Another type than real numbers.
-    ValueError
-        Another shape.
+    Raises TypeError: another type than real numbers.
+    Raises ValueError: another shape.
     """
     value = check_numeric(name, value)
     if _array_shape(value) not in allowed:
@@ -164,9 +153,8 @@ def _has_real_numbers(value: Any) -> bool:
 def _format_type_error(name: str, value: Any) -> str:
     """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
-    for kind, title in _REJECTED_ARRAYS.items():
-        if isinstance(value, kind):
-            text = title
+    for kind in type(value).__mro__:
+        text = _REJECTED_ARRAYS.get(kind.__name__, text)
     if hasattr(value, "to_numpy"):  # of pandas, xarray or polars
         name_of_type = type(value).__name__
         column = "of one of its columns" if name_of_type in ("DataFrame", "Dataset") else "of it"
@@ -175,7 +163,8 @@ def _format_type_error(name: str, value: Any) -> str:
     return f"{name} must be a number or an array of real numbers in mm, N, MPa or rad, got {text}{hint}"
 
 
-_REJECTED_ARRAYS = {numpy.ma.MaskedArray: "a masked array", numpy.matrix: "a numpy.matrix: use numpy.asarray"}
+_REJECTED_ARRAYS = {"MaskedArray": "a masked array", "matrix": "a numpy.matrix: use numpy.asarray"}
+"""Arrays by the name of their class: NumPy imports the module of masked arrays when it is named."""
 
 
 def reject_unnamed_loads(loads: tuple[Any, ...]) -> None:
@@ -262,10 +251,7 @@ def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
     name : object
     known : iterable of str
 
-    Raises
-    ------
-    ValueError
-        An unknown name; the message suggests the most similar one.
+    Raises ValueError: an unknown name; the message suggests the most similar one.
     """
     names = list(known)
     for candidate in (name, normalise_name(name)) if isinstance(name, str) else ():
@@ -311,11 +297,8 @@ class NamedItems(dict[str, Value]):
 def check_text(name: str, value: Any) -> str:
     """Check that a value is a text of limited length without control characters, and return it.
 
-    Raises
-    ------
-    ValueError
-        A value of another type, a text that is too long, or one with halves of surrogate pairs or with control
-        characters other than tabs and line ends.
+    Raises ValueError: a value of another type, a text that is too long, or one with halves of surrogate pairs or with
+    control characters other than tabs and line ends.
     """
     if not isinstance(value, str):
         raise ValueError(f"{name} = {shown(value)} must be text")
@@ -340,10 +323,7 @@ _MAX_INTEGER = (1 << 53) - 1
 def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INTEGER) -> int:
     """Check that a value is an integer within limits, and return it.
 
-    Raises
-    ------
-    ValueError
-        Any other value, such as a float or a boolean.
+    Raises ValueError: any other value, such as a float or a boolean.
     """
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         raise ValueError(f"{name} = {shown(value)} is not allowed: a whole number from {low} to {high}")

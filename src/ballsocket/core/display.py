@@ -111,10 +111,7 @@ def register_plot(name: str, loader: Callable[[], Plot]) -> None:
 def load_plot(name: str) -> Plot:
     """Import and return the plot function registered under a name.
 
-    Raises
-    ------
-    LookupError
-        A name that no room has registered.
+    Raises LookupError: a name that no room has registered.
     """
     if name not in _LOADERS:
         known = ", ".join(sorted(_LOADERS)) or "none"

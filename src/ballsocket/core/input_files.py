@@ -27,10 +27,7 @@ def resolve_inside(folders: Iterable[Path], path: Path, name: str) -> Path:
 
     `name` replaces the path in the message.
 
-    Raises
-    ------
-    ValueError
-        A path outside the folders.
+    Raises ValueError: a path outside the folders.
     """
     resolved = resolve_path(path)
     if not any(resolved.is_relative_to(folder) for folder in folders):
@@ -53,10 +50,7 @@ def resolve_input(path: Path) -> Path:
 
     The file is not accessed.
 
-    Raises
-    ------
-    ValueError
-        A path outside the allowed folders.
+    Raises ValueError: a path outside the allowed folders.
     """
     allowed = os.environ.get(_VARIABLE)
     if allowed is None:
@@ -67,12 +61,8 @@ def resolve_input(path: Path) -> Path:
 def open_input(path: Path) -> BinaryIO:
     """Open an input file for reading bytes.
 
-    Raises
-    ------
-    ValueError
-        A path from which this process may not read, or no regular file there.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a path from which this process may not read, or no regular file there.
+    Raises OSError: the file cannot be read.
     """
     resolved = resolve_input(path)
     if is_restricted() and resolved.exists() and not resolved.is_file():
@@ -129,10 +119,7 @@ def resolve_path(path: Path) -> Path:
 def packed_files(main: Path, opened: Iterable[Path]) -> tuple[Path, ...]:
     """Check the files that an input file opened, and return them with the input file first.
 
-    Raises
-    ------
-    ValueError
-        A file outside the folder of the input file; too many files.
+    Raises ValueError: a file outside the folder of the input file; too many files.
     """
     files = tuple(dict.fromkeys((main, *opened)))
     for path in files:

@@ -31,6 +31,16 @@ class Unit:
         return f" [{self.text}]" if self.text else ""
 
 
+PLAIN = Unit("")
+"""Unit of a plain number."""
+
+PERCENT = Unit("%", 100.0)
+MILLIMETRES, NANOMETRES = Unit("mm"), Unit("nm", 1e6)
+NEWTONS, MEGAPASCALS, NEWTON_METRES = Unit("N"), Unit("MPa"), Unit("N m", 1e-3)
+CUBIC_MILLIMETRES = Unit("mm³")
+MILLIONS = Unit("million", 1e-6)
+
+
 class Kind(StrEnum):
     """Physical kind of a number, such as a length or a force, which determines its units."""
 
@@ -50,7 +60,11 @@ class Kind(StrEnum):
     EDGE_COEFFICIENT = "edge coefficient"
     VISCOSITY = "viscosity"
     ROTATION_RATE = "rotation rate"
+    SPEED = "speed"
+    VOLUME = "volume"
+    CYCLES = "number of cycles"
     TIME = "time"
+    DURATION = "duration"
 
     @property
     def unit(self) -> str:
@@ -93,9 +107,18 @@ _KINDS = {
     Kind.MASS: ("kg", "a mass, such as '2 kg'"),
     Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
     Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
-    Kind.TIME: ("s", "a time, such as '1.1 s'"),
     Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
+    Kind.SPEED: ("mm/s", "a speed, such as '0.1 m/s'"),
+    Kind.VOLUME: ("mm3", "a volume, such as '80 mm^3'"),
+    Kind.CYCLES: ("1", "a number of cycles, such as 5e6"),
+    Kind.TIME: ("years", "a time in years, such as 5"),
+    Kind.DURATION: ("s", "a time, such as '1.1 s'"),
     Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }
-_WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
-_TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}
+_WRITTEN = {
+    Kind.ANGLE: Unit("°", degrees(1.0)),
+    Kind.NUMBER: Unit(""),
+    Kind.AREA: Unit("mm²"),
+    Kind.VOLUME: Unit("mm³"),
+}
+_TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: "", Kind.CYCLES: ""}

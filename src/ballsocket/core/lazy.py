@@ -1,12 +1,14 @@
-"""Cached properties without a lock: those of Python 3.12, also in Python 3.11.
+"""Values and names that are computed or imported on first use.
 
-`torch.compile` cannot trace the lock of Python 3.11.
+`cached_property` has no lock, as in Python 3.12: `torch.compile` cannot trace the lock of Python 3.11.
 """
 
 from __future__ import annotations
 
 import functools
 import sys
+from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING or sys.version_info >= (3, 12):
@@ -25,4 +27,25 @@ else:
             return values[self.attrname]
 
 
-__all__ = ["cached_property"]
+def imported_names(package: str, names_by_module: Mapping[str, str]) -> Callable[[str], Any]:
+    """Return the function `__getattr__` of a package that imports its names on first use.
+
+    Parameters
+    ----------
+    package : str
+    names_by_module : mapping of str to str
+        Names, separated by spaces, by the module of the package that defines them.
+    """
+    modules = {name: module for module, names in names_by_module.items() for name in names.split()}
+
+    def get_name(name: str) -> Any:
+        if name not in modules:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}", name=name, obj=sys.modules[package])
+        value = getattr(import_module(f"{package}.{modules[name]}"), name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return get_name
+
+
+__all__ = ["cached_property", "imported_names"]

@@ -26,14 +26,9 @@ def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:
 
     Polygons are split into triangles. A file of points alone has no triangles.
 
-    Raises
-    ------
-    ValueError
-        A file that is too large, incomplete or no mesh; indices of points that are not in the file.
-    ImportError
-        The package meshio is not installed.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a file that is too large, incomplete or no mesh; indices of points that are not in the file.
+    Raises ImportError: the package meshio is not installed.
+    Raises OSError: the file cannot be read.
     """
     needs("fem", "meshio")
     import meshio  # slow to import

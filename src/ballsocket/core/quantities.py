@@ -14,7 +14,7 @@ from typing import Any
 
 from .arrays import Array, all_true
 from .checks import check_numeric, degrees_hint, first_invalid, require
-from .kinds import Kind, Unit
+from .kinds import MILLIONS, Kind, Unit
 
 
 def _is_not_nan(x: Array) -> Array:
@@ -108,7 +108,8 @@ class Quantity:
     @property
     def column(self) -> str:
         """Column name in CSV and data frames, with the unit at its end, such as "max_pressure_MPa"."""
-        return f"{self.name}_{self.kind.column_suffix}" if self.kind.column_suffix else self.name
+        unit = self.kind.column_suffix
+        return self.name if unit in ("", self.name) else f"{self.name}_{unit}"
 
     @property
     def written(self) -> Unit:
@@ -149,6 +150,8 @@ class Quantity:
         TypeError
             A value that is neither a number nor an array of numbers.
         """
+        if type(value) is float and self.allows(value):
+            return value
         number = check_numeric(self.name, value)
         valid = self.allows(number)
         if all_true(valid) is False:
@@ -344,6 +347,30 @@ CUP = _make_quantity_table(
 )
 """Rim and orientation of a cup."""
 
+WEAR = _make_quantity_table(
+    Quantity("cycles", "cycles", "number of cycles", Kind.CYCLES, "Cycles of the loading since the start.",
+             MILLIONS),
+    Quantity("years", "time", "time", Kind.TIME, "Time since the start at the given number of cycles a year."),
+    Quantity("volume", "volume", "worn volume", Kind.VOLUME, "Volume of the liner that is worn away."),
+    Quantity("depth", "depth", "worn depth", Kind.LENGTH, "Largest worn depth of the liner."),
+    Quantity("penetration", "penetration", "penetration", Kind.LENGTH,
+             "Distance by which the ball's centre has moved since the first cycle, by wear and creep."),
+    Quantity("penetration_of_wear", "by wear", "penetration by wear", Kind.LENGTH,
+             "Penetration into a bore with the wear alone."),
+    Quantity("penetration_of_creep", "by creep", "penetration by creep", Kind.LENGTH,
+             "Penetration into a bore with the creep alone."),
+    Quantity("radiographic_penetration", "in a radiograph", "penetration in a radiograph", Kind.LENGTH,
+             "Penetration in the plane of a radiograph from the front, as ASTM F2385 measures it."),
+    Quantity("creep_depth", "creep", "depth of creep", Kind.LENGTH, "Largest depth of creep of the liner."),
+    Quantity("ball_volume", "volume of the ball", "worn volume of the ball", Kind.VOLUME,
+             "Volume of the ball that is worn away."),
+    Quantity("ball_depth", "depth of the ball", "worn depth of the ball", Kind.LENGTH,
+             "Largest worn depth of the ball."),
+    Quantity("edge_pressure", "at the rim", "pressure at the rim", Kind.MODULUS,
+             "Largest pressure in the outermost ring of the bore."),
+)
+"""Results of wear over many cycles."""
+
 AIM = _make_quantity_table(
     Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Angle between the load and the axis of the cup.",
              **_angle_limits("a tilt", 0.0, 180.0)),
@@ -380,6 +407,7 @@ QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
         **AIM,
         **FIELD,
         **DERIVED,
+        **WEAR,
     }
 )
 """All quantities by name."""

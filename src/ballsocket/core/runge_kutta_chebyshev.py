@@ -28,19 +28,12 @@ _MAX_STAGES = 60
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevStep:
-    """Result of one Runge-Kutta-Chebyshev step.
+    """Result of one Runge-Kutta-Chebyshev step."""
 
-    Attributes
-    ----------
-    values, rate : array
-        Values and their rate of change at the end of the step.
-    error : array
-        Estimated local error of the values.
-    """
-
+    # values and their rate of change at the end of the step
     values: Numbers
     rate: Numbers
-    error: Numbers
+    error: Numbers  # estimated local error of the values
 
 
 def stage_count(length: float, spectral_radius: float) -> int:

@@ -69,6 +69,10 @@ class Source:
         authors = f"{names[0]} et al." if len(names) > 2 else " & ".join(names)
         return f"{authors} {_read_field(entry, 'year')}"
 
+    def summary(self) -> dict[str, str | None]:
+        """Return key, text and DOI for JSON."""
+        return {"key": self.key, "text": str(self), "doi": self.doi or None}
+
     def __str__(self) -> str:
         return f"{self.authors_and_year}, {self.place}" if self.place else self.authors_and_year
 

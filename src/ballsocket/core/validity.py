@@ -221,10 +221,7 @@ def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     name : str
         Name of the model or modulus for the message.
 
-    Raises
-    ------
-    OutsideDomainError
-        No point is inside one of the ranges.
+    Raises OutsideDomainError: no point is inside one of the ranges.
     """
     points: Array = joint.ball_radius == joint.ball_radius
     unloaded = _UnloadedContact(joint)
@@ -301,11 +298,19 @@ def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
 
 def _largest_young(contact: Any) -> Array:
     """Return the largest Young's modulus of liner, ball and backing in MPa."""
-    joint = contact.joint
-    largest = joint.liner.young
+    return _largest(contact.joint, "young")
+
+
+def largest_poisson(contact: Any) -> Array:
+    """Return the largest Poisson's ratio of liner, ball and backing."""
+    return _largest(contact.joint, "poisson")
+
+
+def _largest(joint: Any, name: str) -> Array:
+    largest = getattr(joint.liner, name)
     for part in (joint.ball, *(layer.material for layer in joint.backing)):
         if part is not None:
-            largest = where(part.young > largest, part.young, largest)
+            largest = where(getattr(part, name) > largest, getattr(part, name), largest)
     return largest
 
 

@@ -305,10 +305,7 @@ def as_array_like(position: Any, value: Any) -> Any:
 def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vector, Vector]:
     """Split states of a ball, arrays (..., 3), into components in arrays of the position's library.
 
-    Raises
-    ------
-    ValueError
-        A vector without three components.
+    Raises ValueError: a vector without three components.
     """
     names = ("position", "velocity", "spin")
     axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
@@ -343,21 +340,12 @@ class ValidityMonitor:
     """Monitor that logs one warning when an indentation first leaves the validity range of a model.
 
     Contacts below the range do not count, because every impact passes through them.
-
-    Attributes
-    ----------
-    model : Model
-    joint : Joint
-    wall : float
-        Largest indentation in mm that wall thickness and model allow.
-    limit : float
-        Largest indentation in mm that needs no check; infinite after the warning.
     """
 
     model: Model
     joint: Joint
-    wall: float
-    limit: float = 0.0
+    wall: float  # largest indentation in mm that wall thickness and model allow
+    limit: float = 0.0  # largest indentation in mm that needs no check; infinite after the warning
 
     def check_array(self, indentation: Array) -> None:
         """Check the largest of some indentations in mm, and log a warning if the model is invalid there."""

@@ -149,10 +149,7 @@ def energy_derivatives_of_array(
 def potential_of(model: Model, joint: Joint) -> Potential:
     """Return the elastic energy of a joint as a function of the indentation, for a model with a force law.
 
-    Raises
-    ------
-    TypeError, ValueError
-        The errors of `model.law(joint)`.
+    Raises TypeError, ValueError: the errors of `model.law(joint)`.
     """
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
@@ -225,10 +222,8 @@ class AdhesionPotential:
 def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential:
     """Return the elastic energy of an adhesive joint, measured from the separation of the ball.
 
-    Raises
-    ------
-    ValueError
-        An adhesion number η = u_c/c of 1 or more: the hemisphere sticks as a unit and never separates gradually.
+    Raises ValueError: an adhesion number η = u_c/c of 1 or more: the hemisphere sticks as a unit and never separates
+    gradually.
     """
     model.law(joint)  # raises for arrays and for joints outside the domain
     float_joint = joint.with_floats()

@@ -22,7 +22,8 @@ from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, where
 from ..core.checks import shown
 from ..core.display import OneLine
-from ..elasticity.off_axis import Preload, Sphere
+from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.preload import Preload
 from ..problem import Joint
 from .ball_centre import Constants, Vector
 from .bristles import Bristles
@@ -78,30 +79,18 @@ class PreloadedForce(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PreloadTable:
-    """Tabulated contact of a preloaded joint.
+    """Tabulated contact of a preloaded joint."""
 
-    Attributes
-    ----------
-    offset : float
-        Position of the ball's centre in equilibrium along the axis of the dome in mm; negative towards the opening.
-    limit : float
-        Largest tabulated displacement from equilibrium in mm.
-    stiffness_across, stiffness_along : float
-        Stiffness in equilibrium across and along the axis of the dome in N/mm.
-    drill_ratio : float
-        Torque of friction about the axis of the dome over that about an axis across it.
-    error : float
-        Largest error of the force between the tabulated directions, relative to the solver's force there.
-    curves : dict
-        Curves over the displacement from equilibrium by quantity, one for each direction.
-    """
-
+    # position of the ball's centre in equilibrium along the axis of the dome in mm; negative towards the opening
     offset: float
-    limit: float
+    limit: float  # largest tabulated displacement from equilibrium in mm
+    # stiffness in equilibrium across and along the axis of the dome in N/mm
     stiffness_across: float
     stiffness_along: float
-    drill_ratio: float
+    drill_ratio: float  # torque of friction about the axis of the dome over that about an axis across it
+    # curves over the displacement from equilibrium by quantity, one for each direction
     curves: dict[str, tuple[CurveLaw, ...]]
+    # largest error of the force between the tabulated directions, relative to the solver's force there
     error: float = 0.0
 
     @cached_property
@@ -117,10 +106,7 @@ class PreloadTable:
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
 
-    Raises
-    ------
-    ValueError
-        A joint without an interference; a socket that does not hold its ball.
+    Raises ValueError: a joint without an interference; a socket that does not hold its ball.
     """
     equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:

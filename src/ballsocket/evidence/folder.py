@@ -52,10 +52,7 @@ def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder
 def source_files(question: Question) -> dict[str, Path]:
     """Return the question file and the files that it names, by their names in the pack.
 
-    Raises
-    ------
-    ValueError
-        A named file with the name of a file of the pack.
+    Raises ValueError: a named file with the name of a file of the pack.
     """
     named = {path.relative_to(question.path.parent).as_posix(): path for path in question.files[1:]}
     for name in named:

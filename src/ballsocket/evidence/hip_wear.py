@@ -27,30 +27,15 @@ from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 
 @dataclass(frozen=True)
 class Published:
-    """Published wear or penetration.
+    """Published wear or penetration."""
 
-    Attributes
-    ----------
-    description : str
-        Test or patients.
-    value : float
-    unit : str
-    source : str
-    half_width : float
-        Half the width of the interval of `spread`; 0 without one.
-    spread : str
-        Kind of the interval: a confidence level, the deviation or the range.
-    read : str
-        Part of the source that was read.
-    """
-
-    description: str
+    description: str  # test or patients
     value: float
     unit: str
     source: str
-    half_width: float = 0.0
-    spread: str = ""
-    read: str = "abstract"
+    half_width: float = 0.0  # half the width of the interval of `spread`; 0 without one
+    spread: str = ""  # kind of the interval: a confidence level, the deviation or the range
+    read: str = "abstract"  # part of the source that was read
 
     def __str__(self) -> str:
         return f"{self.value:g} ± {self.half_width:g}" if self.half_width else f"{self.value:g}"
@@ -140,16 +125,9 @@ def make_hip(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLa
 
 @dataclass(frozen=True, kw_only=True)
 class Predicted:
-    """Predicted number with its band of 95 %.
+    """Predicted number with its band of 95 %."""
 
-    Attributes
-    ----------
-    name : str
-        Name in `PUBLISHED`.
-    low, median, high : float
-    """
-
-    name: str
+    name: str  # name in `PUBLISHED`
     low: float
     median: float
     high: float
@@ -157,22 +135,13 @@ class Predicted:
 
 @dataclass(frozen=True, kw_only=True)
 class Ratio:
-    """Ratio of two measured wear rates, as the laws predict it independently of their coefficients.
+    """Ratio of two measured wear rates, as the laws predict it independently of their coefficients."""
 
-    Attributes
-    ----------
-    numerator, denominator : str
-        Names in `PUBLISHED`.
-    archard : float
-        Ratio by Archard's law.
-    area : float, optional
-        Ratio by the area law.
-    """
-
+    # names in `PUBLISHED`
     numerator: str
     denominator: str
-    archard: float
-    area: float | None = None
+    archard: float  # ratio by Archard's law
+    area: float | None = None  # ratio by the area law
 
 
 def ratios() -> Iterator[Ratio]:
@@ -200,7 +169,7 @@ def ratios() -> Iterator[Ratio]:
 def separations() -> Iterator[tuple[str, float, float]]:
     """Compute medial-lateral separation and distance of the centres in mm, with the name of the measured one."""
     for angle, tilt in zip(MEASURED_SEPARATIONS, (30.0, 50.0), strict=True):
-        apart = make_hip(36.0, iso_14242_4(), tilt).separation
+        apart = make_hip(36.0, iso_14242_4(), tilt).frame.separation
         assert apart is not None
         yield f"ali-{angle[:-1]}-separation", apart.medial_lateral, apart.centre_distance
 

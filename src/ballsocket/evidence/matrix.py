@@ -55,29 +55,14 @@ Case = dict[str, float]
 
 @dataclass(frozen=True)
 class Row:
-    """Result of a case.
-
-    Attributes
-    ----------
-    case : dict of str to float
-    numbers : mapping of str to float
-        Computed numbers by name; NaN for a missing result.
-    errors : mapping of str to float
-        Known relative errors by name.
-    bars : mapping of str to (float, float)
-        Lower and upper bound of the numbers with an error bar, by name.
-    status : str
-        Name of the status of the contact.
-    valid : bool
-        True in the range of the model.
-    """
+    """Result of a case."""
 
     case: Case
-    numbers: Mapping[str, float]
-    errors: Mapping[str, float]
-    bars: Mapping[str, tuple[float, float]]
-    status: str
-    valid: bool
+    numbers: Mapping[str, float]  # computed numbers by name; NaN for a missing result
+    errors: Mapping[str, float]  # known relative errors by name
+    bars: Mapping[str, tuple[float, float]]  # lower and upper bound of the numbers with an error bar, by name
+    status: str  # name of the status of the contact
+    valid: bool  # True in the range of the model
 
     def with_wear(self, rate: float | None) -> Row:
         """Add the wear rate to the numbers of the row."""

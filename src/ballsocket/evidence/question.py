@@ -32,7 +32,7 @@ from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
-from ..model_catalogue import off_axis, reference, with_gap
+from ..model_catalogue import OFF_AXIS, named_models, reference, with_gap
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit
@@ -212,7 +212,7 @@ class Question:
     @property
     def model(self) -> Model:
         """Model of the matrix: `Exact`, or the off-axis solver for tilted loads or cups."""
-        chosen = off_axis if any(name in AIMS for name in self.axes) else reference
+        chosen = named_models[OFF_AXIS] if any(name in AIMS for name in self.axes) else reference
         return with_gap(chosen, self.gap).in_cup(self.file.cup)
 
 

@@ -29,29 +29,16 @@ TRUTH = Tabulated()
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredValidity:
-    """Measured errors of a model within its range.
-
-    Attributes
-    ----------
-    model : str
-    promise : Promise
-    contacts, valid : int
-        Number of contacts, and of those in the range of the model.
-    kept_share : float
-        Share of the valid contacts with all errors within the promise.
-    worst : dict of str to float
-        Largest relative error of each promised quantity over the valid contacts.
-    worst_joint : Joint
-        Joint with the largest error.
-    """
+    """Measured errors of a model within its range."""
 
     model: str
     promise: Promise
+    # number of contacts, and of those in the range of the model
     contacts: int
     valid: int
-    kept_share: float
-    worst: dict[str, float]
-    worst_joint: Joint
+    kept_share: float  # share of the valid contacts with all errors within the promise
+    worst: dict[str, float]  # largest relative error of each promised quantity over the valid contacts
+    worst_joint: Joint  # joint with the largest error
 
     @property
     def holds(self) -> bool:

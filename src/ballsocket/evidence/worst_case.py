@@ -47,26 +47,15 @@ _SEED = 1
 
 @dataclass(frozen=True, kw_only=True)
 class CalculationMethod:
-    """Result of one method for a case.
-
-    Attributes
-    ----------
-    name : str
-    numbers, errors : mapping of str to float
-        Numbers and known relative errors, by quantity.
-    valid : bool
-        True in the range of the method.
-    notes : tuple of str
-    aligned : bool
-        True for a load along the axis of the cup.
-    """
+    """Result of one method for a case."""
 
     name: str
+    # numbers and known relative errors, by quantity
     numbers: Mapping[str, float]
     errors: Mapping[str, float]
-    valid: bool
+    valid: bool  # True in the range of the method
     notes: tuple[str, ...] = ()
-    aligned: bool = True
+    aligned: bool = True  # True for a load along the axis of the cup
 
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON, with the units of files."""

@@ -33,13 +33,7 @@ Outputs = dict[str, Part]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
-    """Recorded formulas of a force element, for an unknown state and tunable parameters.
-
-    Attributes
-    ----------
-    element : ForceElement
-    tape : Tape
-    """
+    """Recorded formulas of a force element, for an unknown state and tunable parameters."""
 
     element: ForceElement
     tape: Tape = field(default_factory=Tape)

@@ -22,18 +22,10 @@ _BITS = {"x86_64": 64, "aarch64": 64, "x86": 32}
 
 @dataclass(frozen=True, kw_only=True)
 class Platform:
-    """Operating system and processor of a library, with the names of FMI 3.
+    """Operating system and processor of a library, with the names of FMI 3."""
 
-    Attributes
-    ----------
-    system : str
-        "linux", "windows", "darwin", ...
-    processor : str
-        "x86_64", "aarch64", "x86", ...
-    """
-
-    system: str
-    processor: str
+    system: str  # "linux", "windows", "darwin", ...
+    processor: str  # "x86_64", "aarch64", "x86", ...
 
     def __str__(self) -> str:
         return f"{self.processor}-{self.system}"
@@ -106,10 +98,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
     Platform
         Platform in the header of the library; a cross-compiler builds for another platform than this machine.
 
-    Raises
-    ------
-    NoCompiler
-        A missing compiler, a failed one (with its first error message), or an unknown output format.
+    Raises NoCompiler: a missing compiler, a failed one (with its first error message), or an unknown output format.
     """
     flags = _split_environment_variable("CFLAGS")
     command = [
@@ -141,10 +130,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
     """Compile C sources of a folder into a shared library for this machine, and return its path.
 
-    Raises
-    ------
-    NoCompiler
-        As `compile_library`, and for a library of another platform, which is removed.
+    Raises NoCompiler: as `compile_library`, and for a library of another platform, which is removed.
     """
     built_for = compile_library(sources, library, folder, options)
     if built_for != THIS_PLATFORM:
@@ -156,10 +142,7 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
 def library_platform(header: bytes) -> Platform:
     """Determine the operating system and processor of a library from its first bytes (ELF, PE or Mach-O).
 
-    Raises
-    ------
-    ValueError
-        Another format, or an unknown processor.
+    Raises ValueError: another format, or an unknown processor.
     """
     if header[:4] == b"\x7fELF":
         system, machine, machines = "linux", int.from_bytes(header[18:20], "little"), _ELF_MACHINES

@@ -7,29 +7,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Tunable:
-    """Adjustable parameter of an exported element.
-
-    Attributes
-    ----------
-    name : str
-    constant : str
-        Field of the `Constants` of a `ForceElement`.
-    unit, si_unit : str
-        Unit in this package and in the International System.
-    si : float
-        Size of `unit` in `si_unit`.
-    meaning : str
-    above : bool
-        True for a parameter above 0; false for 0 or more.
-    """
+    """Adjustable parameter of an exported element."""
 
     name: str
-    constant: str
+    constant: str  # field of the `Constants` of a `ForceElement`
+    # unit in this package and in the International System
     unit: str
     si_unit: str
-    si: float
+    si: float  # size of `unit` in `si_unit`
     meaning: str
-    above: bool = False
+    above: bool = False  # True for a parameter above 0; false for 0 or more
 
 
 TUNABLES = (

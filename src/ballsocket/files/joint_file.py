@@ -8,13 +8,14 @@ from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
-from ..contact import Model
+from msgspec import structs
+
 from ..contact.assembly import select_and_check_load
 from ..core.checks import check_text, nearest, normalise_name, require, shown
 from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
-from ..problem.cup import UP, AngleDefinition, Cup, Interface, Side
+from ..problem.cup import AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
@@ -41,7 +42,7 @@ class LengthsTable(Table, frozen=True, kw_only=True):
     outer_radius: Length | None = None
     outer_diameter: Length | None = None
     interference: Length | None = None
-    support: Annotated[Support, meaning("outermost surface behind the liner: fixed or free")] = Support.FIXED
+    support: Annotated[Support, meaning("outermost surface behind the liner")] = Support.FIXED
 
 
 class MaterialName(Text):
@@ -83,17 +84,20 @@ class ShellTable(MaterialTable, frozen=True, kw_only=True):
 class CupTable(Table, frozen=True, kw_only=True):
     """Cup: its rim, its interface with the liner, and its orientation in the body."""
 
-    arc_of_cover: Angle | None = None
-    chamfer: Length | None = None
-    inclination: Angle | None = None
-    anteversion: Angle | None = None
-    interface: Annotated[Interface | None, meaning("interface of liner and backing: bonded or sliding")] = None
-    side: Annotated[Side | None, meaning("side of the body: right or left")] = None
+    arc_of_cover: Annotated[Angle | None, meaning(default="180 deg")] = None
+    chamfer: Annotated[Length | None, meaning(default="0 mm")] = None
+    inclination: Annotated[Angle | None, meaning(default="0 deg")] = None
+    anteversion: Annotated[Angle | None, meaning(default="0 deg")] = None
+    interface: Annotated[Interface | None, meaning("interface of liner and backing", default="bonded")] = None
+    side: Annotated[Side | None, meaning("side of the body", default="right")] = None
     orientation: Annotated[
-        AngleDefinition | None, meaning("definition of inclination and anteversion; radiographic by default")
+        AngleDefinition | None, meaning("definition of inclination and anteversion", default="radiographic")
     ] = None
     pelvic_tilt: Annotated[
-        Angle | None, meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front")
+        Angle | None,
+        meaning(
+            "tilt of the pelvis in which the angles are measured, positive with its top to the front", default="0 deg"
+        ),
     ] = None
 
 
@@ -107,7 +111,7 @@ class Direction(Value, tuple[float, ...]):
         """Convert three numbers: a list, or a text with commas."""
         parts = value.split(",") if isinstance(value, str) else value
         if not isinstance(parts, list | tuple) or len(parts) != 3:
-            raise ValueError(f"{name} = {shown(value)} must be three numbers: to the right, to the front, upwards")
+            raise ValueError(f"{name} = {shown(value)} must be three numbers 'x,y,z'")
         numbers = cls(parse(name, part, Kind.NUMBER) for part in parts)
         length = hypot(*numbers)
         require(f"length of {name}", length, 0 < length < inf, "a direction points somewhere")
@@ -120,8 +124,8 @@ class LoadTable(Table, frozen=True, kw_only=True):
     force: Force | None = None
     indentation: Length | None = None
     half_angle: Angle | None = None
-    tilt: Angle | None = None
-    direction: Annotated[Direction | None, meaning("direction to the right, to the front and upwards")] = None
+    tilt: Annotated[Angle | None, meaning(default="0 deg")] = None
+    direction: Annotated[Direction | None, meaning("direction of the load: to the right, to the front, upwards")] = None
 
 
 class JointTables(Table, frozen=True, kw_only=True):
@@ -135,7 +139,7 @@ class JointTables(Table, frozen=True, kw_only=True):
     cup: CupTable | None = None
 
 
-class ReportTable(Table, frozen=True, kw_only=True):
+class ReportDetails(Table, frozen=True, kw_only=True):
     """Head of the report: names, and a picture beside them."""
 
     qualified: ClassVar[bool] = True
@@ -153,24 +157,7 @@ class JointFileTable(JointTables, frozen=True, kw_only=True):
     source: Annotated[Text | None, meaning("source of the numbers")] = None
     joint: LengthsTable | None = None
     load: LoadTable | None = None
-    report: ReportTable | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReportDetails:
-    """Head of a report; empty texts are left out.
-
-    Attributes
-    ----------
-    customer, project, author : str
-    logo : str
-        Path of a PNG or SVG picture.
-    """
-
-    customer: str = ""
-    project: str = ""
-    author: str = ""
-    logo: str = ""
+    report: ReportDetails | None = None
 
 
 NO_DETAILS = ReportDetails()
@@ -199,6 +186,11 @@ class JointFile:
     aim: dict[str, Any] = field(default_factory=dict)
     report: ReportDetails = NO_DETAILS
 
+    @property
+    def tilt(self) -> float:
+        """Angle in rad between the load and the axis of the cup."""
+        return self.cup.load_tilt(**self.aim)
+
 
 def read_joint(path: str | Path) -> JointFile:
     """Read a joint file.
@@ -219,7 +211,7 @@ def read_joint(path: str | Path) -> JointFile:
         The file cannot be read.
     """
     file = read_toml(Path(path), "joint", joint_of)
-    return replace(file, report=_logo_in(Path(path).parent, file.report))
+    return replace(file, report=details_in(Path(path).parent, file.report))
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
@@ -227,40 +219,17 @@ def parse_joint(raw: bytes, title: str) -> JointFile:
     return parse_toml(raw, title, "joint", joint_of)
 
 
-def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
-    """Return the cup tilted against a vertical load.
-
-    A direction in the body leaves the cup unchanged. Models that take every load as axial judge the rim by the tilt.
-    """
-    return cup.tilted(min(direction["tilt"], pi / 2)) if "tilt" in direction else cup
-
-
-def aimed(model: Model, file: JointFile) -> tuple[Model, str]:
-    """Give a model the cup and the load's direction of a file, with a remark if it presses along the axis instead."""
-    placed: Any = model.in_cup(file.cup)
-    if model.off_axis:
-        return placed.with_direction(**file.aim), ""
-    tilt = float(tilted_cup(file.cup, file.aim).tilt(file.aim.get("direction", UP)))
-    along = f"the load is {degrees(tilt):.3g}° from the cup's axis, but {model.name} presses along it; sphere does not"
-    return placed, along if tilt > 0 else ""
-
-
 def joint_of(content: Mapping[str, Any]) -> JointFile:
     """Convert the tables of a joint file, or of the command line; see `read_joint`."""
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
-    load, report = tables.load or LoadTable(), tables.report or ReportTable()
-    return replace(file, load=_load_of(load), aim=_aim_of(load), report=ReportDetails(**report.stated()))
+    load = tables.load or LoadTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load), report=tables.report or NO_DETAILS)
 
 
-def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
+def details_in(folder: Path, details: ReportDetails) -> ReportDetails:
     """Return the head of a report whose logo is in a folder."""
-    return replace(details, logo=str(folder / details.logo)) if details.logo else details
-
-
-def report_details(table: ReportTable, folder: Path) -> ReportDetails:
-    """Return the head of a report from its table; the path of the logo starts at a folder."""
-    return _logo_in(folder, ReportDetails(**table.stated()))
+    return structs.replace(details, logo=Text(folder / details.logo)) if details.logo else details
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
@@ -295,16 +264,21 @@ def describe_joint(tables: JointTables, name: str = "", source: str = "") -> Joi
 
 
 def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
-    """Replace lengths and materials of a joint file by those of tables as in a joint file.
+    """Replace values of a joint file by those of tables as in a joint file.
+
+    The name of a material replaces all its numbers. A length, a load or a direction replaces the one that excludes it;
+    `Joint.replace` holds the other lengths that the file gives, and names those that change.
 
     Raises
     ------
     ValueError
-        As of `read_joint`; numbers of a ball that is rigid, without a material.
+        As of `read_joint`; keys of the tables that exclude each other; a length that would change another one.
     """
     tables, joint = read_table(content, JointFileTable), file.joint
-    lengths = tables.joint or LengthsTable()
+    lengths, load = tables.joint or LengthsTable(), tables.load or LoadTable()
     changes: dict[str, Any] = dict(quantities_of(lengths))
+    if "support" in content.get("joint", {}):
+        changes["support"] = lengths.support
     if tables.shell is not None:
         if joint.backing:
             raise ValueError("the joint has layers behind its liner already; change them in its file")
@@ -314,26 +288,18 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
         if material is not None:
             changes[part] = _material(part, material, getattr(joint, part))
     with as_given(written_in(lengths)):
-        return replace(file, joint=joint.replace(**changes))
-
-
-def read_load(content: Mapping[str, Any]) -> dict[str, float]:
-    """Read at most one of force, indentation and half_angle, as the keyword of a press."""
-    return _load_of(read_table(content, LoadTable))
+        joint = joint.replace(**changes) if changes else joint
+    cup = cup_of(tables.cup or CupTable(), file.cup)
+    return replace(file, joint=joint, load=_load_of(load) or file.load, cup=cup, aim=_aim_of(load) or file.aim)
 
 
 def _load_of(table: LoadTable) -> dict[str, float]:
-    """Return the load of a table as the keyword of a press; empty without a load."""
+    """Return at most one of force, indentation and half_angle as the keyword of a press; empty without a load."""
     load = quantities_of(table, "force", "indentation", "half_angle")
     if len(load) > 1:
         raise ValueError(f"one load is needed, got {', '.join(load)}")
     with as_given(written_in(table)):
         return dict([select_and_check_load(**load)]) if load else {}
-
-
-def read_aim(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Read at most one of tilt and direction, as the keyword of `Sphere.press`; other keys are ignored."""
-    return _aim_of(read_table({name: content[name] for name in ("tilt", "direction") if name in content}, LoadTable))
 
 
 def _aim_of(table: LoadTable) -> dict[str, Any]:
@@ -347,11 +313,6 @@ def _aim_of(table: LoadTable) -> dict[str, Any]:
     tilt = float(table.tilt)
     require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
     return {"tilt": tilt}
-
-
-def read_cup(content: Mapping[str, Any], base: Cup = DEFAULT_CUP) -> Cup:
-    """Read a cup; every key is optional, and keys replace values of another cup."""
-    return cup_of(read_table(content, CupTable), base)
 
 
 def cup_of(table: CupTable, base: Cup = DEFAULT_CUP) -> Cup:
@@ -455,14 +416,26 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
     if described:
         name = shown(tables.joint)
         raise ValueError(f"joint = {name} is a whole joint: [{described[0]}] belongs to a table [joint]")
-    return _named(tables.joint, folder)
+    return named_joint(tables.joint, folder)
 
 
-def _named(name: str, folder: Path) -> JointFile:
+def named_joint(name: str, folder: Path = Path()) -> JointFile:
+    """Return the joint of a file in a folder, or the preset of that name.
+
+    Raises
+    ------
+    ValueError
+        No such file or preset.
+    """
     if not check_text("joint", name):
-        raise ValueError("joint is empty")
+        raise ValueError("the joint's name is empty")
+    path = resolve_input(folder / name)
+    if path.exists() and not path.is_dir():
+        return read_joint(path)
     if normalise_name(name) in joints:
         return JointFile(joints[normalise_name(name)], {})
-    if not resolve_input(folder / name).is_file():
-        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
-    return read_joint(folder / name)
+    if path.is_dir():
+        raise ValueError(f"{shown(name)} is a folder; a joint file is needed")
+    if not path.parent.is_dir():
+        raise ValueError(f"{shown(name)} does not exist: there is no folder {str(path.parent)!r}")
+    raise ValueError(f"{shown(name)} is neither a file nor a preset{nearest(name, joints)}")

@@ -9,6 +9,7 @@ from ..problem import Joint, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
 from .joint_file import (
+    NO_DETAILS,
     CupTable,
     Direction,
     JointFile,
@@ -18,7 +19,6 @@ from .joint_file import (
     LoadTable,
     MaterialName,
     MaterialTable,
-    ReportTable,
 )
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Text
 from .tables import write_table
@@ -54,25 +54,20 @@ def toml_of(file: JointFile) -> str:
     return toml_text(written_tables(file))
 
 
-def cup_table(cup: Cup) -> Tables:
-    """Return the table `cup` of a joint file, without default angles."""
-    return write_table(_cup(cup))
-
-
 def _file_table(file: JointFile) -> JointFileTable:
-    joint, report = file.joint, {name: Text(value) for name, value in vars(file.report).items() if value}
+    joint = file.joint
     if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
-        report=ReportTable(**report) if report else None,
+        report=file.report if file.report != NO_DETAILS else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
         liner=MaterialTable(**_material(joint.liner)),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
         or None,
-        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
+        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented or file.cup.has_stated_arc else None,
         load=_load(file) if file.load or file.aim else None,
     )
 
@@ -90,7 +85,7 @@ def _lengths(joint: Joint) -> dict[str, float]:
 def _cup(cup: Cup) -> CupTable:
     """Return the table of a cup, without the default orientation."""
     return CupTable(
-        arc_of_cover=Angle(cup.arc_of_cover),
+        arc_of_cover=Angle(cup.arc_of_cover) if cup.has_stated_arc else None,
         chamfer=Length(cup.chamfer),
         inclination=Angle(cup.inclination) if cup.oriented else None,
         anteversion=Angle(cup.anteversion) if cup.oriented else None,

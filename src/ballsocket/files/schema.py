@@ -37,9 +37,12 @@ QUANTITIES_SCHEMA: Mapping[str, Any] = {"anyOf": [QUANTITY_SCHEMA, {"type": "arr
 """JSON schema of a quantity, or of a list of quantities."""
 
 
-def meaning(text: str) -> msgspec.Meta:
-    """Return the annotation of a key that states its meaning."""
-    return msgspec.Meta(description=text)
+def meaning(text: str = "", **shown: str) -> msgspec.Meta:
+    """Return the annotation of a key that states its meaning.
+
+    `shown` may have an `example`, and as `default` what holds where an optional key is missing.
+    """
+    return msgspec.Meta(description=text or None, extra=dict(shown))
 
 
 class Value:
@@ -177,6 +180,13 @@ class QuantityValue(Value, float):
         number.written = value
         return number
 
+    @classmethod
+    def stating(cls, number: float, written: str) -> Self:
+        """Return a default: a number in mm, N, MPa or rad with its text in a file."""
+        value = cls(number)
+        value.written = written
+        return value
+
     def write(self, with_unit: bool) -> float | str:
         """Return the number as a file has it: bare in mm, N, MPa and degrees, or as a text with its unit."""
         number, unit = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self), self.kind.assumed_unit
@@ -219,10 +229,22 @@ class Viscosity(QuantityValue):
     kind = Kind.VISCOSITY
 
 
-class Time(QuantityValue):
+class RotationRate(QuantityValue):
+    """Rotation rate in rad/s."""
+
+    kind = Kind.ROTATION_RATE
+
+
+class Duration(QuantityValue):
     """Time in s."""
 
-    kind = Kind.TIME
+    kind = Kind.DURATION
+
+
+class Speed(QuantityValue):
+    """Speed in mm/s."""
+
+    kind = Kind.SPEED
 
 
 class Angle(QuantityValue):

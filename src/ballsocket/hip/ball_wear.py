@@ -16,18 +16,10 @@ from .wear_law import CycleExposure
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BilinearInterpolation:
-    """Bilinear interpolation from the cells of a grid to points between the cell centres.
+    """Bilinear interpolation from the cells of a grid to points between the cell centres."""
 
-    Attributes
-    ----------
-    cells : array (n, points, 4)
-        Numbers of the four cells around each point.
-    weights : array (n, points, 4)
-        Weights of these cells, with a sum of 1; 0 beyond the end of the grid.
-    """
-
-    cells: Numbers
-    weights: Numbers
+    cells: Numbers  # (n, points, 4), numbers of the four cells around each point
+    weights: Numbers  # (n, points, 4), weights of these cells, with a sum of 1; 0 beyond the end of the grid
 
     def interpolate(self, fields: Numbers) -> Numbers:
         """Interpolate cell values (n or 1, cells) to the points: (n, points)."""
@@ -62,33 +54,17 @@ def ball_directions(grid: Grid) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CounterfaceMap:
-    """Relation of the cells of the ball to the cells of the socket during a cycle.
+    """Relation of the cells of the ball to the cells of the socket during a cycle."""
 
-    Attributes
-    ----------
-    cells : array (m,)
-        Numbers of these cells in the ball's grid.
-    sliding : SurfaceSliding
-        Sliding of the socket over them, in the ball's frame.
-    areas : array (m,)
-        Areas in mm².
-    socket_areas : array (n,)
-        Areas of the socket's cells in mm².
-    socket_cells : array (n,)
-        Numbers of the socket's cells under them.
-    socket_size, ball_size : int
-        Numbers of cells of the complete grids.
-    on_socket, on_ball : BilinearInterpolation
-        Interpolations from the ball's grid to the socket's cells in each instant, and the reverse.
-    """
-
-    cells: Numbers
-    sliding: SurfaceSliding
-    areas: Numbers
-    socket_areas: Numbers
-    socket_cells: Numbers
+    cells: Numbers  # (m,), numbers of these cells in the ball's grid
+    sliding: SurfaceSliding  # sliding of the socket over them, in the ball's frame
+    areas: Numbers  # (m,), areas in mm²
+    socket_areas: Numbers  # (n,), areas of the socket's cells in mm²
+    socket_cells: Numbers  # (n,), numbers of the socket's cells under them
+    # numbers of cells of the complete grids
     socket_size: int
     ball_size: int
+    # interpolations from the ball's grid to the socket's cells in each instant, and the reverse
     on_socket: BilinearInterpolation
     on_ball: BilinearInterpolation
 
@@ -148,24 +124,12 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ActiveCells:
-    """Socket cells near the contacts, and ball cells that pass over them if the ball wears.
+    """Socket cells near the contacts, and ball cells that pass over them if the ball wears."""
 
-    Attributes
-    ----------
-    cells : array (n,)
-        Numbers of the socket's cells.
-    foundation : SocketFoundation
-        Foundation of these cells.
-    sliding : SurfaceSliding
-        Sliding of the ball over these cells.
-    counterface : CounterfaceMap, optional
-        Cells of the ball; None for a ball without wear.
-    """
-
-    cells: Numbers
-    foundation: SocketFoundation
-    sliding: SurfaceSliding
-    counterface: CounterfaceMap | None
+    cells: Numbers  # (n,), numbers of the socket's cells
+    foundation: SocketFoundation  # foundation of these cells
+    sliding: SurfaceSliding  # sliding of the ball over these cells
+    counterface: CounterfaceMap | None  # cells of the ball; None for a ball without wear
 
     @property
     def ball_cells(self) -> Numbers:

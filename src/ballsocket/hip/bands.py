@@ -31,18 +31,11 @@ CONVERTED = ("volume", "depth", "penetration")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SharedCoefficient:
-    """Results of a cohort whose patients all have the same wear coefficient: low, median or high.
+    """Results of a cohort whose patients all have the same wear coefficient: low, median or high."""
 
-    Attributes
-    ----------
-    values : mapping of str to float
-        Coefficients at the lower end, the middle and the upper end of the band of the coefficient.
-    results : mapping of str to array (patients, reports, results)
-        Results of `CONVERTED`, by the names in `values`.
-    """
-
+    # coefficients at the lower end, the middle and the upper end of the band of the coefficient
     values: Mapping[str, float]
-    results: Mapping[str, Numbers]
+    results: Mapping[str, Numbers]  # (patients, reports, results), results of `CONVERTED`, by the names in `values`
 
     def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
         """Compute a quantile of a result over the patients at each report, for one wear coefficient."""
@@ -120,14 +113,14 @@ class Bands:
         return int((self.cohort.refused != "").sum())
 
     @property
-    def _end_probabilities(self) -> tuple[float, float]:
+    def ends(self) -> tuple[float, float]:
         """Probabilities of the lower and upper end of each band, such as 0.025 and 0.975."""
         low_probability = (1 - self.level) / 2
         return low_probability, 1 - low_probability
 
     @property
     def _probabilities_by_name(self) -> dict[str, float]:
-        low, high = self._end_probabilities
+        low, high = self.ends
         return {"low": low, "median": 0.5, "high": high}
 
     def quantile(self, name: str, fraction: float) -> Numbers:
@@ -153,7 +146,7 @@ class Bands:
 
     def band(self, name: str) -> tuple[Numbers, Numbers]:
         """Compute the lower and upper end of the band of one result at each report, such as "volume"."""
-        low, high = (self.quantile(name, fraction) for fraction in self._end_probabilities)
+        low, high = (self.quantile(name, fraction) for fraction in self.ends)
         return low, high
 
     def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
@@ -177,7 +170,7 @@ class Bands:
             raise ValueError(f"coefficient = {coefficient!r} is not allowed: {', '.join(self.shared.values)}")
         if name not in CONVERTED:
             raise ValueError(f"{name!r} has no band for one coefficient: {', '.join(CONVERTED)}")
-        low, high = (self.shared.quantile(coefficient, name, fraction) for fraction in self._end_probabilities)
+        low, high = (self.shared.quantile(coefficient, name, fraction) for fraction in self.ends)
         return low, high
 
     @property
@@ -209,7 +202,7 @@ class Bands:
     def _coefficient_note(self) -> tuple[str, ...]:
         if COEFFICIENT not in self.variability.distributions:
             return ()
-        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._end_probabilities)
+        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self.ends)
         coefficient = coefficient_field(self.variability.use.wear)
         unit = "" if coefficient is None else coefficient.unit.text
         band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
@@ -326,16 +319,16 @@ class Bands:
 
     def _summarize_report(self, report: int) -> dict[str, Any]:
 
-        def ends(quantile: Callable[[float], Numbers]) -> dict[str, Any]:
+        def values(quantile: Callable[[float], Numbers]) -> dict[str, Any]:
             """Return a quantile at the report for the ends and the middle of a band."""
             probabilities = self._probabilities_by_name.items()
             return {end_name: finite_or_none(quantile(fraction)[report]) for end_name, fraction in probabilities}
 
-        bands = {name: ends(partial(self.quantile, name)) for name in RESULT_UNITS}
+        bands = {name: values(partial(self.quantile, name)) for name in RESULT_UNITS}
         if self.shared is not None:
             for name in CONVERTED:
                 bands[name]["given_coefficient"] = {
-                    coefficient: ends(partial(self.shared.quantile, coefficient, name))
+                    coefficient: values(partial(self.shared.quantile, coefficient, name))
                     for coefficient in self.shared.values
                 }
         year = self.variability.cycles_per_year
@@ -345,7 +338,7 @@ class Bands:
             **bands,
             "edge_loading": finite_or_none(self.edge_loading(report)),
             "edge_loaded": finite_or_none(self.edge_loaded_fraction(report)),
-            "peak_utilisation": ends(self.utilisation_quantile),
+            "peak_utilisation": values(self.utilisation_quantile),
             "valid": finite_or_none(self.valid_fraction(report)),
         }
 

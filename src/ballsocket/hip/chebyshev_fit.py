@@ -18,15 +18,9 @@ _ROUNDING = 1e-9  # margin of the ends of a box, whose numbers are logarithms an
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Box:
-    """Ranges of named variables.
+    """Ranges of named variables."""
 
-    Attributes
-    ----------
-    ranges : mapping of str to (float, float)
-        Lower and upper end of each variable.
-    """
-
-    ranges: Mapping[str, tuple[float, float]]
+    ranges: Mapping[str, tuple[float, float]]  # lower and upper end of each variable
 
     @cached_property
     def axes(self) -> tuple[str, ...]:

@@ -46,23 +46,12 @@ class CohortRun:
     """Simulation of a sampled patient cohort, divided into groups ("pieces") of a few patients.
 
     A call with the number of a piece simulates its patients.
-
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients.
-    counts : tuple of float
-        Cycles of the nominal patient at the reports, in ascending order.
-    values : mapping of str to array (patients,)
-        Sampled quantities by name of `SAMPLED_QUANTITIES`.
-    code : str
-        Fingerprint of the code that the workers must have.
     """
 
-    variability: PatientVariability
-    counts: tuple[float, ...]
-    values: Mapping[str, Numbers]
-    code: str = field(default_factory=fingerprint)
+    variability: PatientVariability  # distributions of the patients
+    counts: tuple[float, ...]  # cycles of the nominal patient at the reports, in ascending order
+    values: Mapping[str, Numbers]  # (patients,), sampled quantities by name of `SAMPLED_QUANTITIES`
+    code: str = field(default_factory=fingerprint)  # fingerprint of the code that the workers must have
 
     def __len__(self) -> int:
         return len(next(iter(self.values.values())))
@@ -79,10 +68,7 @@ class CohortRun:
     def __call__(self, piece: int) -> CohortResult:
         """Simulate the patients of one piece (group of patients).
 
-        Raises
-        ------
-        ValueError
-            This worker has another version of the package than the process that started the run.
+        Raises ValueError: this worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
         tables, contacts, errors = zip(
@@ -110,10 +96,7 @@ class CohortRun:
     ) -> CohortResult:
         """Simulate all patients of the cohort, except those whose results are stored.
 
-        Raises
-        ------
-        OSError
-            The store is not writable or the disk is full.
+        Raises OSError: the store is not writable or the disk is full.
         """
         if store is not None:
             store.create()
@@ -151,22 +134,13 @@ class CohortStore(ArrayPieceStore):
     def create(self) -> None:
         """Create the folder and the label file of the store, unless they exist.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable.
+        Raises OSError: the folder is not writable.
         """
         if self._read_label() is None:
             self.folder.write(_LABEL_NAME, json.dumps({"identity": self.identity}).encode())
 
     def check(self) -> None:
-        """Check that an existing store belongs to this cohort; ValueError otherwise.
-
-        Raises
-        ------
-        ValueError
-            The folder has another cohort or a damaged label.
-        """
+        """Check that an existing store belongs to this cohort; ValueError otherwise."""
         label = self._read_label()
         if label is None:
             return
@@ -226,13 +200,7 @@ def cohort_store(
 
 
 def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> None:
-    """Check that the results of a cohort and their bands fit into the memory; ValueError otherwise.
-
-    Raises
-    ------
-    ValueError
-        The memory is too small; the message has both sizes.
-    """
+    """Check that the results of a cohort and their bands fit into the memory; ValueError otherwise."""
     numbers = n_quantities + _COPIES * (n_reports * len(RESULT_UNITS) + 3 * (1 + n_reports))
     check_memory(f"results of {count_text(patients)} patients", 8 * numbers * patients)
 
@@ -240,10 +208,7 @@ def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> Non
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
     """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`.
 
-    Raises
-    ------
-    ValueError
-        Fewer than one patient, too many, or a negative seed.
+    Raises ValueError: fewer than one patient, too many, or a negative seed.
     """
     require("patients", count, 1 <= count <= _MAX_PATIENTS, f"it must be 1 to {_MAX_PATIENTS}")
     require("seed", seed, seed >= 0, "it must be at least 0")
@@ -265,10 +230,7 @@ def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, N
 def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
     """Write the patient table to a CSV file, local or remote, one row for each patient, and return its path.
 
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full.
+    Raises OSError: the folder is not writable or the disk is full.
     """
     names, columns = zip(*table_columns(run, result), strict=True)
     folder_at(path.parent).write_blocks(path.name, _csv_blocks(names, columns))

@@ -56,23 +56,13 @@ METHODS = ("series", "runs")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortSolution:
-    """Results of a cohort, with the accuracy of the series that they come from.
-
-    Attributes
-    ----------
-    result : CohortResult
-    accuracy : SeriesAccuracy, optional
-        None if each patient was simulated.
-    indices : mapping of str to array, optional
-        Sobol indices; see `Bands`. None without a series, or if it does not cover the orientations of the cup.
-    obstacle : str
-        Reason in one clause why there is no series; empty if there is one, or none was needed.
-    """
+    """Results of a cohort, with the accuracy of the series that they come from."""
 
     result: CohortResult
-    accuracy: SeriesAccuracy | None = None
+    accuracy: SeriesAccuracy | None = None  # None if each patient was simulated
+    # Sobol indices; see `Bands`. None without a series, or if it does not cover the orientations of the cup.
     indices: Mapping[str, Numbers] | None = None
-    obstacle: str = ""
+    obstacle: str = ""  # reason in one clause why there is no series; empty if there is one, or none was needed
 
     @property
     def is_acceptable(self) -> bool:
@@ -100,12 +90,8 @@ def solve_cohort(
     progress : function
         Called with the number of finished patients; a series counts them in proportion to its simulations.
 
-    Raises
-    ------
-    ValueError
-        An unknown method, or a series of patients that are not similar.
-    OSError
-        The store is not writable or the disk is full.
+    Raises ValueError: an unknown method, or a series of patients that are not similar.
+    Raises OSError: the store is not writable or the disk is full.
     """
     method = None if method is None else known_name("method", method, METHODS)
     obstacle = "" if method == "runs" else find_obstacle(run.variability, run.counts)
@@ -127,24 +113,12 @@ def solve_cohort(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortSeries:
-    """Series for the patients of a cohort.
+    """Series for the patients of a cohort."""
 
-    Attributes
-    ----------
-    run : CohortRun
-        Patients.
-    seed : int
-        Seed of the samples.
-    engine : Engine
-        Executor of the simulations.
-    store : CohortStore, optional
-        Store of the simulations.
-    """
-
-    run: CohortRun
-    seed: int
-    engine: Engine
-    store: CohortStore | None = None
+    run: CohortRun  # patients
+    seed: int  # seed of the samples
+    engine: Engine  # executor of the simulations
+    store: CohortStore | None = None  # store of the simulations
 
     @cached_property
     def family(self) -> FamilyRun:
@@ -173,12 +147,8 @@ class CohortSeries:
     def solve(self, progress: ProgressCallback) -> CohortSolution:
         """Fit a series, estimate its error, refine it, and compute the results of all patients.
 
-        Raises
-        ------
-        NoSeriesError
-            The series has no result.
-        OSError
-            The store is not writable or the disk is full.
+        Raises NoSeriesError: the series has no result.
+        Raises OSError: the store is not writable or the disk is full.
         """
         held_out = self._select(numpy.arange(min(N_HELD_OUT, len(self.run))))
         expected = held_out.simulate(self.engine, self.store)
@@ -276,10 +246,7 @@ def cover_orientations(
 ) -> dict[str, tuple[float, float]]:
     """Reduce ranges of the cup's angles in rad about a centre until no load in them points to the rim.
 
-    Raises
-    ------
-    NoSeriesError
-        A load at the centre points to the rim.
+    Raises NoSeriesError: a load at the centre points to the rim.
     """
     if not similarity.keeps_loads_inside(centre):
         raise NoSeriesError("a load of the median patient points to the rim")

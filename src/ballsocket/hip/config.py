@@ -16,7 +16,7 @@ from ..core.checks import number_of_percent, require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.columns import ALL_COLUMNS
-from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
+from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, details_in, joint_in
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
@@ -24,8 +24,8 @@ from ..lubrication import Lubricant, Stribeck
 from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
+from ..studies.distribution_tables import Read, distribution_of
 from ..studies.distributions import check_nominal
-from ..studies.file import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
@@ -46,35 +46,18 @@ _DEFAULT_N_REPORTS = 10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipFile:
-    """Contents of a hip file.
-
-    Attributes
-    ----------
-    use : HipSimulation
-    cycles : float
-        Number of cycles.
-    report_at : tuple of float
-        Cycle counts of the reports.
-    lubricant : Lubricant, optional
-        Lubricant of the film; None if neither [film] nor a limit of the film ratio asks for one.
-    uncertain : optional
-        Distributions of quantities that differ between patients; None without a table [uncertainty].
-    data : tuple of MeasuredWear
-        Measured wear of the tables [[data]].
-    name : str
-        Name of the simulation; empty if the file states none.
-    report : ReportDetails
-        Head of a report; without [report] that of the joint file.
-    """
+    """Contents of a hip file."""
 
     use: HipSimulation
-    cycles: float
-    report_at: tuple[float, ...]
+    cycles: float  # number of cycles
+    report_at: tuple[float, ...]  # cycle counts of the reports
+    # lubricant of the film; None if neither [film] nor a limit of the film ratio asks for one
     lubricant: Lubricant | None
+    # distributions of quantities that differ between patients; None without a table [uncertainty]
     uncertain: UncertaintySettings | None = None
-    data: tuple[MeasuredWear, ...] = ()
-    name: str = ""
-    report: ReportDetails = NO_DETAILS
+    data: tuple[MeasuredWear, ...] = ()  # measured wear of the tables [[data]]
+    name: str = ""  # name of the simulation; empty if the file states none
+    report: ReportDetails = NO_DETAILS  # head of a report; without [report] that of the joint file
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -150,7 +133,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
         data=tuple(_parse_measured_wear(table, cycle.per_year, tables, folder) for table in tables.data or ()),
         name=str(tables.name or ""),
-        report=joint_file.report if tables.report is None else report_details(tables.report, folder),
+        report=joint_file.report if tables.report is None else details_in(folder, tables.report),
     )
 
 
@@ -284,10 +267,7 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
     """Return the foundation of the socket by its name in files, with the model of its springs.
 
-    Raises
-    ------
-    ValueError
-        A model without springs, or next to another foundation.
+    Raises ValueError: a model without springs, or next to another foundation.
     """
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
@@ -356,21 +336,11 @@ _SAMPLED_KINDS: Mapping[str, Kind] = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UncertaintySettings:
-    """Settings of the table [uncertainty].
+    """Settings of the table [uncertainty]."""
 
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients.
-    count : int
-        Number of samples, 2 or more.
-    seed : int
-        Seed of the samples.
-    """
-
-    variability: PatientVariability
-    count: int
-    seed: int
+    variability: PatientVariability  # distributions of the patients
+    count: int  # number of samples, 2 or more
+    seed: int  # seed of the samples
 
 
 def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:

@@ -70,37 +70,21 @@ _WORN_ERROR = 0.2  # stress of a worn contact above its value, assumed; 0.12 wit
 
 @dataclass(frozen=True, kw_only=True)
 class ContactCheck:
-    """Validity, strength and notes of the contact of one activity at its worst instant.
-
-    Attributes
-    ----------
-    activity : str
-    instant : str
-        Instant of the largest pressure, in words.
-    force, half_angle : float
-        Load in N, half angle in rad of a round contact of the same area.
-    pressure, von_mises : Bounded
-        Largest pressure, and largest von Mises stress in the liner, in MPa with their error bars.
-    utilisation_bar : Bounded
-        Largest von Mises stress over yield stress with its error bar; NaN where no yield stress is known.
-    utilisation_note : str
-        Reason why the utilisation does not cover the liner; empty where it does.
-    valid : bool
-        True inside the validity of the contact model.
-    notes : tuple of str
-        Notes of the contact model.
-    """
+    """Validity, strength and notes of the contact of one activity at its worst instant."""
 
     activity: str
-    instant: str
+    instant: str  # instant of the largest pressure, in words
+    # load in N, half angle in rad of a round contact of the same area
     force: float
     half_angle: float
+    # largest pressure, and largest von Mises stress in the liner, in MPa with their error bars
     pressure: Bounded
     von_mises: Bounded
+    # largest von Mises stress over yield stress with its error bar; NaN where no yield stress is known
     utilisation_bar: Bounded
-    utilisation_note: str
-    valid: bool
-    notes: tuple[str, ...]
+    utilisation_note: str  # reason why the utilisation does not cover the liner; empty where it does
+    valid: bool  # True inside the validity of the contact model
+    notes: tuple[str, ...]  # notes of the contact model
 
     @property
     def max_pressure(self) -> float:

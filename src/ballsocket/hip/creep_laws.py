@@ -130,10 +130,8 @@ CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
     """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio.
 
-    Raises
-    ------
-    ValueError
-        An unknown law or confinement, a missing key, a key of another law, or a value that is not allowed.
+    Raises ValueError: an unknown law or confinement, a missing key, a key of another law, or a value that is not
+    allowed.
     """
     name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
     law = select_law_class(table, CREEP_LAWS, "creep law")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, pi
-from typing import Any, Generic, TypeVar, overload
 
 import numpy
 
@@ -33,23 +32,15 @@ class CupFrame:
 
     The axis x points upwards along the rim's plane, z to the dome's pole.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of single numbers.
-    cycle : Cycle or Mix
-        Loads and rotations in the body's frame, for the right side of the body.
-    cup : Cup
-        Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
-
     Raises
     ------
     ValueError
         A load that pushes the ball over the rim, unless a spring balances the load there.
     """
 
-    joint: Joint
-    cycle: Cycle | Mix
+    joint: Joint  # joint of single numbers
+    cycle: Cycle | Mix  # loads and rotations in the body's frame, for the right side of the body
+    # arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
@@ -215,26 +206,3 @@ _LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact
 
 def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
-
-
-T = TypeVar("T")
-
-
-class FromFrame(Generic[T]):
-    """Descriptor for an attribute that a simulation reads from its `frame`: `loads = FromFrame[Numbers]()`."""
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-        self.__doc__ = getattr(CupFrame, name).__doc__
-
-    @overload
-    def __get__(self, instance: None, owner: type) -> FromFrame[T]: ...
-
-    @overload
-    def __get__(self, instance: Any, owner: type) -> T: ...
-
-    def __get__(self, instance: Any, owner: type) -> FromFrame[T] | T:
-        if instance is None:
-            return self
-        value: T = getattr(instance.frame, self._name)
-        return value

@@ -228,13 +228,7 @@ _MIRRORED_ANGLES = numpy.array([[1.0], [-1.0], [-1.0]])
 
 
 def check_step_count(count: Any) -> int:
-    """Check a number of time steps and return it; ValueError if it is not allowed.
-
-    Raises
-    ------
-    ValueError
-        `count` is not a whole number from 8 to 10 000.
-    """
+    """Check a number of time steps and return it; ValueError if it is not allowed."""
     return check_whole_number("n_steps", count, MIN_STEPS, MAX_STEPS)
 
 

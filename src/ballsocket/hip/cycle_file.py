@@ -233,12 +233,8 @@ def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
 def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:
     """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
 
-    Raises
-    ------
-    ValueError
-        A key, name or value is not allowed; the message suggests the closest one.
-    OSError
-        A table cannot be read.
+    Raises ValueError: a key, name or value is not allowed; the message suggests the closest one.
+    Raises OSError: a table cannot be read.
     """
     weight = _check_weight(tables.body_weight)
     if tables.activity is None:

@@ -62,33 +62,21 @@ _OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipColumns:
-    """Columns of time (s), force (N) and angles (rad) of one hip.
+    """Columns of time (s), force (N) and angles (rad) of one hip."""
 
-    Attributes
-    ----------
-    columns : dict of arrays
-        "time" in s or "phase", "force" or "force_x", "force_y", "force_z" in N, angles in rad.
-    force_on : str, optional
-        Body that the force acts on, "ball" or "socket", if the column names state it.
-    frame : str, optional
-        Frame of the force, "body" or "femur", if the column names state it.
-    orthoload : bool
-        True for forces Fx, Fy, Fz, which are taken for OrthoLoad's: on the ball, in the frame of the femur.
-    """
-
+    # "time" in s or "phase", "force" or "force_x", "force_y", "force_z" in N, angles in rad
     columns: dict[str, Numbers] = field(default_factory=dict)
-    force_on: str | None = None
-    frame: str | None = None
+    force_on: str | None = None  # body that the force acts on, "ball" or "socket", if the column names state it
+    frame: str | None = None  # frame of the force, "body" or "femur", if the column names state it
+    # True for forces Fx, Fy, Fz, which are taken for OrthoLoad's: on the ball, in the frame of the femur
     orthoload: bool = False
 
 
 def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
     """Extract the columns of the hip on one side from a table.
 
-    Raises
-    ------
-    ValueError
-        A column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of angles.
+    Raises ValueError: a column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of
+    angles.
     """
     return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
 
@@ -168,10 +156,7 @@ def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
     """Combine the columns of several tables of one cycle, interpolated at the times of the first table.
 
-    Raises
-    ------
-    ValueError
-        Two tables have the same column, or their times do not match.
+    Raises ValueError: two tables have the same column, or their times do not match.
     """
     if len(tables) == 1:
         return tables[0]
@@ -212,10 +197,7 @@ def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
 def time_column(columns: dict[str, Numbers]) -> str:
     """Find the name of the column with times or phases: "time" or "phase".
 
-    Raises
-    ------
-    ValueError
-        Neither or both columns exist.
+    Raises ValueError: neither or both columns exist.
     """
     if ("time" in columns) == ("phase" in columns):
         raise ValueError("a column time [s] or phase [%] is needed, and not both")
@@ -225,10 +207,7 @@ def time_column(columns: dict[str, Numbers]) -> str:
 def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict[str, Numbers]:
     """Interpolate the columns of a table at the times of a reference table.
 
-    Raises
-    ------
-    ValueError
-        One table has times and the other has phases, or this one does not cover the other.
+    Raises ValueError: one table has times and the other has phases, or this one does not cover the other.
     """
     name = time_column(columns)
     if name != time_column(reference):
@@ -245,10 +224,7 @@ def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict
 def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
     """Select the rows of a table between two times, and interpolate rows at both times.
 
-    Raises
-    ------
-    ValueError
-        The times are outside the table, or fewer than five rows lie between them.
+    Raises ValueError: the times are outside the table, or fewer than five rows lie between them.
     """
     if begin is None and end is None:
         return columns
@@ -266,10 +242,7 @@ def select_time_range(columns: dict[str, Numbers], begin: float | None, end: flo
 def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
     """Convert the time column of a table to phases from 0 to 1, and return also the duration in s.
 
-    Raises
-    ------
-    ValueError
-        Times do not increase, or have a gap.
+    Raises ValueError: times do not increase, or have a gap.
     """
     name = time_column(columns)
     time = columns[name]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import ClassVar
 
 import numpy
 import scipy.fft
@@ -19,7 +20,7 @@ from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
-from .socket_foundation import NO_LATERAL_SPRING, CycleEquilibrium, contact_shares, grid_neighbours
+from .socket_foundation import NO_LATERAL_SPRING, CycleEquilibrium, SocketFoundation, foundation_cells
 
 _POWER_ITERATIONS = 60  # number of power iterations for the largest stiffness
 _SEED = 1  # seed of the initial field of the power iteration
@@ -30,22 +31,12 @@ _PARALLEL_TOLERANCE = 1e-9  # relative tolerance for loads of one direction, and
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadInterpolation:
-    """Interpolation of results between a few solved loads ("levels") to all loads.
+    """Interpolation of results between a few solved loads ("levels") to all loads."""
 
-    Attributes
-    ----------
-    loads : array (levels, 3)
-        Forces in N.
-    weights : array (loads, levels)
-        Weight of each level in each load. They add up to 1, and they interpolate the loads themselves exactly.
-    """
-
-    loads: Numbers
+    loads: Numbers  # (levels, 3), forces in N
+    # (loads, levels), weight of each level in each load. They add up to 1, and they interpolate the loads
+    # themselves exactly.
     weights: Numbers
-
-    def interpolate(self, level_results: Numbers) -> Numbers:
-        """Interpolate results of the solved levels (levels, ...) to all loads: (loads, ...)."""
-        return self.weights @ level_results
 
 
 def levels_at_all_loads(loads: Numbers) -> LoadInterpolation:
@@ -86,10 +77,6 @@ class GridSmoothing:
     An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
     shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is wider
     in proportion.
-
-    Attributes
-    ----------
-    grid : Grid
     """
 
     grid: Grid
@@ -113,22 +100,13 @@ class GridSmoothing:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ElasticFoundation:
-    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells; its gap is linear.
-
-    Attributes
-    ----------
-    compliance : Compliance
-    clearance, socket_radius : float
-        Lengths in mm.
-    edges : EdgeRelation
-        Relation of pressure and gap at the edge of a contact.
-    """
+class ElasticFoundation(SocketFoundation):
+    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells; its gap is linear."""
 
     compliance: Compliance
-    clearance: float
-    socket_radius: float
-    edges: EdgeRelation
+    edges: EdgeRelation  # relation of pressure and gap at the edge of a contact
+
+    edge_exponent: ClassVar[float] = 0.5
 
     @property
     def grid(self) -> Grid:
@@ -136,26 +114,10 @@ class ElasticFoundation:
         return self.compliance.grid
 
     @cached_property
-    def directions(self) -> Numbers:
-        """Unit vectors to the centres of the cells, in the cup's frame: (3, cells)."""
-        return numpy.ascontiguousarray(self.grid.middles.reshape(3, -1))
-
-    @cached_property
-    def normals(self) -> Numbers:
-        """Mean outward normal of each cell, in the cup's frame: (3, cells)."""
-        return numpy.ascontiguousarray(self.grid.normals.reshape(3, -1))
-
-    @cached_property
-    def areas(self) -> Numbers:
-        """Areas of the cells in mm²: (cells,)."""
-        return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
-
-    @cached_property
     def _smoothing_filter(self) -> GridSmoothing:
         return GridSmoothing(grid=self.grid)
 
     def smooth(self, depth: Numbers) -> Numbers:
-        """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
         return self._smoothing_filter(depth.reshape(self.grid.rings, -1)).ravel()
 
     @cached_property
@@ -182,29 +144,14 @@ class ElasticFoundation:
 
     @property
     def edge_inset(self) -> float:
-        """Distance from the zero of `edge_field` inwards to the contact edge, in ring widths."""
         return self.edges.inset
 
-    @property
-    def edge_exponent(self) -> float:
-        """Exponent of the pressure at the edge of a contact: 1/2 for elastic bodies."""
-        return 0.5
-
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
         shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)
         pressure = equilibrium.pressure.reshape(shape)
         overlap = equilibrium.displacement @ self.normals - self.clearance - depth
         gap = self.compliance.displacement(pressure) - overlap.reshape(shape)
         return self.edges.levels(pressure, gap).reshape(equilibrium.pressure.shape)
-
-    @cached_property
-    def _neighbour_indices(self) -> Numbers:
-        return grid_neighbours(self.grid)
-
-    def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
-        return contact_shares(self.edge_field(equilibrium, depth), self._neighbour_indices, self.edge_inset)
 
     def solve_equilibrium(
         self,
@@ -214,8 +161,6 @@ class ElasticFoundation:
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
         """Solve for displacements and pressures under all loads, with coupled elastic cells.
-
-        The parameters are those of `SpringFoundation.solve_equilibrium`.
 
         For a fixed load direction, a few load levels are solved, and linear interpolation gives the others. It
         balances every load exactly.
@@ -231,10 +176,9 @@ class ElasticFoundation:
         )
         bore_contact = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
         solved = self._solve_load_levels(bore_contact, levels, depth, start)
-        level_pressure = solved.pressure.reshape(shape[0], -1)
         return CycleEquilibrium(
-            displacement=levels.interpolate(solved.displacement),
-            pressure=levels.interpolate(level_pressure),
+            displacement=levels.weights @ solved.displacement,
+            pressure=levels.weights @ solved.pressure.reshape(shape[0], -1),
             converged=bool(solved.converged.all()),
             levels=(solved.displacement, solved.pressure),
         )
@@ -270,10 +214,11 @@ def elastic_foundation(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, w
 
     The last four foundations are cached.
     """
-    cells = even_grid(socket_shape(joint, cup).reach, width)
+    grid, socket_radius = even_grid(socket_shape(joint, cup).reach, width), float(joint.socket_radius)
     return ElasticFoundation(
-        compliance=make_compliance(surface, joint, cup, cells),
+        **foundation_cells(grid, socket_radius),
+        compliance=make_compliance(surface, joint, cup, grid),
         clearance=float(joint.clearance),
-        socket_radius=float(joint.socket_radius),
-        edges=surface.edges(joint, cup, cells),
+        socket_radius=socket_radius,
+        edges=surface.edges(joint, cup, grid),
     )

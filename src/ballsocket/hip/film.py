@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import degrees, inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -18,12 +18,14 @@ from ..core.display import finite_or_none, load_plot
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
-from ..lubrication.cycle_film import CYCLES
 from .cup_frame import CupFrame
-from .film_cycle import CarriedFilm, carry_film
+from .film_limit import CYCLES
 from .hamrock_dowson import CONFORMITY_NOTE, film_thickness
 from .kinematics import SurfaceSliding
 from .socket_foundation import CycleEquilibrium, SocketFoundation
+
+if TYPE_CHECKING:
+    from .film_cycle import CarriedFilm
 
 WAVE_NOTE = "Film carried over the dry contacts from instant to instant, from a flooded bore"
 """Note on the film thickness by the kinematic wave."""
@@ -266,6 +268,8 @@ def film(
     formula = film_thickness(frame.joint, magnitudes, spin / durations, lubricant.viscosity)
     carried = None
     if name == "wave" and foundation.clearance > 0 and len(forces):
+        from .film_cycle import carry_film
+
         carried = carry_film(frame, foundation, equilibrium, depth, lubricant.viscosity_mpa, grid, int(cycles))
     least, central = (carried.joined("minimum"), carried.joined("central")) if carried else formula
     local = carried.mapped("thickness") if carried else numpy.broadcast_to(central[:, None], equilibrium.pressure.shape)

@@ -19,21 +19,11 @@ from .socket_foundation import CycleEquilibrium, SocketFoundation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CarriedFilm:
-    """Film by the wave in the loaded instants of all activities of a cycle.
+    """Film by the wave in the loaded instants of all activities of a cycle."""
 
-    Attributes
-    ----------
-    films : tuple of CycleFilm
-        Film of each activity, on the merged cells.
-    mesh : FilmMesh
-        Cells of the bore in the cup's frame, merged near the pole.
-    merged : array of int (cells,)
-        Number of the merged cell of each cell of the bore.
-    """
-
-    films: tuple[CycleFilm, ...]
-    mesh: FilmMesh
-    merged: Numbers
+    films: tuple[CycleFilm, ...]  # film of each activity, on the merged cells
+    mesh: FilmMesh  # cells of the bore in the cup's frame, merged near the pole
+    merged: Numbers  # int (cells,), number of the merged cell of each cell of the bore
 
     def joined(self, name: str) -> Numbers:
         """Join a value (instants,) of all activities."""

@@ -11,7 +11,9 @@ from ..core.arrays import Numbers
 from ..core.checks import check_number, require
 from ..core.display import finite_or_none
 from ..lubrication import Lubricant
-from ..lubrication.cycle_film import CYCLES
+
+CYCLES = 300
+"""Default number of uninterrupted cycles from a flooded bore."""
 
 
 @dataclass(frozen=True, kw_only=True)

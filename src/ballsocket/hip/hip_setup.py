@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from math import inf, pi, radians
@@ -26,16 +25,16 @@ from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
 from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, creep_notes
-from .cup_frame import CupFrame, FromFrame
+from .cup_frame import CupFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
-from .film import CYCLES as FILM_CYCLES
 from .film import METHODS as FILM_METHODS
 from .film import Film, film
+from .film_limit import CYCLES as FILM_CYCLES
 from .film_limit import FilmLimit
 from .kinematics import SurfaceSliding
 from .mix import Mix
-from .rim import Microseparation, RimDistance, rim_distance
+from .rim import RimDistance, rim_distance
 from .socket_foundation import CycleEquilibrium, SocketFoundation, spring_foundation
 from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 
@@ -62,19 +61,6 @@ class HipSetup(OneLine):
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
     film_limit: FilmLimit | None = None
-
-    forces = FromFrame[Numbers]()
-    largest_load_index = FromFrame[Numbers]()
-    lateral_stiffness = FromFrame[Numbers]()
-    loaded = FromFrame[Numbers]()
-    loads = FromFrame[Numbers]()
-    placed = FromFrame[Cup]()
-    reach = FromFrame[float]()
-    rotation_increments = FromFrame[Numbers]()
-    separation = FromFrame[Microseparation | None]()
-    side_cycle = FromFrame[Cycle | Mix]()
-    slide = FromFrame[float]()
-    socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
 
     def __post_init__(self) -> None:
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):

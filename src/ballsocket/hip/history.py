@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
@@ -13,9 +13,11 @@ from typing import Any
 import numpy
 
 from ..contact.verdict import Verdict
+from ..core import answers
+from ..core.answers import QUIET, Column, Row, Table
 from ..core.arrays import Numbers
-from ..core.checks import needs
-from ..core.display import OneLine, html_table, load_plot, plain_number
+from ..core.display import OneLine, load_plot, plain_number
+from ..core.quantities import QUANTITIES
 from ..core.records import Record
 from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
@@ -106,23 +108,6 @@ class Report(Record, OneLine):
         numbers = f"{self.volume:.4g} mm³ worn, penetration {self.penetration:.4g} mm"
         return f"after {plain_number(self.cycles)} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
 
-    def summary(self) -> dict[str, Any]:
-        """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
-        return {
-            "cycles": self.cycles,
-            "volume": self.volume,
-            "depth": self.depth,
-            "penetration": self.penetration,
-            "penetration_vector": [float(part) for part in self.displacement],
-            "penetration_of_wear": float(numpy.linalg.norm(self.wear_displacement)),
-            "penetration_of_creep": float(numpy.linalg.norm(self.creep_displacement)),
-            "max_pressure": self.max_pressure,
-            "creep_depth": self.creep_depth,
-            "ball_volume": self.ball_volume,
-            "ball_depth": self.ball_depth,
-            "edge_distance": float(self.edge_distance.min()) if len(self.edge_distance) else None,
-        }
-
 
 @dataclass(frozen=True, kw_only=True)
 class NumericalError:
@@ -181,32 +166,34 @@ class History(OneLine):
         """Compute the length in mm of `radiographic_displacement`: wear plus creep, as a radiograph shows it."""
         return float(numpy.linalg.norm(self.radiographic_displacement(report)))
 
-    def table(self) -> list[dict[str, Any]]:
-        """Return one row for each report, as dictionaries of numbers by column name with unit."""
-        per_year = self.use.cycle.per_year
-        return [
-            {
-                "cycles": report.cycles,
-                **({} if per_year is None else {"years": report.cycles / per_year}),
-                "volume_mm3": report.volume,
-                "depth_mm": report.depth,
-                "penetration_mm": report.penetration,
-                "penetration_of_wear_mm": float(numpy.linalg.norm(report.wear_displacement)),
-                "penetration_of_creep_mm": float(numpy.linalg.norm(report.creep_displacement)),
-                "radiographic_penetration_mm": self.radiographic_penetration(report),
-                "max_pressure_MPa": report.max_pressure,
-                "creep_depth_mm": report.creep_depth,
-                "ball_volume_mm3": report.ball_volume,
-                "ball_depth_mm": report.ball_depth,
-                "edge_distance_mm": float(report.edge_distance.min(initial=inf)),
-                "edge_pressure_MPa": float(report.edge_pressure.max(initial=0.0)),
-                "edge_loaded_instants": int(report.edge_loaded.sum()),
-                "utilisation": nan if (share := largest_utilisation(checks)) is None else share,
-                "verdict": worst_verdict(checks).word,
-                "valid": report.converged and all(check.valid for check in checks),
+    def table(self) -> Table:
+        """List the wear at each report."""
+        per_year, ranks = self.use.cycle.per_year, dict(_WEAR_RANKS)
+        if per_year is not None:
+            ranks["years"] = 0
+        if self.use.creep is not None:
+            ranks["creep_depth"] = 0
+        if self.use.ball_wear is not None:
+            ranks |= {"ball_volume": 0, "ball_depth": 0}
+        heads = {"edge_distance": "to the rim"}
+        columns = [Column.of(QUANTITIES[name], rank=rank, head=heads.get(name, "")) for name, rank in ranks.items()]
+        columns.append(Column.of_words("edge_loaded_instants", rank=QUIET))
+        columns.append(Column.of(QUANTITIES["utilisation"], rank=QUIET))
+        columns += [Column.of_words(key, rank=QUIET) for key in ("verdict", "valid")]
+        rows = []
+        for report, checks in zip(self.reports, self.contact_checks, strict=True):
+            numbers = {
+                "years": nan if per_year is None else report.cycles / per_year,
+                "penetration_of_wear": float(numpy.linalg.norm(report.wear_displacement)),
+                "penetration_of_creep": float(numpy.linalg.norm(report.creep_displacement)),
+                "radiographic_penetration": self.radiographic_penetration(report),
+                "edge_distance": float(report.edge_distance.min(initial=inf)),
+                "edge_pressure": float(report.edge_pressure.max(initial=0.0)),
             }
-            for report, checks in zip(self.reports, self.contact_checks, strict=True)
-        ]
+            cells = [numbers[name] if name in numbers else getattr(report, name) for name in ranks]
+            valid, verdict = report.converged and all(check.valid for check in checks), worst_verdict(checks)
+            rows.append(Row([*cells, int(report.edge_loaded.sum()), largest_utilisation(checks), verdict.word, valid]))
+        return Table("history", "Numbers", columns, rows)
 
     def to_frame(self) -> Any:
         """Return the reports as a pandas DataFrame, one row for each; heads have units: "volume_mm3".
@@ -216,10 +203,7 @@ class History(OneLine):
         ImportError
             Pandas is not installed; the message has the command.
         """
-        needs("study", "pandas")
-        import pandas
-
-        return pandas.DataFrame(self.table())
+        return answers.to_frame(self.table())
 
     def plot(self) -> Any:
         """Draw worn volume and penetration over the cycles; return the matplotlib figure."""
@@ -310,14 +294,8 @@ class History(OneLine):
         return f"of {joint.name or joint.dimensions}, {count} report{'s' * (count > 1)}, last {self.last}{state}"
 
     def _repr_html_(self) -> str:
-        heads = ("cycles", "volume [mm³]", "depth [mm]", "penetration [mm]", "pmax [MPa]", "edge distance [mm]")
-        rows = []
-        for report in self.reports:
-            edge = report.edge_distance.min() if len(report.edge_distance) else numpy.nan
-            values = (report.cycles, report.volume, report.depth, report.penetration, report.max_pressure, edge)
-            rows.append([f"{value:.4g}" for value in values])
         notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
-        return f"<div>{escape(str(self.use))}</div>{html_table(heads, rows)}{notes}"
+        return f"<div>{escape(str(self.use))}</div>{answers.to_html(self.table())}{notes}"
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
@@ -356,7 +334,10 @@ class History(OneLine):
             },
             "film": film,
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
-            "history": list(map(self._report_summary, self.reports, self.contact_checks)),
+            "history": [
+                self._report_summary(*parts)
+                for parts in zip(answers.records(self.table()), self.reports, self.contact_checks, strict=True)
+            ],
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
@@ -366,22 +347,34 @@ class History(OneLine):
         """Film of the first cycle by the wave; None for a hip without film."""
         return None if self.lubricant is None else self.use.film(self.lubricant)
 
-    def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
-        years = {} if per_year is None else {"years": report.cycles / per_year}
-        lateral, upward = self.radiographic_displacement(report)
-        radiograph = {
-            "radiographic_penetration": float(numpy.hypot(lateral, upward)),
-            "radiographic_vector": [float(lateral), float(upward)],
-        }
-        contact = {
-            "valid": report.converged and all(check.valid for check in checks),
-            "utilisation": largest_utilisation(checks),
-            "verdict": worst_verdict(checks).word,
+    def _report_summary(self, record: Mapping[str, Any], report: Report, checks: Sequence[ContactCheck]) -> Any:
+        edge = report.edge.closest_approach(self.use.frame)
+        return {
+            **record,
+            "penetration_vector": [float(part) for part in report.displacement],
+            "radiographic_vector": [float(part) for part in self.radiographic_displacement(report)],
+            "edge": _closest_approach_summary(edge),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **radiograph, **years, "edge": _closest_approach_summary(edge), **contact}
 
+
+_WEAR_RANKS = {
+    "cycles": 0,
+    "years": QUIET,
+    "volume": 0,
+    "depth": 0,
+    "penetration": 0,
+    "penetration_of_wear": QUIET,
+    "penetration_of_creep": QUIET,
+    "radiographic_penetration": QUIET,
+    "max_pressure": 0,
+    "creep_depth": QUIET,
+    "ball_volume": QUIET,
+    "ball_depth": QUIET,
+    "edge_distance": 0,
+    "edge_pressure": QUIET,
+}
+"""Quantities of the table of wear; those that a hip does not have are in data only."""
 
 _THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
 _WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"

@@ -35,30 +35,16 @@ def _zero_angles(phases: Numbers) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True)
 class InVivo:
-    """Activity with a measured peak load, and an assumed waveform and motion.
+    """Activity with a measured peak load, and an assumed waveform and motion."""
 
-    Attributes
-    ----------
-    percent : float
-        Peak force in percent of body weight.
-    source : str
-        Publication of the peak force.
-    waveform : function
-        Function from phases to the force as a share of the peak.
-    angles : function
-        Function from phases to flexion, adduction and rotation (3, n) in rad.
-    duration : float
-        Duration in s.
-    assumption : str
-        Assumed waveform and motion, in words.
-    """
-
-    percent: float
-    source: str
+    percent: float  # peak force in percent of body weight
+    source: str  # publication of the peak force
+    # function from phases to the force as a share of the peak
     waveform: Callable[[Numbers], Numbers] = lambda phases: numpy.asarray(_ISO_WALKING.force(phases)) / 3000.0
+    # function from phases to flexion, adduction and rotation (3, n) in rad
     angles: Callable[[Numbers], Numbers] = _ISO_WALKING.angles
-    duration: float = 1.0
-    assumption: str = _ISO_ASSUMPTION
+    duration: float = 1.0  # duration in s
+    assumption: str = _ISO_ASSUMPTION  # assumed waveform and motion, in words
 
 
 _BERGMANN_2016 = "ten instrumented implants, Bergmann 2016, 10.1371/journal.pone.0155612"

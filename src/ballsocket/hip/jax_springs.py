@@ -19,21 +19,11 @@ _DIAGONAL = numpy.array([0, 3, 5])  # indices of xx, yy and zz among these entri
 
 
 class PatientEquilibria(NamedTuple):
-    """Contacts of several patients under all loads of a cycle, as arrays of JAX in double precision.
+    """Contacts of several patients under all loads of a cycle, as arrays of JAX in double precision."""
 
-    Attributes
-    ----------
-    displacement : array (patients, loads, 3)
-        Displacement of the ball's centre in mm.
-    pressure : array (patients, loads, cells)
-        Pressure in MPa.
-    converged : array (patients,)
-        True where every load is balanced.
-    """
-
-    displacement: Array
-    pressure: Array
-    converged: Array
+    displacement: Array  # (patients, loads, 3), displacement of the ball's centre in mm
+    pressure: Array  # (patients, loads, cells), pressure in MPa
+    converged: Array  # (patients,), True where every load is balanced
 
 
 def join_contacts(contacts: list[SpringContact]) -> SpringContact:
@@ -90,7 +80,7 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
     Three patients of different weights, in the first cycle of a simulation `use`:
 
     >>> springs, unworn = use.foundation, numpy.zeros(len(use.foundation.areas))  # doctest: +SKIP
-    >>> weights = [springs.contact(factor * use.loads, unworn) for factor in (0.8, 1.0, 1.2)]  # doctest: +SKIP
+    >>> weights = [springs.contact(factor * use.frame.loads, unworn) for factor in (0.8, 1.0, 1.2)]  # doctest: +SKIP
     >>> start = numpy.stack(3 * [use.unworn.displacement])  # doctest: +SKIP
     >>> solve_patients(join_contacts(weights), start).converged.tolist()  # doctest: +SKIP
     [True, True, True]

@@ -129,21 +129,12 @@ def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceSliding:
-    """Sliding of the ball's surface over points of the socket during a cycle.
+    """Sliding of the ball's surface over points of the socket during a cycle."""
 
-    Attributes
-    ----------
-    radius : float
-        Radius of the ball in mm.
-    rotation_increments : array (steps, 3)
-        Rotation vectors of the time steps in rad, in the frame of the directions.
-    directions : array (3, points)
-        Unit vectors from the centre to the points of the socket.
-    """
-
-    radius: float
+    radius: float  # radius of the ball in mm
+    # (steps, 3), rotation vectors of the time steps in rad, in the frame of the directions
     rotation_increments: Numbers
-    directions: Numbers
+    directions: Numbers  # (3, points), unit vectors from the centre to the points of the socket
 
     @cached_property
     def distances(self) -> Numbers:

@@ -17,24 +17,12 @@ from ..files.units import parse
 
 @dataclass(frozen=True, kw_only=True)
 class LawUnit:
-    """Unit of a field of a wear or creep law.
+    """Unit of a field of a wear or creep law."""
 
-    Attributes
-    ----------
-    text : str
-        Unit after a number in texts; empty for a plain number.
-    typed : str
-        Unit as files write it.
-    suffix : str
-        End of a key in JSON.
-    read : function
-        Function from name and value in a file to the value in this unit.
-    """
-
-    text: str
-    typed: str
-    suffix: str
-    read: Callable[[str, Any], Any]
+    text: str  # unit after a number in texts; empty for a plain number
+    typed: str  # unit as files write it
+    suffix: str  # end of a key in JSON
+    read: Callable[[str, Any], Any]  # function from name and value in a file to the value in this unit
 
     def example(self, value: Any) -> str:
         """Format an example value with its unit, as it is written in files."""
@@ -74,36 +62,18 @@ PRESSURE = kind_unit(Kind.MODULUS)
 
 @dataclass(frozen=True, kw_only=True)
 class LawField:
-    """Field of a wear or creep law: one number or a list, with unit, meaning and limits.
+    """Field of a wear or creep law: one number or a list, with unit, meaning and limits."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the attribute.
-    key : str
-        Key in files.
-    unit : LawUnit
-    meaning : str
-        Noun phrase for messages and labels.
-    example : number or tuple
-        Value for messages, and initial value in the explorer.
-    required : bool
-        True if the law has no default for it.
-    low, high : float
-        Limits; `high` itself is excluded.
-    low_included : bool
-        True if `low` itself is allowed.
-    """
-
-    name: str
-    key: str
+    name: str  # name of the attribute
+    key: str  # key in files
     unit: LawUnit
-    meaning: str
-    example: Any
-    required: bool
+    meaning: str  # noun phrase for messages and labels
+    example: Any  # value for messages, and initial value in the explorer
+    required: bool  # True if the law has no default for it
+    # limits; `high` itself is excluded
     low: float
     high: float
-    low_included: bool
+    low_included: bool  # True if `low` itself is allowed
 
     @property
     def is_list(self) -> bool:
@@ -119,12 +89,8 @@ class LawField:
     def check(self, value: Any) -> None:
         """Check type and limits of a value of this field; TypeError or ValueError otherwise.
 
-        Raises
-        ------
-        TypeError
-            The value is not a number (or, for a list, not a tuple of numbers).
-        ValueError
-            The value is outside the limits.
+        Raises TypeError: the value is not a number (or, for a list, not a tuple of numbers).
+        Raises ValueError: the value is outside the limits.
         """
         for number in value if self.is_list else (value,):
             if not isinstance(number, Real) or isinstance(number, bool):
@@ -247,10 +213,7 @@ def read_law(
     **values
         Further values of fields that files do not have.
 
-    Raises
-    ------
-    ValueError
-        A missing key, a key of another law, or a value that is not allowed.
+    Raises ValueError: a missing key, a key of another law, or a value that is not allowed.
     """
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):

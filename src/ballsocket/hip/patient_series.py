@@ -37,23 +37,12 @@ class NoSeriesError(ValueError):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FamilyRun:
-    """Simulations of a family at sampled numbers, divided into pieces of a few.
-
-    Attributes
-    ----------
-    similarity : Similarity
-    box : Box
-        Ranges of the numbers.
-    log_exposures : (float, float)
-        Range of the logarithm of the exposure.
-    code : str
-        Fingerprint of the code that the workers must have.
-    """
+    """Simulations of a family at sampled numbers, divided into pieces of a few."""
 
     similarity: Similarity
-    box: Box
-    log_exposures: tuple[float, float]
-    code: str = field(default_factory=fingerprint)
+    box: Box  # ranges of the numbers
+    log_exposures: tuple[float, float]  # range of the logarithm of the exposure
+    code: str = field(default_factory=fingerprint)  # fingerprint of the code that the workers must have
 
     @property
     def n_nodes(self) -> int:
@@ -64,10 +53,7 @@ class FamilyRun:
     def __call__(self, piece: int) -> dict[str, Numbers]:
         """Simulate the members of a piece; those without a result are NaN.
 
-        Raises
-        ------
-        ValueError
-            This worker has another version of the package than the process that started the run.
+        Raises ValueError: this worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
         first = piece * MEMBERS_PER_PIECE
@@ -113,23 +99,12 @@ def _exponents(box: Box, degree: int) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PatientSeries:
-    """Polynomials that give the results of patients from their dimensionless numbers.
+    """Polynomials that give the results of patients from their dimensionless numbers."""
 
-    Attributes
-    ----------
-    family : FamilyRun
-        Family, with the ranges of its numbers.
-    degree : int
-        Total degree of the polynomials.
-    n_members : int
-        Number of simulations that the polynomials are fitted to.
-    unworn, worn : array
-        Coefficients (terms, numbers) and (terms, exposures, numbers).
-    """
-
-    family: FamilyRun
-    degree: int
-    n_members: int
+    family: FamilyRun  # family, with the ranges of its numbers
+    degree: int  # total degree of the polynomials
+    n_members: int  # number of simulations that the polynomials are fitted to
+    # coefficients (terms, numbers) and (terms, exposures, numbers)
     unworn: Numbers
     worn: Numbers
 
@@ -221,10 +196,7 @@ class PatientSeries:
 def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:
     """Fit polynomials of a degree to the simulated members of a family by least squares.
 
-    Raises
-    ------
-    NoSeriesError
-        Too many members have no result.
+    Raises NoSeriesError: too many members have no result.
     """
     unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))

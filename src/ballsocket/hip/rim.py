@@ -269,22 +269,12 @@ class SpringLoadedBall:
 
     The load points from the ball's centre to the edge that it rests on: c = R2 r - R1 f. The spring force decreases
     with the displacement of the ball.
-
-    Attributes
-    ----------
-    spring : Spring
-        Lateral spring.
-    side : array (3,)
-        Unit vector to the spring's right, in the cup's frame.
-    reach : float
-        Polar angle of the end of the bore in rad.
-    socket_radius, ball_radius : float
-        Radii in mm.
     """
 
-    spring: Spring
-    side: Numbers
-    reach: float
+    spring: Spring  # lateral spring
+    side: Numbers  # (3,), unit vector to the spring's right, in the cup's frame
+    reach: float  # polar angle of the end of the bore in rad
+    # radii in mm
     socket_radius: float
     ball_radius: float
 

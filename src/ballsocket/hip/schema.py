@@ -9,10 +9,11 @@ import msgspec
 
 from ..core.checks import shown
 from ..files.columns import HeadKeys
-from ..files.joint_file import CupTable, JointTables, ReportTable
+from ..files.joint_file import CupTable, JointTables, ReportDetails
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
+    Duration,
     Force,
     Length,
     Parsed,
@@ -21,7 +22,6 @@ from ..files.schema import (
     Table,
     Text,
     Texts,
-    Time,
     Value,
     Viscosity,
     WholeNumber,
@@ -31,7 +31,7 @@ from ..files.schema import (
 )
 from ..model_catalogue import catalogue
 from ..problem.cup import Side
-from ..studies.file import DISTRIBUTION_SCHEMA
+from ..studies.distribution_tables import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES
@@ -262,7 +262,7 @@ class CreepTable(Table, frozen=True, kw_only=True):
 
     law: Annotated[CreepLawName | None, meaning("creep law")] = None
     confinement: Annotated[Confinement | None, meaning("confinement of the liner; unconfined by default")] = None
-    seconds_per_cycle: Annotated[Time | None, meaning("time that a cycle stands for")] = None
+    seconds_per_cycle: Annotated[Duration | None, meaning("time that a cycle stands for")] = None
 
 
 class FilmTable(Table, frozen=True, kw_only=True):
@@ -367,4 +367,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     film: FilmTable | None = None
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
-    report: ReportTable | None = None
+    report: ReportDetails | None = None

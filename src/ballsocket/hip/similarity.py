@@ -67,33 +67,21 @@ def _degree(use: HipSimulation) -> float | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FamilyMember:
-    """Dimensionless results of one simulation of a family.
+    """Dimensionless results of one simulation of a family."""
 
-    Attributes
-    ----------
-    unworn : array (numbers,)
-        `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the worst contact of each
-        activity.
-    worn : array (exposures, numbers)
-        Logarithms of `Similarity.results` over their units, `RIM_NUMBERS`, then the same three numbers of each
-        activity.
-    """
-
+    # (numbers,), `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the worst
+    # contact of each activity
     unworn: Numbers
+    # (exposures, numbers), logarithms of `Similarity.results` over their units, `RIM_NUMBERS`, then the same
+    # three numbers of each activity
     worn: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Similarity:
-    """Dimensionless numbers of patients, and the simulation of a family member with given numbers.
+    """Dimensionless numbers of patients, and the simulation of a family member with given numbers."""
 
-    Attributes
-    ----------
-    variability : PatientVariability
-        Distributions of the patients. `find_obstacle` states whether they are similar.
-    """
-
-    variability: PatientVariability
+    variability: PatientVariability  # distributions of the patients. `find_obstacle` states whether they are similar.
 
     @cached_property
     def setup(self) -> HipSimulation:
@@ -200,10 +188,7 @@ class Similarity:
     def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> FamilyMember:
         """Simulate the family member with given numbers up to each of several logarithms of exposures.
 
-        Raises
-        ------
-        ValueError
-            A contact did not balance its load.
+        Raises ValueError: a contact did not balance its load.
         """
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)

@@ -36,18 +36,10 @@ _CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field;
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """File on disk that stores the state and the reports of one wear simulation.
+    """File on disk that stores the state and the reports of one wear simulation."""
 
-    Attributes
-    ----------
-    folder : Path
-        Folder of the file.
-    identity : str
-        Digest of the joint, the cycle, the wear laws and the discretization.
-    """
-
-    folder: Path
-    identity: str
+    folder: Path  # folder of the file
+    identity: str  # digest of the joint, the cycle, the wear laws and the discretization
 
     @property
     def path(self) -> Path:
@@ -57,10 +49,7 @@ class Checkpoint:
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
         """Write the state of a simulation and its reports so far to the file.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
+        Raises OSError: the folder is not writable or the disk is full.
         """
         make_folder(self.folder)
         report_arrays = {
@@ -73,10 +62,7 @@ class Checkpoint:
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
         """Read the stored state and reports; return None if the file does not exist.
 
-        Raises
-        ------
-        ValueError
-            The file belongs to another run, or is damaged.
+        Raises ValueError: the file belongs to another run, or is damaged.
         """
         if not self.path.exists():
             return None
@@ -106,10 +92,7 @@ def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
     """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written.
 
-    Raises
-    ------
-    ValueError
-        A wear law by a function, which has no fingerprint.
+    Raises ValueError: a wear law by a function, which has no fingerprint.
     """
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
@@ -123,13 +106,7 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:
-    """Check that the cycles wear at most ten liner thicknesses at the initial rate; ValueError otherwise.
-
-    Raises
-    ------
-    ValueError
-        The extrapolated wear of the first cycle exceeds ten liner thicknesses.
-    """
+    """Check that the cycles wear at most ten liner thicknesses at the initial rate; ValueError otherwise."""
     exposure = setup.wearing_exposure(setup.exposure(setup.unworn))
     thickness = float(min(setup.joint.liner_thickness, setup.joint.socket_radius))
     laws = (law for law in (setup.wear, setup.ball_wear) if law is not None)
@@ -333,10 +310,7 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
 
     The last one is the total count.
 
-    Raises
-    ------
-    ValueError
-        A total count that is not positive and finite, or a report beyond it.
+    Raises ValueError: a total count that is not positive and finite, or a report beyond it.
     """
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
     rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import ClassVar
 
 import numpy
 
@@ -21,70 +22,50 @@ _CONTACT_STEP = 1e-3  # step of a ball without contact beyond the clearance, rel
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleEquilibrium:
-    """Displacements and pressures of the ball under all loads of a cycle.
+    """Displacements and pressures of the ball under all loads of a cycle."""
 
-    Attributes
-    ----------
-    displacement : array (loads, 3)
-        Displacement of the ball's centre in mm, in the cup's frame.
-    pressure : array (loads, cells)
-        Pressure in MPa.
-    converged : bool
-        True if every load is balanced.
-    levels : pair of arrays, optional
-        Displacements and pressures of the solved load levels, if the loads are interpolated between levels.
-    """
-
-    displacement: Numbers
-    pressure: Numbers
-    converged: bool
+    displacement: Numbers  # (loads, 3), displacement of the ball's centre in mm, in the cup's frame
+    pressure: Numbers  # (loads, cells), pressure in MPa
+    converged: bool  # True if every load is balanced
+    # displacements and pressures of the solved load levels, if the loads are interpolated between levels
     levels: tuple[Numbers, Numbers] | None = None
 
 
-class SocketFoundation(Protocol):
-    """Interface of a foundation: computes the pressures of the socket's cells under all loads of a cycle."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SocketFoundation(ABC):
+    """Foundation of a socket: pressures of its cells under all loads of a cycle."""
+
+    directions: Numbers  # (3, cells), unit vectors to the centres of the cells, in the cup's frame
+    normals: Numbers  # (3, cells), mean outward normal of each cell
+    areas: Numbers  # (cells,), areas in mm²
+    neighbours: Numbers  # (2, 2, cells), numbers of the neighbouring cells; see `grid_neighbours`
+    clearance: float  # in mm
+    socket_radius: float  # in mm
+
+    edge_exponent: ClassVar[float]  # n of the pressure p ~ s^n at a distance s from the edge of a contact
 
     @property
-    def clearance(self) -> float:
-        """Radial clearance in mm."""
-
-    @property
-    def socket_radius(self) -> float:
-        """Radius of the bore in mm."""
-
-    @property
-    def directions(self) -> Numbers:
-        """Unit vectors to the centres of the cells, in the cup's frame: (3, cells)."""
-
-    @property
-    def normals(self) -> Numbers:
-        """Mean outward normal of each cell, in the cup's frame: (3, cells)."""
-
-    @property
-    def areas(self) -> Numbers:
-        """Areas of the cells in mm²: (cells,)."""
-
-    @property
-    def max_stiffness(self) -> float:
-        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore."""
-
-    @property
+    @abstractmethod
     def edge_inset(self) -> float:
         """Distance from the zero of `edge_field` inwards to the contact edge, in cell widths."""
 
     @property
-    def edge_exponent(self) -> float:
-        """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
+    @abstractmethod
+    def max_stiffness(self) -> float:
+        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore."""
 
+    @abstractmethod
     def select_cells(self, cells: Numbers) -> SocketFoundation:
         """Return the foundation for a subset of the cells."""
 
+    @abstractmethod
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Return a mask (cells,) of the cells in a contact or close to one.
+        """Return a mask (cells,) of the cells in a contact or close to one under any load.
 
         The margin is relative to the largest overlap.
         """
 
+    @abstractmethod
     def solve_equilibrium(
         self,
         loads: Numbers,
@@ -92,59 +73,59 @@ class SocketFoundation(Protocol):
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve for displacements in mm and pressures in MPa under all loads."""
+        """Solve for displacements in mm and pressures in MPa under all loads.
 
+        Parameters
+        ----------
+        loads : array (loads, 3)
+            Forces in N in the cup's frame, none of them zero.
+        depth : array (cells,) or (loads, cells)
+            Depth of the worn bore below the sphere in mm.
+        start : CycleEquilibrium, optional
+            Initial guess.
+        lateral_stiffness : array (3, 3)
+            Stiffness (N/mm) of a spring that unloads the ball as it moves.
+        """
+
+    @abstractmethod
     def smooth(self, depth: Numbers) -> Numbers:
         """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
 
+    @abstractmethod
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(equilibrium, depth), self.neighbours, self.edge_inset)
+
+
+def foundation_cells(grid: Grid, socket_radius: float) -> dict[str, Numbers]:
+    """Return the arrays of a `SocketFoundation` on a grid, by name."""
+    return {
+        "directions": numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
+        "normals": numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
+        "areas": numpy.repeat(grid.areas[:, 0], grid.meridians) * socket_radius**2,
+        "neighbours": grid_neighbours(grid),
+    }
 
 
 def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringFoundation:
     """Create a foundation of radial springs, one for each cell of a grid on the bore."""
-    return SpringFoundation(
-        directions=numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
-        normals=numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
-        areas=numpy.repeat(grid.areas[:, 0], grid.meridians) * socket_radius**2,
-        modulus=modulus,
-        clearance=clearance,
-        socket_radius=socket_radius,
-        neighbours=grid_neighbours(grid),
-    )
+    cells = foundation_cells(grid, socket_radius)
+    return SpringFoundation(**cells, modulus=modulus, clearance=clearance, socket_radius=socket_radius)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SpringFoundation:
-    """Foundation of independent radial springs, whose pressure is modulus times overlap.
+class SpringFoundation(SocketFoundation):
+    """Foundation of independent radial springs, whose pressure is modulus times overlap."""
 
-    Attributes
-    ----------
-    directions, normals : array (3, cells)
-        Unit vectors to the centres of the cells, and means of the outward normal over them, in the cup's frame.
-    areas : array (cells,)
-        Areas in mm².
-    modulus : float
-        Foundation modulus K in MPa/mm.
-    clearance, socket_radius : float
-        Lengths in mm.
-    neighbours : array (2, 2, cells)
-        Numbers of the neighbouring cells; see `grid_neighbours`.
-    """
+    modulus: float  # foundation modulus K in MPa/mm
 
-    directions: Numbers
-    normals: Numbers
-    areas: Numbers
-    modulus: float
-    clearance: float
-    socket_radius: float
-    neighbours: Numbers
+    edge_exponent: ClassVar[float] = 1.0
+    edge_inset: ClassVar[float] = 0.0
 
     def select_cells(self, cells: Numbers) -> SpringFoundation:
-        """Return the foundation for a subset of the cells."""
         return replace(
             self,
             directions=self.directions[:, cells],
@@ -154,10 +135,6 @@ class SpringFoundation:
         )
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Return a mask (cells,) of the cells in a contact or close to one under any load.
-
-        The margin is relative to the largest overlap.
-        """
         displacement, approach = equilibrium.displacement, numpy.zeros(len(self.areas))
         for block in load_blocks(len(displacement), len(self.areas)):
             approach = numpy.maximum(approach, (displacement[block] @ self.normals).max(axis=0))
@@ -169,23 +146,9 @@ class SpringFoundation:
         """Return the worn depth (cells,) unchanged, because springs resolve every wave of the grid."""
         return depth
 
-    @property
-    def edge_inset(self) -> float:
-        """Distance from the zero of `edge_field` to the contact edge in cell widths: 0 for springs."""
-        return 0.0
-
-    @property
-    def edge_exponent(self) -> float:
-        """Exponent of the pressure at the edge of a contact: 1 for springs."""
-        return 1.0
-
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute the overlap (loads, cells) of ball and bore in mm, positive inside contacts."""
         return equilibrium.displacement @ self.normals - self.clearance - depth
-
-    def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
-        return contact_shares(self.edge_field(equilibrium, depth), self.neighbours, self.edge_inset)
 
     @property
     def max_stiffness(self) -> float:
@@ -211,19 +174,7 @@ class SpringFoundation:
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve for displacements in mm and pressures in MPa under all loads by Newton's method.
-
-        Parameters
-        ----------
-        loads : array (loads, 3)
-            Forces in N in the cup's frame, none of them zero.
-        depth : array (cells,) or (loads, cells)
-            Depth of the worn bore below the sphere in mm.
-        start : CycleEquilibrium, optional
-            Initial guess.
-        lateral_stiffness : array (3, 3)
-            Stiffness (N/mm) of a spring that unloads the ball as it moves.
-        """
+        """Solve for displacements in mm and pressures in MPa under all loads by Newton's method."""
         displacement: Numbers = (
             initial_displacement(self, self.modulus, depth, *magnitudes_and_directions(loads))
             if start is None

@@ -9,20 +9,12 @@ from ..core.arrays import Numbers
 
 @dataclass(frozen=True, kw_only=True)
 class SpecimenMean:
-    """Mean over specimens that differ from each other.
-
-    Attributes
-    ----------
-    mean : float
-    standard_error : float
-        Standard uncertainty of the mean, for Student's quantile with one degree of freedom less than specimens.
-    scatter : float
-        Standard deviation between specimens, without the errors of their readings.
-    """
+    """Mean over specimens that differ from each other."""
 
     mean: float
+    # standard uncertainty of the mean, for Student's quantile with one degree of freedom less than specimens
     standard_error: float
-    scatter: float
+    scatter: float  # standard deviation between specimens, without the errors of their readings
 
 
 def mean_of_specimens(values: Numbers, variances: Numbers, min_ratio: float) -> SpecimenMean:

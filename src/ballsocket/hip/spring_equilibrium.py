@@ -28,33 +28,17 @@ _BLOCK_SIZE = 131_072  # values (loads times cells) computed together, which sta
 
 
 class SpringContact(NamedTuple):
-    """Ball on radial springs under several loads.
+    """Ball on radial springs under several loads."""
 
-    Attributes
-    ----------
-    loads : array (loads, 3)
-        Forces in N, none of them zero.
-    closing : array (1 or loads, cells)
-        Displacement in mm along the normal at which ball and cell touch: clearance plus worn depth.
-    normals : array (3, cells)
-        Mean outward normal of each cell.
-    areas : array (cells,)
-        Areas in mm².
-    modulus : float
-        Foundation modulus K in MPa/mm.
-    lateral_stiffness : array (3, 3)
-        Stiffness (N/mm) of a spring that unloads the ball as it moves.
-    approach : float
-        Step in mm of a ball without contact, along its load.
-    """
-
-    loads: Numbers
+    loads: Numbers  # (loads, 3), forces in N, none of them zero
+    # (1 or loads, cells), displacement in mm along the normal at which ball and cell touch: clearance plus worn
+    # depth
     closing: Numbers
-    normals: Numbers
-    areas: Numbers
-    modulus: float
-    lateral_stiffness: Numbers
-    approach: float
+    normals: Numbers  # (3, cells), mean outward normal of each cell
+    areas: Numbers  # (cells,), areas in mm²
+    modulus: float  # foundation modulus K in MPa/mm
+    lateral_stiffness: Numbers  # (3, 3), stiffness (N/mm) of a spring that unloads the ball as it moves
+    approach: float  # step in mm of a ball without contact, along its load
 
 
 Solver = Callable[[SpringContact, Numbers, Numbers], bool]

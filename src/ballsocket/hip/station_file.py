@@ -27,24 +27,12 @@ _CYCLE_UNITS = {
 
 @dataclass(frozen=True, kw_only=True)
 class StationReadings:
-    """Readings of a table of stations.
+    """Readings of a table of stations."""
 
-    Attributes
-    ----------
-    stations : tuple of str
-        Name of the station of each reading.
-    values : tuple of str
-        Readings with their units, such as "12.5 mg".
-    cycles : tuple of float
-        Number of cycles of each reading; empty for a table of rates without such a column.
-    remark : str
-        Sentence on lines of the file that are left out; empty without any.
-    """
-
-    stations: tuple[str, ...]
-    values: tuple[str, ...]
-    cycles: tuple[float, ...]
-    remark: str
+    stations: tuple[str, ...]  # name of the station of each reading
+    values: tuple[str, ...]  # readings with their units, such as "12.5 mg"
+    cycles: tuple[float, ...]  # number of cycles of each reading; empty for a table of rates without such a column
+    remark: str  # sentence on lines of the file that are left out; empty without any
 
 
 def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoice) -> StationReadings:
@@ -64,12 +52,8 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
     choice : HeadChoice
         Columns of the file that get another name, or that are not used.
 
-    Raises
-    ------
-    ValueError
-        A column is missing, unknown or without a unit, or a cell is not a number.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a column is missing, unknown or without a unit, or a cell is not a number.
+    Raises OSError: the file cannot be read.
     """
     table = read_cells(path, (*_CYCLES, quantity), choice, texts=(_STATION,))
     try:

@@ -211,26 +211,15 @@ class PatientVariability:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Patient:
-    """Wear simulation of one patient of a cohort, with the ratio of the patient's cycles to the nominal ones.
+    """Wear simulation of one patient of a cohort, with the ratio of the patient's cycles to the nominal ones."""
 
-    Attributes
-    ----------
-    use : HipSimulation
-        Hip of the patient.
-    cycle_ratio : float
-        Ratio of the patient's cycles to those of the nominal patient in the same time.
-    """
-
-    use: HipSimulation
-    cycle_ratio: float
+    use: HipSimulation  # hip of the patient
+    cycle_ratio: float  # ratio of the patient's cycles to those of the nominal patient in the same time
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
         """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts.
 
-        Raises
-        ------
-        ValueError
-            A contact did not balance its load, or the liner would be worn through many times.
+        Raises ValueError: a contact did not balance its load, or the liner would be worn through many times.
         """
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
         integrator = WearIntegrator(setup=self.use)
@@ -269,20 +258,12 @@ def _tabulate_cycle(cycle: Cycle) -> Cycle:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortResult(Record):
-    """Results of several patients as arrays.
+    """Results of several patients as arrays."""
 
-    Attributes
-    ----------
-    table : array (patients, reports, results)
-        Results by `RESULT_UNITS`; NaN for a patient without a result.
-    refused : array of str (patients,)
-        Error messages of the patients without a result; empty for the others.
-    contact : array (patients, 1 + reports, 3)
-        Utilisation, validity (1 or 0) and edge loading (1 or 0) of the contact, unworn and at each report.
-    """
-
-    table: Numbers
-    refused: Numbers
+    table: Numbers  # (patients, reports, results), results by `RESULT_UNITS`; NaN for a patient without a result
+    refused: Numbers  # str (patients,), error messages of the patients without a result; empty for the others
+    # (patients, 1 + reports, 3), utilisation, validity (1 or 0) and edge loading (1 or 0) of the contact, unworn
+    # and at each report
     contact: Numbers
 
     def select(self, patients: Numbers) -> CohortResult:

@@ -221,10 +221,7 @@ so that this is 1.066e-06 mm^3/(N m); write it so
 def wear_per_energy(name: str, value: Any) -> float:
     """Read a worn volume per friction energy in mm³/J from a number, or from text such as "1e-5 mm^3/J".
 
-    Raises
-    ------
-    ValueError
-        As `wear_factor`.
+    Raises ValueError: as `wear_factor`.
     """
     number, unit = _split_number_and_unit(name, value, "mm^3/J")
     if unit:
@@ -236,10 +233,7 @@ def wear_per_energy(name: str, value: Any) -> float:
 def wear_per_slide(name: str, value: Any) -> float:
     """Read a worn depth per sliding distance in mm/mm from a number, or from text such as "1e-6 mm/m".
 
-    Raises
-    ------
-    ValueError
-        Text without a number, or a unit of another dimension.
+    Raises ValueError: text without a number, or a unit of another dimension.
     """
     number, unit = _split_number_and_unit(name, value, "mm/m")
     if unit:

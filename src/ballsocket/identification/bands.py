@@ -112,21 +112,12 @@ def _band_half_width(factor: float, freedom: int, noise_freedom: float) -> float
 
 @dataclass(frozen=True, eq=False)
 class Profiles:
-    """Ends of all profile likelihood intervals, and the best point of the search for them.
+    """Ends of all profile likelihood intervals, and the best point of the search for them."""
 
-    Attributes
-    ----------
-    ends : list of list of pairs of ProfileEnd
-        Lower and upper end, by the limit on the rise of χ² and by unknown.
-    lowest : array (unknowns,)
-        Point of the smallest misfit on all paths.
-    cost : float
-        Misfit at that point, half of χ².
-    """
-
+    # lower and upper end, by the limit on the rise of χ² and by unknown
     ends: list[list[tuple[ProfileEnd, ProfileEnd]]]
-    lowest: Numbers
-    cost: float
+    lowest: Numbers  # (unknowns,), point of the smallest misfit on all paths
+    cost: float  # misfit at that point, half of χ²
 
 
 @dataclass(eq=False)

@@ -33,8 +33,9 @@ from ..files.toml import read_toml
 from ..files.units import parse
 from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
+from ..studies.distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
 from ..studies.expressions import parse_ends
-from ..studies.file import DISTRIBUTION_SCHEMA, ModelGap, ModelName, distribution_of
+from ..studies.file import ModelGap, ModelName
 from .columns import Gaps, parse_uncertainty, read_measured
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .maximum_likelihood import identify
@@ -196,22 +197,12 @@ class IdentifyTable(JointTables, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class IdentifyFile:
-    """Parsed contents of an identification file.
-
-    Attributes
-    ----------
-    model : Model
-    joint : Joint
-    data : tuple of Measured
-    free : dict of str to two ends or a distribution
-        Unknowns by name.
-    scatter : ScatterModel
-    """
+    """Parsed contents of an identification file."""
 
     model: Model
     joint: Joint
     data: tuple[Measured, ...]
-    free: dict[str, Prior]
+    free: dict[str, Prior]  # unknowns by name
     scatter: ScatterModel
 
     def identify_unknowns(self) -> IdentificationResult:
@@ -226,12 +217,8 @@ def read_identify(path: str | Path) -> IdentifyFile:
     `quantity` with its `values` and its load. The page "Keys of files" of the reference lists all tables and keys.
     Paths are relative to the folder of the file.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error, and the nearest allowed name.
-    OSError
-        A file cannot be read.
+    Raises ValueError: one sentence: the error, and the nearest allowed name.
+    Raises OSError: a file cannot be read.
     """
     path = Path(path)
     return read_toml(path, "measurement", lambda content: _parse_file(content, path.parent))

@@ -30,10 +30,7 @@ _EQUAL_COST = 1e-6  # difference of cost that counts as equal
 def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     """Find the best fit of the unknowns: a global search, then least squares from its best points.
 
-    Raises
-    ------
-    ValueError
-        The model has no result for all data at any point within the ranges.
+    Raises ValueError: the model has no result for all data at any point within the ranges.
     """
     ends = [minimise_misfit(misfit, start) for start in _choose_starting_points(misfit, seed)]
     best = _choose_best_fit(misfit, ends)

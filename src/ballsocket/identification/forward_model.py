@@ -45,21 +45,12 @@ class ForwardModel:
     """Forward model of an identification: computes results for all data from values of the unknowns.
 
     The results are in the order of the data sets.
-
-    Attributes
-    ----------
-    model : Model
-    joint : Joint
-        Joint with the numbers that are not unknown.
-    data : tuple of Measured
-    names : tuple of str
-        Names of the unknowns.
     """
 
     model: Model
-    joint: Joint
+    joint: Joint  # joint with the numbers that are not unknown
     data: tuple[Measured, ...]
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # names of the unknowns
     _known_errors: dict[str, float] = field(init=False)
 
     def __post_init__(self) -> None:

@@ -112,38 +112,21 @@ class Product:
 
 @dataclass(frozen=True, eq=False)
 class ProfileEnd:
-    """Lower or upper end of a profile likelihood interval.
+    """Lower or upper end of a profile likelihood interval."""
 
-    Attributes
-    ----------
-    theta : array (unknowns,)
-        Scaled parameters at the end; all other unknowns are fitted.
-    closed : bool
-        True where χ² reaches its limit; False where the range of the unknown ends first.
-    limited_by : tuple of int
-        Indices of the unknowns at an end of their ranges that increase χ² there.
-    """
-
-    theta: Numbers
-    closed: bool
-    limited_by: tuple[int, ...]
+    theta: Numbers  # (unknowns,), scaled parameters at the end; all other unknowns are fitted
+    closed: bool  # True where χ² reaches its limit; False where the range of the unknown ends first
+    limited_by: tuple[int, ...]  # indices of the unknowns at an end of their ranges that increase χ² there
 
 
 @dataclass(frozen=True, eq=False)
 class Interval:
-    """Profile likelihood interval of an unknown.
+    """Profile likelihood interval of an unknown."""
 
-    Attributes
-    ----------
-    low, high : ProfileEnd
-        Ends of the band of 95 %.
-    closed : bool
-        True where the interval of 99 % ends inside the range, or at a physical limit.
-    """
-
+    # ends of the band of 95 %
     low: ProfileEnd
     high: ProfileEnd
-    closed: bool
+    closed: bool  # True where the interval of 99 % ends inside the range, or at a physical limit
 
     @property
     def limiting_indices(self) -> frozenset[int]:

@@ -120,10 +120,8 @@ def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]
     The residuals of a set have as many degrees of freedom as it has values, less its part of the unknowns: the sum of
     the leverages of its values. Saturated values do not count.
 
-    Raises
-    ------
-    ValueError
-        A data set whose scatter cannot be estimated, for it has no more values than it determines unknowns.
+    Raises ValueError: a data set whose scatter cannot be estimated, for it has no more values than it determines
+    unknowns.
     """
     sets = misfit.forward.data
     ends = numpy.cumsum([len(measured) for measured in sets])

@@ -124,23 +124,12 @@ def _compile_forward_model(forward: ForwardModel) -> Callable[[Numbers], tuple[A
 
 @dataclass(frozen=True, eq=False)
 class FitResult:
-    """Result of a search for the best fit.
+    """Result of a search for the best fit."""
 
-    Attributes
-    ----------
-    theta : array (unknowns,)
-        Best point, in standard deviations of the priors.
-    cost : float
-        Minus ln of the posterior density, up to a constant.
-    converged : bool
-    rivals : tuple of array
-        Distant ends of other searches with nearly the same cost.
-    """
-
-    theta: Numbers
-    cost: float
+    theta: Numbers  # (unknowns,), best point, in standard deviations of the priors
+    cost: float  # minus ln of the posterior density, up to a constant
     converged: bool
-    rivals: tuple[Numbers, ...] = ()
+    rivals: tuple[Numbers, ...] = ()  # distant ends of other searches with nearly the same cost
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,34 +137,17 @@ class Misfit:
     """Residuals between data and model results for a least-squares fit.
 
     Half of their sum of squares is minus ln of the posterior density, up to a constant.
-
-    Attributes
-    ----------
-    forward : ForwardModel
-    transform : ParameterTransform
-    scatter : ScatterModel
-    slopes : callable
-        `by_differences`, or `by_tracing`.
-    uncertainty : array (data,)
-    widening : float
-        Factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties.
-    noise_freedom : float
-        Degrees of freedom of estimated uncertainties; infinite if all are stated.
-    value : array (data,)
-        Measured values; a saturated value is replaced by its limit.
-    saturated : array (data,)
-        Mask of the values that are lower bounds.
     """
 
     forward: ForwardModel
     transform: ParameterTransform
     scatter: ScatterModel
-    slopes: Slopes
-    uncertainty: Numbers
-    widening: float = 1.0
-    noise_freedom: float = inf
-    value: Numbers = field(init=False)
-    saturated: Numbers = field(init=False)
+    slopes: Slopes  # `by_differences`, or `by_tracing`
+    uncertainty: Numbers  # (data,)
+    widening: float = 1.0  # factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties
+    noise_freedom: float = inf  # degrees of freedom of estimated uncertainties; infinite if all are stated
+    value: Numbers = field(init=False)  # (data,), measured values; a saturated value is replaced by its limit
+    saturated: Numbers = field(init=False)  # (data,), mask of the values that are lower bounds
 
     def __post_init__(self) -> None:
         data = self.forward.data

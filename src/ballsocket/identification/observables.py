@@ -128,26 +128,13 @@ def sliding_torque(axis_angle: float = pi / 2) -> CustomObservable:
 
 @dataclass(frozen=True)
 class FileObservable:
-    """Observable that a file can name as the quantity of its data, with one argument.
-
-    Attributes
-    ----------
-    described : Quantity
-    make : callable
-        Function from the argument to the observable.
-    argument : str
-        Key of the argument in files.
-    kind : Kind
-        Kind of the argument, which sets its units.
-    default : float or None
-        Default of the argument; None if a file must state it.
-    """
+    """Observable that a file can name as the quantity of its data, with one argument."""
 
     described: Quantity
-    make: Callable[[float], CustomObservable]
-    argument: str
-    kind: Kind
-    default: float | None = None
+    make: Callable[[float], CustomObservable]  # function from the argument to the observable
+    argument: str  # key of the argument in files
+    kind: Kind  # kind of the argument, which sets its units
+    default: float | None = None  # default of the argument; None if a file must state it
 
 
 _FILE_OBSERVABLES = (

@@ -27,31 +27,16 @@ _SEARCH_DEVIATIONS = 8.0  # half width of the search range about a known mean, i
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown:
-    """Unknown number of an identification, with its prior and search range.
+    """Unknown number of an identification, with its prior and search range."""
 
-    Attributes
-    ----------
-    name : str
-        "clearance", "liner_young", "work_of_adhesion", "machine.offset".
-    quantity : Quantity
-        Title, unit and allowed range.
-    prior : Rectangular, Normal or LogNormal
-        Prior distribution.
-    low, high : float
-        Ends of the search range.
-    logarithmic : bool
-        True for a logarithmic scale: both ends are above 0, or the prior is log-normal.
-    of_machine : bool
-        True for an error of a machine, False for a number of the joint or of the model.
-    """
-
-    name: str
-    quantity: Quantity
-    prior: Distribution
+    name: str  # "clearance", "liner_young", "work_of_adhesion", "machine.offset"
+    quantity: Quantity  # title, unit and allowed range
+    prior: Distribution  # prior distribution
+    # ends of the search range
     low: float
     high: float
-    logarithmic: bool
-    of_machine: bool = False
+    logarithmic: bool  # True for a logarithmic scale: both ends are above 0, or the prior is log-normal
+    of_machine: bool = False  # True for an error of a machine, False for a number of the joint or of the model
 
     @property
     def has_distribution(self) -> bool:
@@ -104,10 +89,8 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
     model : Model
         Model that must have the free numbers of a model.
 
-    Raises
-    ------
-    ValueError
-        A name that is not known or is stated twice; a number that the model does not have; ends that are not allowed.
+    Raises ValueError: a name that is not known or is stated twice; a number that the model does not have; ends that are
+    not allowed.
     """
     priors = {name.replace(".", "_"): prior for name, prior in free.items()}
     if len(priors) < len(free):

@@ -23,9 +23,6 @@ from .wave import FilmWave
 REPEAT_TOLERANCE = 0.01
 """Largest mean change of the film from one cycle to the next, relative to the mean film."""
 
-CYCLES = 300
-"""Default number of uninterrupted cycles from a flooded bore."""
-
 SETTLED_CHANGE = 0.1
 """Largest relative change of a settled film of the core while the number of cycles doubles."""
 
@@ -91,9 +88,7 @@ class CycleFilm:
         return numpy.where(area > 0, total / numpy.where(area > 0, area, 1.0), numpy.nan)
 
 
-def carry_over_cycle(
-    mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant], cycles: int = CYCLES
-) -> CycleFilm:
+def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant], cycles: int) -> CycleFilm:
     """Carry the film over cycles from a flooded bore.
 
     The first cycle is followed instant by instant. The film of the core then drifts over the others, averaged over a

@@ -98,10 +98,7 @@ class DryContact:
 def find_edge(contact: Contact) -> Edge:
     """Find the kind of edge of a single contact, and its constants.
 
-    Raises
-    ------
-    ValueError
-        A contact whose pressure rises neither linearly nor as a square root at its edge.
+    Raises ValueError: a contact whose pressure rises neither linearly nor as a square root at its edge.
     """
     slope, coefficient = float(contact.edge_slope), float(contact.edge_coefficient)
     if isfinite(slope):
@@ -114,12 +111,8 @@ def find_edge(contact: Contact) -> Edge:
 def check_single_contact(contact: Contact) -> Contact:
     """Return a contact that a film can separate.
 
-    Raises
-    ------
-    TypeError
-        Another object than a contact.
-    ValueError
-        More than one contact; a contact that failed or carries no load; a joint without clearance.
+    Raises TypeError: another object than a contact.
+    Raises ValueError: more than one contact; a contact that failed or carries no load; a joint without clearance.
     """
     if not isinstance(contact, Contact):
         raise TypeError(f"contact must be a pressed contact, got {type(contact).__name__}")

@@ -112,10 +112,7 @@ class ContactFilm:
 def check_reynolds(contact: Contact, dry: DryContact) -> None:
     """Check that Reynolds' equation can be solved for a contact.
 
-    Raises
-    ------
-    ValueError
-        A model without a known elastic operator; a contact that the rim cuts, or that is far from round.
+    Raises ValueError: a model without a known elastic operator; a contact that the rim cuts, or that is far from round.
     """
     known = contact.model.name in ELASTIC_MODELS or isinstance(contact, OffAxisContact)
     if not (known or isinstance(dry.edge, SpringEdge)):
@@ -154,10 +151,7 @@ def make_contact_film(
     viscosity : float
         Viscosity in MPa s.
 
-    Raises
-    ------
-    ValueError
-        An edge that moves too far for its short inlet.
+    Raises ValueError: an edge that moves too far for its short inlet.
     """
     contact, dry = contacts[0], dry_contacts[0]
     on_springs = isinstance(dry.edge, SpringEdge)

@@ -139,21 +139,11 @@ def _divide(before: LoadStep, step: LoadStep, parts: int) -> Iterator[LoadStep]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmSteps:
-    """Films at the end of each step of load and motion.
+    """Films at the end of each step of load and motion."""
 
-    Attributes
-    ----------
-    case : ContactFilm
-        Reynolds' equation with its mesh.
-    film : TransientFilm
-        States, thickness (steps, cells) in mm, and status of each step.
-    edge_travel : array (steps,)
-        Movement of the edge of the dry contact in one time step, in inlet lengths.
-    """
-
-    case: ContactFilm
-    film: TransientFilm
-    edge_travel: Numbers
+    case: ContactFilm  # Reynolds' equation with its mesh
+    film: TransientFilm  # states, thickness (steps, cells) in mm, and status of each step
+    edge_travel: Numbers  # (steps,), movement of the edge of the dry contact in one time step, in inlet lengths
 
     @property
     def resolved(self) -> Numbers:

@@ -12,11 +12,9 @@ from types import MappingProxyType, NoneType, UnionType
 from typing import Any, get_args, get_origin
 
 from ..core.checks import known_name
-from ..core.quantities import QUANTITIES
 from ..files.schema import Table
 from ..files.schema_keys import json_schema
-from ..model_catalogue import off_axis
-from ..problem.dimensions import DIAMETERS
+from ..model_catalogue import OFF_AXIS
 
 FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -83,7 +81,7 @@ TOOLS: Mapping[str, Tool] = MappingProxyType(
             command="press",
             description="Press a ball by a load at an angle to the cup's axis: contact, rim and largest pressure in "
             "three dimensions.",
-            fixed=(f"--model={off_axis.name}",),
+            fixed=(f"--model={OFF_AXIS}",),
             hidden=("model", "every", *_MESH),
         ),
         "curve": Tool(command="curve", description="Press a joint by one model in equal steps from zero to a load."),
@@ -148,7 +146,7 @@ def parameters(tool: Tool, commands: Commands) -> Mapping[str, Parameter]:
 
 def schema(tool: Tool, commands: Commands) -> dict[str, Any]:
     """Return the JSON Schema of a tool's arguments."""
-    properties = {name: _property(name, parameter) for name, parameter in parameters(tool, commands).items()}
+    properties = {name: _property(parameter) for name, parameter in parameters(tool, commands).items()}
     definitions: dict[str, Any] = {}
     if tool.file:
         file = json_schema(file_table(tool.command))
@@ -163,22 +161,13 @@ def _object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
-def _property(name: str, parameter: Parameter) -> dict[str, Any]:
+def _property(parameter: Parameter) -> dict[str, Any]:
     types = _types(parameter)
     kind = next((kind for kind in _SCHEMAS if any(issubclass(type_, kind) for type_ in types)), str)
-    description = {"description": f"{_quantity_text(name)}{option(parameter).help or ''}"}
+    description = {"description": option(parameter).help or ""}
     if list in types:
         return {"type": "array", "items": _SCHEMAS[kind], "maxItems": 50, **description}
     return {**_SCHEMAS[kind], **description}
-
-
-def _quantity_text(name: str) -> str:
-    """Return the title of a quantity and the unit of a number without unit; empty for other parameters."""
-    known = DIAMETERS.get(name, f"liner_{name}" if f"liner_{name}" in QUANTITIES else name)
-    if known not in QUANTITIES:
-        return ""
-    quantity, twice = QUANTITIES[known], "twice " if name in DIAMETERS else ""
-    return f"{twice}{quantity.title}{quantity.written.text_in_brackets}. "
 
 
 _SCHEMAS: Mapping[type, dict[str, Any]] = {

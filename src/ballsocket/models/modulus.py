@@ -104,10 +104,7 @@ class FunctionModulus(Modulus):
 def as_modulus(value: Any) -> Modulus:
     """Return a foundation modulus, also from a function that computes K in MPa/mm of a joint.
 
-    Raises
-    ------
-    TypeError
-        Another value.
+    Raises TypeError: another value.
     """
     if isinstance(value, Modulus):
         return value

@@ -24,23 +24,14 @@ QUANTITIES = ("indentation", "max_pressure", "half_angle", "force")
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """Relative errors of one quantity over all joints and loads.
+    """Relative errors of one quantity over all joints and loads."""
 
-    Attributes
-    ----------
-    median, high, worst : float
-        Median, 95th percentile and maximum.
-    joint : Joint
-        Joint with the largest error.
-    load : float
-        Force in N of the largest error.
-    """
-
+    # median, 95th percentile and maximum
     median: float
     high: float
     worst: float
-    joint: Joint
-    load: float
+    joint: Joint  # joint with the largest error
+    load: float  # force in N of the largest error
 
     def summary(self) -> dict[str, Any]:
         """Return one dictionary for JSON; `high` is the 95th percentile, `load` in N."""
@@ -54,19 +45,11 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Errors of one model.
-
-    Attributes
-    ----------
-    model : str
-    spreads : dict of str to Spread
-        Errors by quantity.
-    answered, valid : float
-        Fractions of the contacts with a result, and of those within the range of the model.
-    """
+    """Errors of one model."""
 
     model: str
-    spreads: dict[str, Spread]
+    spreads: dict[str, Spread]  # errors by quantity
+    # fractions of the contacts with a result, and of those within the range of the model
     answered: float
     valid: float
 

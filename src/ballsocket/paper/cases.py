@@ -73,10 +73,7 @@ def refit_table_3(reference: Model | None = None) -> tuple[TableColumn, ...]:
 def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
     """Fit one column of Table 3 again, for one of its Poisson's ratios.
 
-    Raises
-    ------
-    ValueError
-        A Poisson's ratio that Table 3 does not have.
+    Raises ValueError: a Poisson's ratio that Table 3 does not have.
     """
     published = table_3()
     if poisson not in published["poisson"]:

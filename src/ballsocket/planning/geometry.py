@@ -16,23 +16,12 @@ _SEED, _TRIPLES = 20260102, 300
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Plane:
-    """Least-squares plane.
+    """Least-squares plane."""
 
-    Attributes
-    ----------
-    centre : array (3,)
-        Centroid of the points.
-    normal : array (3,)
-        Unit normal of either sign.
-    distances : array (n,)
-        Distances of the points from the plane, along the normal.
-    spread : array (2,)
-        Root of the sum of squares of the points along the two main directions in the plane, the larger first.
-    """
-
-    centre: Numbers
-    normal: Numbers
-    distances: Numbers
+    centre: Numbers  # (3,), centroid of the points
+    normal: Numbers  # (3,), unit normal of either sign
+    distances: Numbers  # (n,), distances of the points from the plane, along the normal
+    # (2,), root of the sum of squares of the points along the two main directions in the plane, the larger first
     spread: Numbers
 
     @property

@@ -166,10 +166,7 @@ def _ascii_coordinates(stream: BinaryIO) -> Iterator[float]:
 def check_extent(points: Numbers, units: str, name: str) -> float:
     """Return the length in mm of a unit, in which points (n, 3) have the size of a liner or head.
 
-    Raises
-    ------
-    ValueError
-        An unknown unit; coordinates that are not finite; an extent that no liner or head has.
+    Raises ValueError: an unknown unit; coordinates that are not finite; an extent that no liner or head has.
     """
     length = length_of(units)
     if not numpy.isfinite(points).all():

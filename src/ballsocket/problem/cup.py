@@ -21,6 +21,10 @@ UP: Direction = (0.0, 0.0, 1.0)
 """Direction of a vertical load of the ball on a cup."""
 
 
+AXIAL_TILT = 1e-9
+"""Angle in rad between a load and the axis of a cup up to which the load counts as axial."""
+
+
 class Interface(Choice):
     """Interface between the liner and its backing: bonded, or sliding without friction."""
 
@@ -256,8 +260,12 @@ class Cup:
 
         A preloaded ball is held by a socket that reaches beyond its equator alone.
         """
-        unset = isinstance(self.arc_of_cover, UnsetAngle)
-        return replace(self, arc_of_cover=HOLDING_ARC) if unset and float(clearance) < 0 else self
+        return self if self.has_stated_arc or float(clearance) >= 0 else replace(self, arc_of_cover=HOLDING_ARC)
+
+    @property
+    def has_stated_arc(self) -> bool:
+        """True if the arc of cover was set, even to 180°."""
+        return not isinstance(self.arc_of_cover, UnsetAngle)
 
     @property
     def oriented(self) -> bool:
@@ -297,6 +305,10 @@ class Cup:
         The angle is at most π/2.
         """
         return replace(self, inclination=angle, anteversion=0.0)
+
+    def load_tilt(self, *, tilt: float | None = None, direction: Array = UP) -> float:
+        """Return the angle in rad between a load and the axis of the cup, from a tilt or a direction in the body."""
+        return float(self.tilt(direction)) if tilt is None else float(tilt)
 
     def tilt(self, direction: Array) -> Array:
         """Compute the angle γ in rad between a direction and the axis of the cup.

@@ -131,13 +131,9 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
     dict of str to array
         The lengths of `STORED_LENGTHS` in mm, and in `given` the names of those that determine them.
 
-    Raises
-    ------
-    ValueError
-        A length that is not allowed; too few or too many lengths; a given length that would change although nothing
-        says which one.
-    TypeError
-        A length that is neither a number nor an array.
+    Raises ValueError: a length that is not allowed; too few or too many lengths; a given length that would change
+    although nothing says which one.
+    Raises TypeError: a length that is neither a number nor an array.
     """
     check_names(lengths, LENGTHS, "among the lengths of a joint")
     numbers = {name: LENGTHS[name].check(value) for name, value in lengths.items()}
@@ -178,10 +174,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     Three lengths determine a joint. A change of one that is not among the given ones breaks a given one. It is refused
     unless the changed lengths leave one choice.
 
-    Raises
-    ------
-    ValueError
-        Several choices; the message has each of them.
+    Raises ValueError: several choices; the message has each of them.
     """
     changed_names = tuple(changed)
     new = {canonical(name) for name in changed_names if name in LENGTHS}

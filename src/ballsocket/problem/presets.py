@@ -51,19 +51,10 @@ POM = Material(
 
 @dataclass(frozen=True, kw_only=True)
 class LongTermModulus:
-    """Modulus of a preset material under a load that is held for a long time.
+    """Modulus of a preset material under a load that is held for a long time."""
 
-    Attributes
-    ----------
-    young : float
-        Creep modulus in MPa.
-    hours : float
-        Duration of the load in hours.
-    source : str
-    """
-
-    young: float
-    hours: float
+    young: float  # creep modulus in MPa
+    hours: float  # duration of the load in hours
     source: str
 
 
@@ -328,10 +319,7 @@ joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _
 def named_material(name: str, chosen: Any) -> Material:
     """Return a preset material by its name or a further one; `name` is that of the body in messages.
 
-    Raises
-    ------
-    ValueError
-        A name that is not known, or several names.
+    Raises ValueError: a name that is not known, or several names.
     """
     if isinstance(chosen, str) and "," in chosen:
         raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")

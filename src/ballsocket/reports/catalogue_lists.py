@@ -11,7 +11,6 @@ from rich.text import Text
 
 from ..contact.outcome import ModelInfo
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
-from ..core.sources import Source
 from ..core.validity import Range
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
@@ -30,7 +29,7 @@ def model_summary(model: ModelInfo) -> dict[str, Any]:
         "promise": None if promise is None else {"within": promise.within, "quantities": list(promise.quantities)},
         "validity": list(map(_range, model.validity)),
         "reach": model.reach,
-        "sources": list(map(source_summary, model.sources)),
+        "sources": [source.summary() for source in model.sources],
     }
 
 
@@ -56,11 +55,6 @@ def _range(limit: Range) -> dict[str, Any]:
     low, high = (end if isfinite(end) else None for end in (limit.low, limit.high))
     name = limit.quantity if isinstance(limit.quantity, str) else None
     return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
-
-
-def source_summary(source: Source) -> dict[str, Any]:
-    """Summarise a publication with its key, text and DOI."""
-    return {"key": source.key, "text": str(source), "doi": source.doi or None}
 
 
 _NARROW = 72  # columns: lists are paragraphs below

@@ -11,7 +11,6 @@ Reports and the explorer show the same rows::
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from math import nextafter
 from typing import Any
 
@@ -26,6 +25,7 @@ from ..contact.verdict import (
     percent,
     ratio_text,
 )
+from ..core.answers import Check
 from ..core.quantities import QUANTITIES, STRENGTH, Quantity
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..problem import Joint, Material
@@ -36,61 +36,6 @@ Writer = Callable[[Quantity, float], str]
 """Function that writes a number in internal units with its unit: `Units.text_of`, or `Reading.with_unit`."""
 
 _PRESSURE, _VON_MISES = "allowable_pressure", "yield_stress"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Check:
-    """Comparison of one demand on a joint with its capacity; plain data, which a process can return.
-
-    Attributes
-    ----------
-    title : str
-        Demand in words, such as "pressure on the liner".
-    quantity : str
-        Name of the quantity of demand and capacity in `QUANTITIES`.
-    demand : Bounded
-        Value with its error bar in internal units: mm, MPa, rad.
-    capacity : float or None
-        Largest acceptable value; None if it is unknown.
-    limit : str
-        Capacity in words, such as "allowable pressure".
-    source : str
-        Origin of the capacity, or the input that is missing.
-    trusted : bool
-        True if the demand lies in the range of its model.
-    """
-
-    title: str
-    quantity: str
-    demand: Bounded
-    capacity: float | None
-    limit: str
-    source: str
-    trusted: bool = True
-
-    @property
-    def ratio(self) -> Bounded | None:
-        """Ratio of demand to capacity; None without a capacity."""
-        return None if self.capacity is None else self.demand.scaled(1 / self.capacity)
-
-    @property
-    def verdict(self) -> Verdict:
-        """Verdict on the demand; undecided without a capacity, or for a kept one outside the range of its model."""
-        if self.capacity is None:
-            return Verdict.UNDECIDED
-        verdict = self.demand.verdict(high=self.capacity)
-        return verdict if self.trusted else max(verdict, Verdict.UNDECIDED)
-
-    @property
-    def result(self) -> str:
-        """Sign and word of the verdict, with the reason for an undecided one."""
-        reason = ""
-        if self.verdict is Verdict.UNDECIDED:
-            reason = ": limit not known" if self.capacity is None else _UNTRUSTED if not self.trusted else _BAR
-        return f"{self.verdict.sign} {self.verdict.word}{reason}"
-
-
-_UNTRUSTED, _BAR = ": outside the range of the model", ": the error bar contains the limit"
 
 
 def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tuple[Check, ...]:

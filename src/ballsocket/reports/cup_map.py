@@ -12,10 +12,10 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.quantities import CONTACT, FIELD
+from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from .style import INK, VERMILLION
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

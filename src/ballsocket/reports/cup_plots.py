@@ -13,12 +13,12 @@ from ..core.checks import needs
 from ..core.display import plain_number
 from ..core.quantities import FIELD
 from ..core.storage.atomic_files import write_atomically
+from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from ..problem import Support
 from .cup_map import draw_map, shown_maximum, shown_pressure
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     import pyvista

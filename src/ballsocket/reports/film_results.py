@@ -10,13 +10,13 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.display import plain_number
+from ..core.unit_systems import Units
 from ..hip.film import Film
 from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
 from .cup_map import on_page
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, new_figure
 from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

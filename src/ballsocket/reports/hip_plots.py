@@ -14,7 +14,6 @@ from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
 from ..hip.variability import INFLUENCED_RESULTS
-from .study_plots import draw_indices
 from .style import BLUE, finish, new_figure, single_axes
 
 if TYPE_CHECKING:
@@ -69,14 +68,14 @@ def _map(use: HipSetup, field: Numbers, label: str, title: str) -> Figure:
     azimuth = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
     pole = numpy.full_like(field[:1], field[0].mean())
     values = numpy.maximum(numpy.vstack([pole, field, field[-1:]]), 0.0)  # rounding leaves less than nothing
-    polar = numpy.degrees([0.0, *use.grid.polar, use.reach])
+    polar = numpy.degrees([0.0, *use.grid.polar, use.frame.reach])
     closed = numpy.hstack([values, values[:, :1]])
     shown = axes.contourf(azimuth, polar, closed, levels=20, cmap="cividis")
-    sizes = numpy.linalg.norm(use.loads, axis=1)
+    sizes = numpy.linalg.norm(use.frame.loads, axis=1)
     if len(sizes):
-        x, y, z = use.loads[sizes.argmax()] / sizes.max()
+        x, y, z = use.frame.loads[sizes.argmax()] / sizes.max()
         axes.plot(numpy.arctan2(y, x), degrees(numpy.arctan2(numpy.hypot(x, y), z)), "+", color="white", ms=12)
-    axes.set_ylim(0, degrees(use.reach))
+    axes.set_ylim(0, degrees(use.frame.reach))
     axes.set_rgrids([30, 60], ["30°", "60°"], angle=100, color="0.85")
     axes.set_xticks([0, pi / 2, pi, 3 * pi / 2], [""] * 4)
     axes.grid(color="0.6", linewidth=0.4)
@@ -112,7 +111,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
             part = [0.0, *(float(numpy.linalg.norm(getattr(report, name))) for report in history.reports)]
             axes.plot(count, part, dash, color=colour, label=label)
     axes.plot(count, [0.0, *(report.depth for report in history.reports)], "-.", color="0.4", label="deepest wear")
-    finish(axes, "million cycles", "mm")
+    finish(axes, "million cycles", "depth [mm]")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False)
     return figure
@@ -122,12 +121,12 @@ def track_map(history: History) -> Figure:
     """Draw the sliding tracks (mm) of points of the ball on the socket in one cycle, seen along the cup's axis."""
     use = history.use
     figure, axes = single_axes(5.2, 4.8)
-    frame = numpy.array(use.placed.frame)
-    rotations = numpy.einsum("ij,njk,lk->nil", frame, use.side_cycle.rotations, frame)
-    for track in tracks(rotations, _points(use.reach), float(use.joint.ball_radius)):
+    frame = numpy.array(use.frame.placed.frame)
+    rotations = numpy.einsum("ij,njk,lk->nil", frame, use.frame.side_cycle.rotations, frame)
+    for track in tracks(rotations, _points(use.frame.reach), float(use.joint.ball_radius)):
         axes.plot(track[:, 0], track[:, 1], color=_INK, linewidth=0.8)
     rim = numpy.linspace(0.0, 2 * pi, 200)
-    size = float(use.joint.socket_radius) * numpy.sin(min(use.reach, pi / 2))
+    size = float(use.joint.socket_radius) * numpy.sin(min(use.frame.reach, pi / 2))
     axes.plot(size * numpy.cos(rim), size * numpy.sin(rim), color="0.4")
     axes.set_aspect("equal")
     finish(axes, "towards the nearest rim [mm]", "across [mm]")
@@ -171,9 +170,9 @@ def edge_figure(history: History) -> Figure:
     axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
     label = f"after {last.cycles / 1e6:g} million cycles"
     axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=label)
-    worst = last.edge.closest_index(use)
+    worst = last.edge.closest_index(use.frame)
     if worst is not None:
-        phase = 100 * use.cycle.phases[use.loaded[worst]]
+        phase = 100 * use.cycle.phases[use.frame.loaded[worst]]
         axes.plot(phase, last.edge_distance[worst], "o", color=_SECOND, ms=5)
     finish(axes, "", "contact's edge to the rim [mm]")
     axes.set_ylim(-0.2, _HEADROOM * axes.dataLim.ymax or 1.0)  # a line at 0 is seen
@@ -184,7 +183,7 @@ def edge_figure(history: History) -> Figure:
 def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
     """Return % of the cycle and values (loaded,) over it, with gaps between activities and where nothing is pressed."""
     course = numpy.full(use.cycle.n_steps, numpy.nan)
-    course[use.loaded] = values
+    course[use.frame.loaded] = values
     gaps = _ends(use)[:-1]
     return numpy.insert(100 * use.cycle.phases, gaps, numpy.nan), numpy.insert(course, gaps, numpy.nan)
 
@@ -219,6 +218,8 @@ def share_figure(bands: Bands) -> Figure:
         }
         for number, result in enumerate(INFLUENCED_RESULTS)
     }
+    from .study_plots import draw_indices  # loads the studies
+
     return draw_indices(panels, [name.replace("_", " ") for name in bands.variability.distributions])
 
 

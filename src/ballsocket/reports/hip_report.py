@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from ..core.unit_systems import Units
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
+from ..hip.bands_answer import describe_bands
 from ..hip.film import WAVE_NOTE
 from ..hip.hamrock_dowson import CONFORMITY_NOTE
 from ..hip.history import History
+from ..hip.history_answer import describe_history
 from . import hip_plots
 from .figure_files import figure_bytes
-from .hip_tables import (
-    CONTACT_HEADS,
-    band_contact_line,
-    band_heads,
-    band_rows,
-    band_summary,
-    contact_line,
-    contact_rows,
-    radiograph_line,
-    rim_lines,
-    wear_rows,
-    wear_units,
-)
-from .pages import letterhead, picture, render_page
+from .pages import answer_lede, answer_sections, letterhead, picture, render_page, trusted_html
+from .style import in_units
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,108 +52,50 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
 
 
 def hip_report(
-    history: History, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
+    history: History,
+    bands: Bands | None = None,
+    name: str = "",
+    details: ReportDetails = NO_DETAILS,
+    units: Units = Units.SI,
 ) -> str:
-    """Return the page of a wear simulation as HTML; bands of patients who differ have two more sections.
+    """Return the page of a wear simulation as HTML; bands of patients who differ have sections of their own.
 
     Raises
     ------
     ValueError, OSError
         As `pages.logo_address`, for the logo of the head.
     """
-    sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
-    if history.use.unworn_checks:
-        sections["contact"] = ("Validity of the contact", None)
-    if len(history.use.loaded):
-        figures = dict(_FIGURES)
-        if history.use.ball_wear is not None:
-            figures["ball"] = ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")
-        for section, (title, draw, caption) in figures.items():
-            sections[section] = (title, picture(figure_bytes(draw(history)), title, caption))
-        if history.film is not None:
-            title, curves = "Film and friction", figure_bytes(hip_plots.film_figure(history.use, history.film))
-            sections["film"] = (title, picture(curves, title, f"{WAVE_NOTE}. {CONFORMITY_NOTE}."))
+    answer = describe_history(history)
+    sections = answer_sections(answer, units)
     if bands is not None:
-        sections |= _band_sections(history, bands)
-    return render_page(
-        "hip_report.html",
-        f"Wear of a hip: {name}" if name else "Wear of a hip",
-        sections,
-        **letterhead(details),
-        summary=_summary(history),
-        notes=history.notes,
-        first_cycle=_first_cycle(history),
-        rim=_rim_approach(history),
-        wear={
-            "heads": ["million cycles", *(f"{head} [{unit}]" for head, unit in list(wear_units(history).items())[1:])],
-            "rows": [(*cells, f"{rim:.3g}") for *cells, rim in wear_rows(history)],
-        },
-        contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
-        bands=None if bands is None else _band_table(bands),
-    )
+        sections |= answer_sections(describe_bands(bands), units)
+    if len(history.use.frame.loaded):
+        for section, (title, figure, caption) in _figures(history, bands).items():
+            sections[section] = (title, picture(figure_bytes(in_units(figure, units)), title, caption))
+    title = f"Wear of a hip: {name}" if name else "Wear of a hip"
+    lede = trusted_html(answer_lede(answer, units))
+    return render_page("joint_report.html", title, sections, lede=lede, **letterhead(details))
 
 
-def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
+def _figures(history: History, bands: Bands | None) -> dict[str, tuple[str, Figure, str]]:
+    """Draw the figures of a hip that is loaded: title, figure and caption by the id of the section."""
+    figures = {section: (title, draw(history), caption) for section, (title, draw, caption) in _FIGURES.items()}
+    if history.use.ball_wear is not None:
+        figures["ball"] = ("Wear of the ball", hip_plots.ball_map(history), "Seen from above, in the ball's own frame.")
+    if history.film is not None:
+        curves = hip_plots.film_figure(history.use, history.film)
+        figures["film_course"] = ("Film over the cycle", curves, f"{WAVE_NOTE}. {CONFORMITY_NOTE}.")
+    if bands is not None:
+        figures["penetration"] = ("Penetration", hip_plots.penetration_curve(history, bands), _band_caption(bands))
+        if bands.indices is not None:
+            indices = hip_plots.share_figure(bands)
+            figures["matters"] = ("Sensitivity", indices, "Sobol's indices with 95 % intervals.")
+    return figures
+
+
+def _band_caption(bands: Bands) -> str:
     caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
-    caption += (
-        "."
-        if bands.shared is None
-        else ", the dark band holds the same share of the patients at the median coefficient."
+    shared = (
+        "." if bands.shared is None else ", the dark band the same share of the patients at the median coefficient."
     )
-    curve = figure_bytes(hip_plots.penetration_curve(history, bands))
-    sections: dict[str, tuple[str, str | None]] = {
-        "penetration": ("Penetration", picture(curve, "Penetration", caption)),
-        "patients": ("Bands of different patients", None),
-    }
-    if bands.indices is not None:
-        indices = figure_bytes(hip_plots.share_figure(bands))
-        sections["matters"] = (
-            "Sensitivity",
-            picture(indices, "Sensitivity", "Sobol's indices with 95 % intervals."),
-        )
-    return sections
-
-
-def _band_table(bands: Bands) -> Mapping[str, Any]:
-    tail = (1 - bands.level) / 2
-    return {
-        "summary": band_summary(bands),
-        "lines": (*rim_lines(bands), band_contact_line(bands)),
-        "notes": bands.notes,
-        "heads": band_heads(bands),
-        "rows": band_rows(bands, (tail, 0.5, 1 - tail)),
-    }
-
-
-def _summary(history: History) -> str:
-    use, last = history.use, history.last
-    return (
-        f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
-        f"after {last.cycles / 1e6:g} million cycles."
-    )
-
-
-def _first_cycle(history: History) -> str:
-    """Describe slide, work, cross-shear and wear rate of the first cycle, and the error of the time steps."""
-    first, error = history.use.first, history.error
-    return (
-        f"The sliding distance of a cycle is {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, "
-        f"the mean cross-shear {first.cross_shear:.3g}. "
-        f"The unworn hip wears {first.volume:.4g} mm³ and {first.depth:.3g} mm in a million cycles. "
-        f"The estimated numerical error is {100 * error.volume:.2g} % of the volume and "
-        f"{100 * error.depth:.2g} % of the depth."
-    )
-
-
-def _rim_approach(history: History) -> str:
-    """Describe the least distance to the rim with instant and location, new and at the end, and the radiograph."""
-    nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
-    sentences = []
-    for stage, worst in nearest.items():
-        if worst is not None:
-            near = f"comes within {worst.distance:.3g} mm of the rim"
-            words = near if worst.distance > 0 else f"reaches the rim ({worst.kind})"
-            sentences.append(f"{stage} the contact {words} at {worst.location}")
-    distances = "; ".join(sentences)
-    line = radiograph_line(history)
-    return f"{distances}. {line[:1].upper()}{line[1:]}" if distances else "nothing is pressed"
+    return caption + shared

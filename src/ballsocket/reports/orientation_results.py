@@ -13,12 +13,12 @@ from rich.text import Text
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
+from ..core.unit_systems import Units
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
 from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
 from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,9 +12,11 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..core.answers import Answer, Table, grid
 from ..core.checks import needs
 from ..core.input_files import open_input
 from ..core.storage.atomic_files import check_ending, write_atomically
+from ..core.unit_systems import Units
 from ..files.joint_file import ReportDetails
 from .figure_files import figure_bytes
 
@@ -187,6 +189,25 @@ def trusted_html(html: str) -> str:
     from markupsafe import Markup
 
     return Markup(html)
+
+
+def answer_sections(answer: Answer, units: Units = Units.SI) -> dict[str, tuple[str, str | None]]:
+    """Return a section for each table of a description, by the key of the table."""
+    return {part.key: (part.title, answer_table(part, units)) for part in answer.tables}
+
+
+def answer_table(part: Table, units: Units = Units.SI) -> str:
+    """Render the sentences of a table, and the table, as HTML."""
+    written = grid(part, units)
+    lines = [units.sentence(line) for line in part.lines]
+    kinds = [column.unit is None for column in written.columns]
+    return render_part("parts.html", "described", lines, written.heads_with_units, written.rows, kinds)
+
+
+def answer_lede(answer: Answer, units: Units = Units.SI) -> str:
+    """Render title, first sentences and notes of a description as HTML."""
+    lines, notes = ([units.sentence(line) for line in lines] for lines in ((answer.title, *answer.lines), answer.notes))
+    return render_part("parts.html", "lede", lines, notes)
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:

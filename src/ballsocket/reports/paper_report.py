@@ -15,7 +15,7 @@ from ..core.executors.processes import Engine, Serial
 from ..core.kinds import Unit
 from ..core.quantities import JOINT
 from ..core.storage.atomic_files import write_atomically, write_csv, write_text
-from ..model_catalogue import judge
+from ..model_catalogue import JUDGE
 from ..models.foundation import HessForsbach
 from ..paper.cases import OUTER_RADII, RANGES, RATIOS, THICKNESS
 from ..paper.claims import SCALE
@@ -209,7 +209,7 @@ def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
     }
 
 
-_MODELS = {ELEMENTS: judge.name, FIT: HessForsbach().name}
+_MODELS = {ELEMENTS: JUDGE, FIT: HessForsbach().name}
 """Catalogue names of models with another name in the paper's figures."""
 
 _WIDTH = 10.8  # inches: the width of a page, with letters of the size of its text

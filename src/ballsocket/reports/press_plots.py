@@ -14,12 +14,12 @@ from ..core import arrays
 from ..core.display import plain_number
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, FIELD
+from ..core.unit_systems import Units
 from ..dynamics.motion import Motion
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..model_catalogue import reference
 from .cup_plots import cup_figure
 from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of, new_figure, single_axes
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,13 +11,15 @@ from pathlib import Path
 
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
-from ..contact.describe import number_text
+from ..contact.describe import columns_in, columns_of, number_text
 from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
 from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
+from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..files.joint_file import JointFile, ReportDetails
 from ..files.joint_toml import toml_of
+from ..files.schema import Text
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
@@ -27,7 +29,6 @@ from . import press_plots
 from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from .pages import HEAD_TEXTS, letterhead, logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
-from .unit_systems import Units
 
 _TEMPLATE = "press.html"
 _ROUNDING = 1e-7
@@ -127,7 +128,7 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     logos = dict.fromkeys(design.file.report.logo for design in designs if design.file.report.logo)
     if len({logo_address(Path(logo)) for logo in logos}) > 1:
         raise ValueError(f"the designs have different logos, {' and '.join(map(repr, logos))}; a report has one")
-    return ReportDetails(**{name: text_of(name) for name in HEAD_TEXTS}, logo=next(iter(logos), ""))
+    return ReportDetails(**{name: Text(text_of(name)) for name in HEAD_TEXTS}, logo=next(iter(logos), None))
 
 
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
@@ -346,13 +347,13 @@ def press_sections(
 
 
 def _number(contact: Contact, name: str, units: Units) -> str:
-    column = next(column for column in units.columns if column.attribute == name)
+    column = next(column for column in columns_in(units) if column.attribute == name)
     gap = "" if column.unit == "°" else " "
     return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
 
 
 def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> str:
-    columns = units.columns_of(comparison.joint)
+    columns = columns_of(comparison.joint, units)
     names = list(comparison)
     tables = []
     for start in range(0, len(names), _MAX_MODELS):

@@ -11,8 +11,9 @@ import numpy
 from ..contact import Contact
 from ..core.display import plain_number
 from ..core.quantities import CONTACT, FIELD
+from ..core.unit_systems import Units
 from ..elasticity.finite_elements.model import MeshedContact
-from ..model_catalogue import judge, reference
+from ..model_catalogue import JUDGE, reference
 from ..problem import Joint
 from ..problem.cup import Cup
 from .style import (
@@ -30,7 +31,6 @@ from .style import (
     line_of,
     new_figure,
 )
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -273,7 +273,7 @@ def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) ->
             label="exact",
             **in_matplotlib(line_of(reference.name)),
         )
-    line = line_of(judge.name)
+    line = line_of(JUDGE)
     axes.plot(numpy.degrees(angle), pressure, label="finite elements", **in_matplotlib(line))
     error = contact.error["max_pressure"]
     if error > 0:

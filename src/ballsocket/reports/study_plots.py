@@ -11,6 +11,7 @@ import numpy
 
 from ..contact.verdict import Verdict
 from ..core.quantities import QUANTITIES
+from ..core.unit_systems import Units
 from ..studies.limits import (
     Limit,
     allowed,
@@ -21,7 +22,6 @@ from ..studies.limits import (
     verdicts,
 )
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, single_axes
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     import xarray

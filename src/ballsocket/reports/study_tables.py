@@ -17,13 +17,13 @@ from ..contact.verdict import Verdict
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import write_csv
+from ..core.unit_systems import Units
 from ..studies.file_formats import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from ..studies.metadata import held_in, invalid_reasons, missing_reasons
 from ..studies.parameters import MATERIAL_PARTS
 from ..studies.task import BOUNDS, OUTCOMES, VERDICT
 from .terminal import Terminal, print_columns
-from .unit_systems import Units
 
 if TYPE_CHECKING:
     import xarray

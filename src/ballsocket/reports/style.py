@@ -7,6 +7,10 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
+import numpy
+
+from ..core.unit_systems import Units
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -95,6 +99,33 @@ def finish(axes: Axes, x: str, y: str) -> None:
     axes.set_ylabel(y)
     axes.grid(color="0.9", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def in_units(figure: Figure, units: Units) -> Figure:
+    """Write axes, colour bars and titles of a figure that is drawn in mm, N and MPa in another system of units."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    class ScaledLocator(MaxNLocator):
+        """Ticks at round numbers of another unit, `factor` of which are one of the axis."""
+
+        def __init__(self, factor: float) -> None:
+            super().__init__(nbins="auto", steps=[1, 2, 2.5, 5, 10])
+            self.factor = factor
+
+        def tick_values(self, vmin: float, vmax: float) -> Any:
+            return numpy.asarray(super().tick_values(vmin * self.factor, vmax * self.factor)) / self.factor
+
+    if units is Units.SI:
+        return figure
+    for axes in figure.axes:
+        axes.set_title(units.sentence(axes.get_title()), fontsize=10)
+        for axis in (axes.xaxis, axes.yaxis):
+            label, factor = units.axis(axis.get_label_text())
+            if label != axis.get_label_text():
+                axis.set_label_text(label)
+                axis.set_major_locator(ScaledLocator(factor))
+                axis.set_major_formatter(FuncFormatter(lambda value, _, factor=factor: f"{value * factor:.4g}"))
+    return figure
 
 
 def new_figure(width: float, height: float) -> Figure:

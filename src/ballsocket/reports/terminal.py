@@ -12,17 +12,18 @@ from typing import Any
 import numpy
 from rich.console import Console
 from rich.table import Column as RichColumn
-from rich.table import Table
+from rich.table import Table as RichTable
 from rich.text import Text
 
 from ..comparison import Comparison, relative_deviation, successful_contacts
 from ..contact import Contact
-from ..contact.describe import COLUMNS, Column, number_text
-from ..contact.verdict import assess_strength, ratio_text
+from ..contact.describe import COLUMNS, Column, columns_of, number_text
+from ..contact.verdict import Verdict, assess_strength, ratio_text
+from ..core.answers import PAGE, Answer, Grid, Table, grid
 from ..core.quantities import CONTACT, HEADLINE
+from ..core.unit_systems import Units
 from ..model_catalogue import reference
 from ..problem import Joint
-from .unit_systems import Units
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
@@ -54,7 +55,7 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
     deviating = any(ordered.deviation(name) is not None for name in ordered)
     lines = [f"{symbols}; Δ % from {reference.name}" if deviating else symbols]
     known = [*_pole_columns(ordered), *(column.attribute for column in shown)]
-    omitted = [column for column in units.columns_of(ordered.joint) if column.attribute not in known]
+    omitted = [column for column in columns_of(ordered.joint, units) if column.attribute not in known]
     if omitted:
         text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
         lines.append(f"not shown, the terminal is too narrow: {text}")
@@ -89,6 +90,51 @@ def print_curve(contact: Contact) -> None:
         print_folded(terminal, note, "dim")
 
 
+_STYLES = {None: "", Verdict.KEPT: "", Verdict.UNDECIDED: "yellow", Verdict.EXCEEDED: "red"}
+
+
+def print_answer(answer: Answer, units: Units = Units.SI) -> None:
+    """Print a description: title, sentences, tables with their sentences, and notes."""
+    terminal = Terminal(units)
+    print_folded(terminal, answer.title, "bold")
+    for line in answer.lines:
+        print_folded(terminal, line, "")
+    for table in answer.tables:
+        print_table(terminal, table)
+    for note in answer.notes:
+        print_folded(terminal, note, "dim")
+
+
+def print_table(terminal: Terminal, table: Table) -> None:
+    """Print a table with as many columns as fit, and its sentences; columns that must stay follow in blocks below.
+
+    Each block begins with the first column and the columns of words next to it.
+    """
+    written = _fitting_grid(terminal, table)
+    if written.rows:
+        words = [column.head for column in written.columns if column.unit is None]
+        texts = text_table(written.heads, left=words, folded=words)
+        if any(written.units):
+            texts.add_row(*(Text(unit, style="dim") for unit in written.units))
+        for row, verdict in zip(written.rows, written.verdicts, strict=True):
+            texts.add_row(*(Text(text, style=_STYLES[verdict]) for text in row))
+        lead = 1 + next((i for i, column in enumerate(written.columns[1:]) if column.unit is not None), 0)
+        _print_blocks(terminal, texts, lead)
+    for line in table.lines:
+        print_folded(terminal, line, "")
+
+
+def _fitting_grid(terminal: Terminal, table: Table) -> Grid:
+    """Write a table without the columns of the highest ranks, as long as it is too wide."""
+    ranks = sorted({column.rank for column in table.columns if column.rank < PAGE}, reverse=True)
+    for rank in ranks:
+        written = grid(table, terminal.units, rank)
+        widths = (max(map(len, texts)) for texts in zip(written.heads, written.units, *written.rows, strict=True))
+        if sum(widths) + 2 * len(written.heads) - 2 <= terminal.width:
+            break
+    return written
+
+
 class Terminal(Console):
     """Console that does not colour numbers, with the units of its sentences and tables."""
 
@@ -103,9 +149,9 @@ def text_table(
     left: Container[str] = (),
     folded: Container[str] = (),
     gap: int = 2,
-) -> Table:
+) -> RichTable:
     """Make a table of texts; columns are aligned to the right but in `left`, and in one line but in `folded`."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, gap, 0, 0))
+    table = RichTable(box=None, pad_edge=False, header_style="bold", padding=(0, gap, 0, 0))
     for head in heads:
         table.add_column(Text(head), justify="left" if head in left else "right", no_wrap=head not in folded)
     for row in rows:
@@ -134,7 +180,7 @@ def _units_of(terminal: Console) -> Units:
     return terminal.units if isinstance(terminal, Terminal) else Units.SI
 
 
-def _converted(table: Table, units: Units) -> Table:
+def _converted(table: RichTable, units: Units) -> RichTable:
     """Return a table in a system of units; units are in brackets in the heads, or in the first row."""
     if units is Units.SI:
         return table
@@ -157,15 +203,18 @@ def _converted_cells(column: RichColumn, units: Units) -> Iterator[Any]:
         yield Text(text, style=cell.style) if isinstance(cell, Text) else text
 
 
-def print_columns(terminal: Console, table: Table) -> None:
+def print_columns(terminal: Console, table: RichTable) -> None:
     """Print a table without a cut number: columns that do not fit follow below, beside the first column again.
 
     Columns without `no_wrap` are folded between words first. The table is converted to the units of the console.
     """
-    table = _converted(table, _units_of(terminal))
+    _print_blocks(terminal, _converted(table, _units_of(terminal)))
+
+
+def _print_blocks(terminal: Console, table: RichTable, lead: int = 1) -> None:
     limits = [_width_limits(terminal, column) for column in table.columns]
     gap = table.padding[1] + table.padding[3]
-    for indices in _column_blocks([least for least, _ in limits], gap, terminal.width):
+    for indices in _column_blocks([least for least, _ in limits], gap, terminal.width, lead):
         part = copy(table)
         widths = _fitted_widths([limits[index] for index in indices], terminal.width - gap * (len(indices) - 1))
         part.columns = [
@@ -183,13 +232,15 @@ def _width_limits(terminal: Console, column: RichColumn) -> tuple[int, int]:
     return longest if column.no_wrap else max(size.minimum for size in sizes), longest
 
 
-def _column_blocks(widths: Sequence[int], gap: int, available: int) -> list[list[int]]:
-    """Group the columns of a table into blocks that fit; each block begins with the first column."""
-    blocks, used = [[0]], widths[0]
-    for index, width in enumerate(widths[1:], start=1):
-        if used + gap + width > available and len(blocks[-1]) > 1:
-            blocks.append([0])
-            used = widths[0]
+def _column_blocks(widths: Sequence[int], gap: int, available: int, lead: int) -> list[list[int]]:
+    """Group the columns of a table into blocks that fit; each block begins with the first `lead` columns."""
+    first = list(range(lead))
+    blocks, width_of_first = [[*first]], sum(widths[:lead]) + gap * (lead - 1)
+    used = width_of_first
+    for index, width in enumerate(widths[lead:], start=lead):
+        if used + gap + width > available and len(blocks[-1]) > lead:
+            blocks.append([*first])
+            used = width_of_first
         blocks[-1].append(index)
         used += gap + width
     return blocks
@@ -206,14 +257,14 @@ def _fitted_widths(limits: Sequence[tuple[int, int]], available: int) -> list[in
     return widths
 
 
-def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tuple[Table, list[Column]]:
+def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tuple[RichTable, list[Column]]:
     """Return a table with as many columns as fit the width of the terminal, and these columns."""
     unbounded = console.options.update(width=10_000)
     bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
     omitted = _pole_columns(comparison)
     for count in range(len(_DROPPED) + 1):
         dropped = (*omitted, *_DROPPED[:count])
-        columns = [column for column in units.columns_of(comparison.joint) if column.attribute not in dropped]
+        columns = [column for column in columns_of(comparison.joint, units) if column.attribute not in dropped]
         table = _press_table(comparison, columns, "" if _PROFILE in dropped else bars)
         if console.measure(table, options=unbounded).maximum <= console.width:
             break
@@ -226,9 +277,9 @@ def _pole_columns(comparison: Comparison) -> tuple[str, ...]:
     return () if off_pole else _OFF_THE_POLE
 
 
-def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> Table:
+def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> RichTable:
     """Make the table of a comparison; pressure profiles only if `bars` is not empty."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    table = RichTable(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     table.add_column("model", no_wrap=True)
     for column in columns:
         table.add_column(column.symbol, justify="right", no_wrap=True)

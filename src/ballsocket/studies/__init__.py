@@ -7,25 +7,28 @@ the parameters that matter. `design_map` and similar functions plot studies.
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
 from ..core.display import load_plot
-from .axes import Span
-from .derivatives import elasticities
-from .design import Design, grid, sample, table
-from .distributions import LogNormal, Normal, Rectangular, tolerance
-from .expressions import parse_limit
-from .file_formats import export
-from .limits import Limit, allowed
-from .optimisation import Optimum, optimise
-from .parameters import PARAMETERS
-from .pareto_front import pareto
-from .run import Progress, study
-from .sampling import Method
-from .store import read
-from .variance_shares import sensitivity
+from ..core.lazy import imported_names
+
+if TYPE_CHECKING:
+    from .axes import Span
+    from .derivatives import elasticities
+    from .design import Design, grid, sample, table
+    from .distributions import LogNormal, Normal, Rectangular, tolerance
+    from .expressions import parse_limit
+    from .file import read_study
+    from .file_formats import export
+    from .limits import Limit, allowed
+    from .optimisation import Optimum, optimise
+    from .parameters import PARAMETERS
+    from .pareto_front import pareto
+    from .run import Progress, study
+    from .sampling import Method
+    from .store import read
+    from .variance_shares import sensitivity
 
 __all__ = [  # noqa: RUF022, grouped as they are used
     # designs
@@ -68,17 +71,36 @@ design_map: Callable[..., Any]
 front_figure: Callable[..., Any]
 sensitivity_figure: Callable[..., Any]
 
-if TYPE_CHECKING:
-    from .file import read_study
-else:  # a type checker would accept any name
+_NAMES_BY_MODULE = {
+    "axes": "Span",
+    "derivatives": "elasticities",
+    "design": "Design grid sample table",
+    "distributions": "LogNormal Normal Rectangular tolerance",
+    "expressions": "parse_limit",
+    "file": "read_study",
+    "file_formats": "export",
+    "limits": "Limit allowed",
+    "optimisation": "Optimum optimise",
+    "parameters": "PARAMETERS",
+    "pareto_front": "pareto",
+    "run": "Progress study",
+    "sampling": "Method",
+    "store": "read",
+    "variance_shares": "sensitivity",
+}
+"""Names for users by module. A module is imported on the first use of one of its names."""
+
+_import_name = imported_names(__name__, _NAMES_BY_MODULE)
+
+if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Load a plot function, or the reader of study files, on its first use."""
+        """Load a name or a plot function on its first use."""
         if name in _PLOTS:
             return load_plot(name)
-        if name == "read_study":  # the schema of study files takes time to load
-            return import_module("ballsocket.studies.file").read_study
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
+        return _import_name(name)
 
 
 def __dir__() -> list[str]:

@@ -200,25 +200,15 @@ def press_quantities(
 
 @dataclass(frozen=True, kw_only=True)
 class LocalUncertainty:
-    """Elasticities and bands of the quantities of one contact.
+    """Elasticities and bands of the quantities of one contact."""
 
-    Attributes
-    ----------
-    model : str
-        Name of the model.
-    changes : dict of str to dict of str to float
-        Change of each quantity in percent for one percent of each parameter, by quantity and parameter.
-    band : dict of str to tuple of float
-        Low end of the band of 95 % of the joints within the tolerances, median, and high end, by quantity, in mm, N,
-        MPa, rad. Empty without tolerances.
-    presses : int
-        Number of presses behind the bands of a quadratic; 0 if every sample was pressed.
-    """
-
-    model: str
+    model: str  # name of the model
+    # change of each quantity in percent for one percent of each parameter, by quantity and parameter
     changes: Derivatives
+    # low end of the band of 95 % of the joints within the tolerances, median, and high end, by quantity, in mm,
+    # N, MPa, rad. Empty without tolerances.
     band: Bands
-    presses: int = 0
+    presses: int = 0  # number of presses behind the bands of a quadratic; 0 if every sample was pressed
 
 
 def local_uncertainty(

@@ -27,10 +27,7 @@ def parse_range(text: str) -> tuple[str, float, float]:
     low, high : float
         In mm, N, MPa, rad.
 
-    Raises
-    ------
-    ValueError
-        Another form, or an unknown name.
+    Raises ValueError: another form, or an unknown name.
     """
     match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
     if match is None:
@@ -44,10 +41,7 @@ def parse_range(text: str) -> tuple[str, float, float]:
 def parse_ends(name: str, text: str, kind: str) -> tuple[float, float]:
     """Parse the two ends of a range of a kind of quantity, as in "30..60 deg", in mm, N, MPa or rad.
 
-    Raises
-    ------
-    ValueError
-        Another form; the message has the `name`.
+    Raises ValueError: another form; the message has the `name`.
     """
     match = _match(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
     if match is None:
@@ -59,10 +53,7 @@ def parse_ends(name: str, text: str, kind: str) -> tuple[float, float]:
 def parse_choices(text: str) -> tuple[str, list[Any]] | None:
     """Parse a name and a list, as in "head_diameter=28, 32, 36 mm" or "liner=uhmwpe,pom"; None for another form.
 
-    Raises
-    ------
-    ValueError
-        An unknown name or material, or text that is not a number.
+    Raises ValueError: an unknown name or material, or text that is not a number.
     """
     match = _match(r"\s*(\w+)\s*=\s*([^=]+?)\s*", text)
     if match is None or ".." in text:
@@ -80,10 +71,7 @@ def parse_choices(text: str) -> tuple[str, list[Any]] | None:
 def parse_distribution(text: str) -> tuple[str, Distribution]:
     """Parse a name and its distribution: "clearance=0.10+-0.05 mm" (tolerance), "liner_poisson=0.38..0.46" (uniform).
 
-    Raises
-    ------
-    ValueError
-        Another form, or an unknown name.
+    Raises ValueError: another form, or an unknown name.
     """
     match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", text)
     if match is None:
@@ -98,10 +86,7 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
 def parse_correlation(text: str) -> tuple[tuple[str, str], float]:
     """Parse two names and their rank correlation, as in "clearance, liner_young = 0.5".
 
-    Raises
-    ------
-    ValueError
-        Another form, or an unknown name.
+    Raises ValueError: another form, or an unknown name.
     """
     match = _match(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text)
     if match is None:

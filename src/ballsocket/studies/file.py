@@ -1,8 +1,8 @@
-"""Study files: TOML with units that describes a model, a joint and a design of cases; distributions in files."""
+"""Study files: TOML with units that describes a model, a joint and a design of cases."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -11,10 +11,9 @@ from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..core.kinds import Kind
 from ..core.storage.atomic_files import address_of, check_local
 from ..files.columns import HeadKeys
-from ..files.joint_file import JointTables, aimed, joint_in
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
@@ -36,32 +35,12 @@ from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
 from .design import Design, check_values, grid, sample, table
-from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
+from .distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
+from .distributions import Distribution
 from .expressions import parse_correlations
 from .parameters import LOADS, PARAMETERS
 from .sampling import Method
 from .task import EDGE_DISTANCE, QUANTITIES
-
-Read = Callable[[str, Any], float]
-"""Function from name and value of a number in a file to the number."""
-
-_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
-    (("low", "high"), Rectangular),
-    (("mean", "deviation"), Normal),
-    (("mean", "deviation", "low"), Normal),
-    (("mean", "deviation", "high"), Normal),
-    (("mean", "deviation", "low", "high"), Normal),
-    (("median", "factor"), LogNormal),
-    (("nominal", "plus_minus"), tolerance),
-)
-"""Keys of the tables, and the distributions that they describe."""
-
-DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
-    "type": "object",
-    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
-    "additionalProperties": False,
-}
-"""JSON schema of a distribution."""
 
 
 class ScatteredNumber(Parsed):
@@ -73,27 +52,6 @@ class ScatteredNumber(Parsed):
     def parse(cls, name: str, value: Any) -> Distribution:
         """Convert a distribution."""
         return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
-
-
-def distribution_of(name: str, content: Any, read: Read) -> Distribution:
-    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
-
-    Raises
-    ------
-    ValueError
-        Other keys, or numbers that are not allowed.
-    """
-    for keys, make in _DISTRIBUTIONS:
-        if isinstance(content, Mapping) and set(content) == set(keys):
-            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
-            if "factor" in keys:  # it has no unit
-                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
-            with as_given(content, f"{name}."):
-                return make(**numbers)
-    raise ValueError(
-        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
-        "{median, factor}, or {nominal, plus_minus}"
-    )
 
 
 class ModelName(Word):
@@ -228,7 +186,7 @@ class StudyTable(JointTables, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, eq=False)
 class StudyFile:
-    """Contents of a study file; `remark` is empty, or states that the model leaves out the load's direction."""
+    """Contents of a study file."""
 
     model: Model
     joint: Joint
@@ -236,7 +194,6 @@ class StudyFile:
     quantities: tuple[str, ...]
     store: str | Path | None
     engine: Engine
-    remark: str = ""
 
 
 def read_study(path: str | Path) -> StudyFile:
@@ -260,7 +217,7 @@ def read_study(path: str | Path) -> StudyFile:
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
-    model, remark = aimed(with_gap(named_models[tables.model], tables.gap), file)
+    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup, **file.aim)
     design = _design(tables, content, folder)
     if not any(name in LOADS for name in design.names):
         design = design * grid(**file.load)
@@ -273,7 +230,6 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
         quantities=tuple(map(str, tables.quantities or everything)),
         store=store if store is None or address_of(store) is not None else folder / store,
         engine=_engine(tables.engine),
-        remark=remark,
     )
 
 

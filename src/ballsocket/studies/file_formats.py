@@ -47,14 +47,9 @@ def iterate_chunks(study: xarray.Dataset) -> Iterator[xarray.Dataset]:
 def check_suffix(path: Path) -> None:
     """Check that a path ends like a format of exports, and that a file can be written there.
 
-    Raises
-    ------
-    ValueError
-        Another ending, a folder that does not exist, or a Zarr group that exists.
-    ImportError
-        The library of a format, or of the remote store of an address, is missing.
-    OSError
-        The remote store of an address does not respond.
+    Raises ValueError: another ending, a folder that does not exist, or a Zarr group that exists.
+    Raises ImportError: the library of a format, or of the remote store of an address, is missing.
+    Raises OSError: the remote store of an address does not respond.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:

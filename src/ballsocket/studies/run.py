@@ -305,10 +305,7 @@ def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
 def check_model_domain(model: Model, joint: Joint, ranges: Mapping[str, Any]) -> None:
     """Check that some joint of a range is in the domain of a model.
 
-    Raises
-    ------
-    OutsideDomainError
-        No joint is in the domain; the message has the reason.
+    Raises OutsideDomainError: no joint is in the domain; the message has the reason.
     """
     check_domain((*model.fits, *model.domain), joint_of_arrays(joint, ranges), model.name)
 

@@ -82,12 +82,8 @@ class StudyStore:
     def prepare(self, task: Task) -> None:
         """Create the group with labels and without results, or check that it has the study of a task.
 
-        Raises
-        ------
-        ValueError
-            The folder has another study, a study of another version, or something else.
-        OSError
-            The folder is not writable.
+        Raises ValueError: the folder has another study, a study of another version, or something else.
+        Raises OSError: the folder is not writable.
         """
         needs("study", "zarr")
         requested = json.loads(json.dumps(study_identity(task)))
@@ -130,10 +126,7 @@ class StudyStore:
     def read_identity(self) -> Mapping[str, Any]:
         """Read the identity of the stored study.
 
-        Raises
-        ------
-        ValueError
-            The folder is not a study.
+        Raises ValueError: the folder is not a study.
         """
         try:
             identity = json.loads(self.folder.read(_LABEL_FILE, _MAX_LABEL_BYTES))["attributes"][_IDENTITY]
@@ -161,10 +154,7 @@ class StudyStore:
     def write(self, task: Task, number: int, results: Mapping[str, Numbers]) -> None:
         """Write the results of a block, and last its checksum.
 
-        Raises
-        ------
-        OSError
-            The store is not writable or the disk is full.
+        Raises OSError: the store is not writable or the disk is full.
         """
         import zarr
 

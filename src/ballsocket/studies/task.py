@@ -71,18 +71,10 @@ _MAX_BLOCKS = 10_000  # number of blocks above which the blocks of a study are e
 
 @dataclass(frozen=True)
 class Blocks:
-    """Division of a box of points into smaller boxes of equal size, except the last one along each dimension.
+    """Division of a box of points into smaller boxes of equal size, except the last one along each dimension."""
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Number of points along each dimension of the box.
-    size : tuple of int
-        Number of points along each dimension of a block.
-    """
-
-    shape: tuple[int, ...]
-    size: tuple[int, ...]
+    shape: tuple[int, ...]  # number of points along each dimension of the box
+    size: tuple[int, ...]  # number of points along each dimension of a block
 
     @classmethod
     def divide(cls, shape: tuple[int, ...], max_points: int) -> Blocks:

@@ -257,6 +257,7 @@ EQUATOR = bs.Exact().press(LOOSE, half_angle=(1 - 1e-12) * WIDEST).indentation
 """Half angle in rad and indentation in mm of the widest contact of a circular ball, whose edge is a great circle."""
 
 
+@pytest.mark.long
 def test_a_circular_ball_ends_at_its_equator():
     """Contacts up to the widest one converge, and wider or deeper ones do not exist."""
     d = EQUATOR * np.append(np.geomspace(0.3, 0.9999, 60), [1.001, 1.1, 2.0])
@@ -291,6 +292,7 @@ def test_energy_near_the_widest_contact_is_the_work_over_equal_steps_of_indentat
     assert end.energy == pytest.approx(work, rel=1e-7)  # tolerance of both, 1e-6, is rarely used up
 
 
+@pytest.mark.long
 def test_the_bounds_of_the_stress_are_ten_percent_from_a_coarse_sum():
     soft = HIP.replace(backing=(bs.Layer(thickness=10.0, material=bs.CANCELLOUS_BONE),))
     contact = bs.Exact().press(soft, force=np.array([1e-6, 300.0, 3000.0]))
@@ -440,6 +442,7 @@ def test_stresses_equal_those_of_the_exact_solution():
     assert found.stress(0.2, 1.0).hoop == pytest.approx(exact.stress(0.2, 1.0).hoop, rel=1e-6)
 
 
+@pytest.mark.long
 def test_validity_of_many_loads_needs_few_stress_solutions(monkeypatch):
     """Yield is checked at each load; the largest stress is located for a few contacts only."""
     looks, forces = [], np.geomspace(1.0, 40_000.0, either(quick=1_000, long=5_000))

@@ -16,6 +16,7 @@ from ballsocket.elasticity.exact.contact import NearHemisphere
 from ballsocket.elasticity.exact.free_face import FreeFace
 from ballsocket.elasticity.exact.modes import Shell, Socket
 
+from ...extent import some
 from ...places import DATA
 
 ROWS = json.loads((DATA / "hemisphere.json").read_text())["rows"]
@@ -37,7 +38,7 @@ BASE = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / 2.8, lin
 TITANIUM = bs.Layer(thickness=3.0, material=bs.TITANIUM)
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['kind']} {row['change']['indentation']:.4f}")
+@pytest.mark.parametrize("row", some(ROWS), ids=lambda row: f"{row['kind']} {row['change']['indentation']:.4f}")
 def test_the_change_on_a_hemisphere_is_that_of_finite_elements(row):
     liner, *backing = [layer(*part) for part in row["layers"]]
     ball = None if row["ball"] is None else material(*row["ball"])

@@ -54,6 +54,7 @@ def test_a_full_shell_has_the_exact_solution(poisson, thickness, force):
     np.testing.assert_allclose(ours.pressure(angle), exact.pressure(angle), atol=2e-3 * exact.max_pressure)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("clearance", some([1.0, 0.02, 0.1], 1))
 def test_a_full_shell_with_a_circular_gap_has_the_exact_solution(clearance):
     """From c/R2 0.01 on the circular gap is the default."""
@@ -145,6 +146,7 @@ def test_force_and_stiffness_do_not_jump_where_the_contact_reaches_the_rim():
     assert beyond - below == pytest.approx(at.stiffness * np.diff(around)[0], rel=0.02)
 
 
+@pytest.mark.long
 def test_sliding_liners_and_free_shells_are_softer():
     bonded, sliding = (replace(ONE_MESH, cup=cup).press(HIP, force=3000.0) for cup in (bs.Cup(), SLIDING))
     assert sliding.indentation > 1.1 * bonded.indentation
@@ -303,6 +305,7 @@ def test_results_scale_with_lengths_and_moduli():
     assert other.stiffness == pytest.approx(a * b * one.stiffness, rel=1e-6)
 
 
+@pytest.mark.long
 def test_arrays_of_joints_and_loads_give_the_results_of_single_ones():
     joint, forces = replace(HIP, clearance=np.array([0.05, 0.1])), np.array([[0.0], [500.0], [3000.0]])
     contact = bs.FiniteElement().press(joint, force=forces)
@@ -403,6 +406,7 @@ def test_the_stated_mesh_size_equals_that_of_the_mesh(hip):
         _ = hip.section["cement"]
 
 
+@pytest.mark.long
 def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     joint = bs.joints["hip-28"].replace(backing=(TITANIUM,))
     figure = section_figure(replace(ONE_MESH, spacing=bs.Adapted(elements=24)).press(joint, force=3000.0))

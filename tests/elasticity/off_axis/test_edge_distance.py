@@ -65,6 +65,7 @@ def edge_margins_and_sizes(contact):
     return edge_margins(replace(state, solve=solve, rim_curve=None)), sizes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
 def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     joint, cup, force, first_touch = CUPS[name]
@@ -166,6 +167,7 @@ def test_error_estimates_hold_for_edge_loading(poisson):
         assert (error <= wide.error[name]).all(), name
 
 
+@pytest.mark.long
 def test_error_of_the_edge_margin_holds_against_finer_rings():
     """Two contacts end before the rim, and the rim cuts the third; its error has the tolerance of a search too."""
     tilt = np.radians([0.0, 40.0, 62.0])

@@ -69,7 +69,7 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
     edge = svg.closed(*project(contact.outline))
     marks = [
         f'<path class="patch" d="{edge}"/>',
-        *_load_cross(*map(float, project(contact.force_vector / contact.force))),
+        *(_load_cross(*map(float, project(contact.force_vector / contact.force))) if contact.force else ()),
     ]
     if numpy.isfinite(contact.max_pressure):
         x, y = map(float, project(contact.max_pressure_at))
@@ -188,8 +188,8 @@ def pressed_viewer(contact: OffAxisContact, reading: Reading = METRIC) -> str:
         colour_scale(levels, reading.label(FIELD["pressure"])),
         **shape_of(joint, cup, reach, _RINGS, _MERIDIANS),
         bytes=b64encode(cells.tobytes()).decode("ascii"),
-        loads=[(contact.force_vector / contact.force).round(4).tolist()],
-        sizes=[1.0],
+        loads=[(contact.force_vector / (contact.force or 1.0)).round(4).tolist()],
+        sizes=[float(contact.force != 0)],
         gain=1.0,
         outline=contact.outline.round(4).tolist(),
         film=False,

@@ -14,7 +14,7 @@ from ...core.checks import check_names, shown
 from ...files.joint_file import NO_DETAILS, JointFileTable, joint_of
 from ...files.joint_toml import written_tables
 from ...files.toml import MAX_FILE_SIZE, parse_toml, toml_text
-from .screen import START, Screen, link_of, read_link
+from .screen import START, Screen, link_of, read_link, with_load
 
 MAX_DESIGNS = 50  # largest number of designs in a browser and in a session file
 _DESIGN, _PAGE = "design", "page"
@@ -119,8 +119,7 @@ def _design(number: int, table: Mapping[str, Any]) -> Screen:
 
 def _with_joint(screen: Screen, tables: Mapping[str, Any], load: dict[str, float]) -> Screen:
     """Return a screen with the joint of the tables of a joint file, under this load if they state none."""
-    file = joint_of(tables)
-    return replace(screen, file=replace(file, load=file.load or load, report=NO_DETAILS))
+    return replace(screen, file=replace(with_load(joint_of(tables), load), report=NO_DETAILS))
 
 
 def _pairs(table: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, str]]:

@@ -12,11 +12,12 @@ from urllib.parse import urlencode
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind
 from ...core.quantities import QUANTITIES
+from ...core.unit_systems import Units
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
 from ...model_catalogue import catalogue, reference
 from ...problem.presets import joints
-from ...reports.unit_systems import Units
+from ...question import complete
 from ...studies.expressions import parse_limit, parse_range
 from ...studies.limits import Limit
 from ...studies.parameters import PARAMETERS
@@ -149,7 +150,12 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))  # screen of
 
 def link_of_file(file: JointFile) -> str:
     """Return the query of the link to the start page with the joint of a file, "?..."."""
-    return f"?{replace(START, file=file if file.load else replace(file, load=START.file.load)).link}"
+    return f"?{replace(START, file=with_load(file, START.file.load)).link}"
+
+
+def with_load(file: JointFile, load: dict[str, float]) -> JointFile:
+    """Return a joint file with this load, unless it states one or a preloaded ball is at rest."""
+    return replace(file, load=complete(file)[0].load or load)
 
 
 def link_of(screen: Screen) -> str:
@@ -220,8 +226,7 @@ def _joint(flat: Mapping[str, str]) -> JointFile:
         tables |= tables_of(JointFile(joints[flat["preset"]], {}))
     elif not set(tables) - {"cup", "load"}:
         tables |= tables_of(JointFile(START.file.joint, {}))
-    file = joint_of(tables)
-    return file if file.load else replace(file, load=START.file.load)
+    return with_load(joint_of(tables), START.file.load)
 
 
 def _tables(file: JointFile) -> Tables:

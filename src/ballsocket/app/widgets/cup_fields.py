@@ -7,12 +7,12 @@ from math import atan2, degrees, radians, tan
 from typing import Any
 
 from ...core.checks import check_names
-from ...files.joint_file import JointFile, read_aim, read_cup
-from ...files.joint_toml import cup_table
-from ...problem.cup import UP, Interface, Side
+from ...files.joint_file import JointFile, varied
+from ...problem.cup import UP, Side
+from ...question import complete
 from ..state.screen import Screen
 from .fields import Field, segments
-from .numbers import CUP_NUMBERS
+from .numbers import CUP_NUMBERS, choice_of
 
 _BODY, _AXIS = "body", "axis"
 _LEANS = ("inwards", "forwards")
@@ -20,7 +20,7 @@ _LEANS = ("inwards", "forwards")
 
 def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
     """Return every input of the cup by name, which begins with that of the view; inputs without effect are hidden."""
-    file, cup, tilted = screen.file, screen.file.cup, "tilt" in screen.file.aim
+    file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
     numbers = {
         "inclination": (degrees(cup.inclination), tilted),
         "anteversion": (degrees(cup.anteversion), tilted),
@@ -36,10 +36,8 @@ def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
             for name, (value, hidden) in numbers.items()
         ),
         segments("aim", "Load direction given", aims, _AXIS if tilted else _BODY),
-        segments("side", "Side of the body", [side.value for side in Side], cup.side.value),
-        segments(
-            "interface", "Liner on its backing", [interface.value for interface in Interface], cup.interface.value
-        ),
+        choice_of("cup.side", cup.side.value),
+        choice_of("cup.interface", cup.interface.value),
     ]
     return {f"{view}.{field['name']}": {**field, "name": f"{view}.{field['name']}"} for field in listed}
 
@@ -67,12 +65,12 @@ def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
     if key in CUP_NUMBERS:
         value = CUP_NUMBERS[key].meant(value, screen.reading)
     if key == "tilt":
-        return replace(file, aim=read_aim({key: value}))
+        return varied(file, {"load": {key: value}})
     if key in _LEANS:
         return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
     if key == "aim":
         return _aimed_from(file, value)
-    changed = replace(file, cup=read_cup({**cup_table(file.cup), key: value}))
+    changed = varied(file, {"cup": {key: value}})
     return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so
 
 
@@ -81,6 +79,4 @@ def _aimed_from(file: JointFile, origin: Any) -> JointFile:
     check_names([origin], (_BODY, _AXIS), "as aim")
     if origin == _BODY:
         return replace(file, aim={})
-    return (
-        file if "tilt" in file.aim else replace(file, aim={"tilt": float(file.cup.tilt(file.aim.get("direction", UP)))})
-    )
+    return replace(file, aim={"tilt": file.tilt})

@@ -12,10 +12,13 @@ from ...contact.verdict import Verdict, range_text
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, JOINT
 from ...files.joint_file import JointFile
+from ...model_catalogue import OFF_AXIS
+from ...question import real_cup_reason
 from ...reports.check_table import Check, checks_of, verdict_of
 from ..pictures.section import extent_of, section
-from ..pressing import axial_limit, pressed
+from ..pressing import pressed
 from ..state.screen import Screen
+from ..views.cup.worker import answer_in_cup, is_prepared
 from .reading import number_text
 from .words import VERDICT_KINDS, percent
 
@@ -29,12 +32,14 @@ _DIMENSIONS = {
 class ComparedDesign:
     """Design with its contact by one model, or the reason for a missing one; `heading` is HTML below its name.
 
-    `von_mises` is the stress (MPa) of its checks; None is the estimate.
+    `limit` is the reason why the contact needs the real cup. `von_mises` is the stress (MPa) of its checks; None is
+    the estimate.
     """
 
     file: JointFile
     contact: Contact | None
     reason: str = ""
+    limit: str = ""
     heading: str = ""
     von_mises: float | None = None
 
@@ -65,10 +70,18 @@ def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[
     """Press designs by a model, with HTML below some names."""
     designs = {}
     for name, file in files.items():
-        comparison = pressed(file, (model,))
-        contact = successful_contacts(comparison).get(model)
-        reason = comparison.missing.get(model, "no result")
-        designs[name] = ComparedDesign(file=file, contact=contact, reason=reason, heading=headings.get(name, ""))
+        if real_cup_reason(file) and is_prepared(file):
+            comparison, by, limit = answer_in_cup(file).comparison, OFF_AXIS, ""
+        else:
+            comparison, by = pressed(file, (model,)), model
+            limit = real_cup_reason(file, comparison.contacts.get(model))
+        designs[name] = ComparedDesign(
+            file=file,
+            contact=successful_contacts(comparison).get(by),
+            reason=comparison.missing.get(by, "no result"),
+            limit=f"{limit}: see Cup" if limit else "",
+            heading=headings.get(name, ""),
+        )
     return designs
 
 
@@ -143,16 +156,13 @@ def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
 
 def _checks(design: ComparedDesign) -> Sequence[Check]:
     """List the checks of a design; none for a load that needs the real cup."""
-    needs_cup = axial_limit(design.file, design.contact) is not None
-    if design.contact is None or needs_cup:
+    if design.contact is None or design.limit:
         return ()
     return checks_of(design.contact, design.file.cup, design.von_mises)
 
 
 def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> Cell:
-    limit = axial_limit(design.file, design.contact)
-    undecided = Verdict.UNDECIDED, "" if limit is None else f"{limit.reason}: see Cup"
-    verdict, sentence = verdict_of(checks) if limit is None else undecided
+    verdict, sentence = (Verdict.UNDECIDED, design.limit) if design.limit else verdict_of(checks)
     difference = "" if verdict is Verdict.KEPT else sentence
     return Cell(text=f"{verdict.sign} {verdict.word}", difference=difference, kind=VERDICT_KINDS[verdict])
 
@@ -168,7 +178,6 @@ def _ratio(check: Check | None) -> Cell:
 def _validity(design: ComparedDesign) -> Cell:
     if design.contact is None:
         return Cell(text=design.reason, kind="no")
-    limit = axial_limit(design.file, design.contact)
-    notes = [*([] if limit is None else [limit.excluded]), *design.contact.notes]
-    kind, text = ("yes", "✓ yes") if bool(design.contact.valid) and limit is None else ("no", "✗ no")
+    notes = [*filter(None, [design.limit]), *design.contact.notes]
+    kind, text = ("yes", "✓ yes") if bool(design.contact.valid) and not design.limit else ("no", "✗ no")
     return Cell(text=text, difference="; ".join(notes), kind=kind)

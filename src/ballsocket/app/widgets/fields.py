@@ -66,7 +66,7 @@ def words(name: str, label: str, value: str, rows: int = 1) -> Field:
     return {"name": name, "kind": "words", "label": label, "value": value, "rows": rows}
 
 
-def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
+def typed(label: str, text: Any, unit: Unit, kind: str) -> float:
     """Convert typed text to the number of a table; a bare number has the unit beside the box.
 
     Parameters
@@ -79,8 +79,6 @@ def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float
         Of a bare number; its factor leads to it from the number in the table.
     kind : str
         Physical kind of the number, for text with a unit.
-    times : int
-        Factor from the table's number to the typed one: 2 for a diameter of a radius.
 
     Raises
     ------
@@ -89,10 +87,8 @@ def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float
 
     Examples
     --------
-    >>> typed("Diametral clearance", "0,2", Unit("mm", 2.0), "length", 2)
-    0.1
-    >>> typed("Diametral clearance", "0.2 mm", Unit("in", 2 / 25.4), "length", 2)
-    0.1
+    >>> typed("Clearance", "0,2", Unit("mm"), "length"), typed("Clearance", "0.2 mm", Unit("in", 1 / 25.4), "length")
+    (0.2, 0.2)
     """
     if isinstance(text, int | float) and not isinstance(text, bool):
         return round(check_number(label, text) / unit.factor, 12)
@@ -114,7 +110,7 @@ def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float
         value = parse(label, pointed, kind)
     except ValueError as error:
         raise ValueError(f"{rule}, got {shown(stripped)}") from error
-    return round((degrees(value) if kind == Kind.ANGLE else value) / times, 12)
+    return round(degrees(value) if kind == Kind.ANGLE else value, 12)
 
 
 def typed_quantity(label: str, text: Any, quantity: Quantity, reading: Reading) -> float:

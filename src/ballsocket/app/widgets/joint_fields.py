@@ -11,16 +11,16 @@ from typing import Any
 
 from ...core.checks import check_names, check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
-from ...files.joint_file import JointFile, joint_of, read_aim
+from ...files.inputs import Input
+from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
-from ...problem.cup import UP
-from ...problem.dimensions import LENGTHS, give
+from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
-from ..pressing import same_load, tilt_of
+from ..pressing import same_load
 from ..state.screen import Screen
-from .fields import Field, Options, choice, segments, tick, words
-from .numbers import ALLOWABLE, THICKNESS, TILT, Number, load_of, number_of
+from .fields import Field, choice, segments, tick, words
+from .numbers import ALLOWABLE, THICKNESS, TILT, Number, choice_of, load_of, number_of
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
@@ -42,72 +42,60 @@ class JointInput:
 
 def joint_inputs(screen: Screen) -> dict[str, JointInput]:
     """Return every input of the joint on the screen by name, in the order of the page."""
-    file, tables = screen.file, tables_of(screen.file)
+    file, tables, joint = screen.file, tables_of(screen.file), screen.file.joint
+    preset = joint.name if joints.get(joint.name) == joint else _PRESET
+    solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
+    allowable = ALLOWABLE.field("allowable", joint.liner.allowable_pressure, screen.reading)
+    liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
     listed = [
-        JointInput(words("name", "Design", file.joint.name), partial(_with_name, file)),
-        _preset_input(file),
-        *_number_inputs(screen, tables, _LENGTHS),
-        *([] if file.joint.backing else [_solid_input(file)]),
+        JointInput(words("name", "Design", joint.name), partial(_with_name, file)),
+        JointInput(
+            choice("preset", "Start from", [(_PRESET, "– choose –"), *joints], preset), partial(_with_preset, file)
+        ),
+        *_number_inputs(screen, _LENGTHS),
+        *([] if joint.backing else [JointInput(solid, partial(_with_solid_socket, file))]),
         *_load_inputs(screen, tables),
-        _material_input(file, "liner", "Liner", _chosen(tables["liner"]), _MATERIALS),
-        *_number_inputs(screen, tables, ("liner_young", "liner_poisson")),
-        _allowable_input(screen),
+        JointInput(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
+        *_number_inputs(screen, ("liner_young", "liner_poisson")),
+        JointInput({**allowable, "optional": True}, partial(_with_allowable, screen)),
         *(
             _thickness_input(screen, index, layer)
-            for index, layer in enumerate(file.joint.backing)
+            for index, layer in enumerate(joint.backing)
             if not isinf(float(layer.thickness))
         ),
-        _material_input(
-            file, "ball", "Ball", _chosen(tables["ball"]) if file.joint.ball else _RIGID, (_RIGID, *_MATERIALS)
-        ),
-        *_number_inputs(screen, tables, ("ball_young", "ball_poisson")),
+        JointInput(choice("ball", "Ball", (_RIGID, *_MATERIALS), ball), partial(_with_material, file, "ball")),
+        *_number_inputs(screen, ("ball_young", "ball_poisson")),
     ]
     return {entry.field["name"]: entry for entry in listed}
 
 
-def _preset_input(file: JointFile) -> JointInput:
-    name = file.joint.name
-    present = name if joints.get(name) == file.joint else _PRESET
-    options = [(_PRESET, "– choose –"), *joints]
-    return JointInput(choice("preset", "Start from", options, present), partial(_with_preset, file))
-
-
-def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list[JointInput]:
-    values = _numbers_of(screen.file.joint, tables)
-    specs = {name: number_of(name, screen.size) for name in names}
-    known = {name: (spec, values.get(spec.table, {}).get(spec.key)) for name, spec in specs.items()}
+def _number_inputs(screen: Screen, names: Sequence[str]) -> list[JointInput]:
+    """Return the inputs of finite numbers; a rigid ball has none, and an interference is no clearance."""
+    joint, specs = screen.file.joint, {name: number_of(name, screen.size) for name in names}
+    owners = {"joint": joint, "liner": joint.liner, "ball": joint.ball}
+    values = {name: float(getattr(owners[spec.entry.part], spec.entry.key, inf)) for name, spec in specs.items()}
     return [
-        _number_input(screen, name, spec, value)
-        for name, (spec, value) in known.items()
-        if value is not None and value < inf
+        _number_input(screen, name, spec, values[name])
+        for name, spec in specs.items()
+        if values[name] < inf and (spec.entry.part != "joint" or values[name] >= 0)
     ]
-
-
-def _numbers_of(joint: Joint, tables: Tables) -> Tables:
-    """Return the tables of a joint with the numbers that they do not have: lengths, and those of materials."""
-    numbers: Tables = {"joint": {name: float(getattr(joint, name)) for name in _LENGTHS}}
-    if joint.clearance < 0:
-        del numbers["joint"]["clearance"]
-    for part in ("liner", "ball"):
-        material = getattr(joint, part)
-        if material is not None:
-            numbers[part] = {"young": float(material.young), "poisson": float(material.poisson)}
-    return numbers
 
 
 def _number_input(screen: Screen, name: str, spec: Number, value: float) -> JointInput:
     def edit(typed: Any) -> JointFile:
         meant = spec.meant(typed, screen.reading)
-        return _changed(screen.file, lambda tables: _set_number(tables, spec, meant))
+        return _changed(screen.file, lambda tables: _set_number(tables, spec.entry, meant))
 
     return JointInput(spec.field(name, value, screen.reading), edit)
 
 
-def _set_number(tables: Tables, spec: Number, value: float) -> None:
-    if spec.table == "joint":
-        _set_length(tables["joint"], spec.key, value)
+def _set_number(tables: Tables, entry: Input, value: float) -> None:
+    """Set a number of a table; a diameter sets its radius."""
+    if entry.part == "joint":
+        single = DIAMETERS.get(entry.key, entry.key)
+        _set_length(tables["joint"], single, value if single == entry.key else value / 2)
     else:
-        tables.setdefault(spec.table, {})[spec.key] = value
+        tables.setdefault(entry.part, {})[entry.key] = value
 
 
 def _set_length(lengths: Tables, name: str, value: float) -> None:
@@ -118,11 +106,6 @@ def _set_length(lengths: Tables, name: str, value: float) -> None:
     lengths[name] = value
 
 
-def _solid_input(file: JointFile) -> JointInput:
-    solid = isinf(float(file.joint.liner_thickness))
-    return JointInput(tick("massive", "Solid socket (no backing)", solid), partial(_with_solid_socket, file))
-
-
 def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
     file, reading = screen.file, screen.reading
     ((kind, _),) = file.load.items()
@@ -130,17 +113,8 @@ def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
     return [
         JointInput(kinds, partial(_with_kind_of_load, screen)),
         _number_input(screen, "load", load_of(kind), tables["load"][kind]),
-        JointInput(TILT.field("tilt", degrees(tilt_of(file)), reading), partial(_with_tilt, screen)),
+        JointInput(TILT.field("tilt", degrees(file.tilt), reading), partial(_with_tilt, screen)),
     ]
-
-
-def _material_input(file: JointFile, part: str, label: str, present: str, options: Options) -> JointInput:
-    return JointInput(choice(part, label, options, present), partial(_with_material, file, part))
-
-
-def _allowable_input(screen: Screen) -> JointInput:
-    field = ALLOWABLE.field("allowable", screen.file.joint.liner.allowable_pressure, screen.reading)
-    return JointInput({**field, "optional": True}, partial(_with_allowable, screen))
 
 
 def _thickness_input(screen: Screen, index: int, layer: Layer) -> JointInput:
@@ -179,17 +153,17 @@ def _as_changed(joint: Joint) -> Joint:
     """Return a joint that differs from its source, with a preset marked as changed in its name."""
     base = joint.name.removesuffix(_CHANGED)
     if base not in joints:
-        return replace(joint, source="")
+        return joint.replace(name=joint.name, source="")
     preset = joints[base]
-    same = replace(joint, name=preset.name, source=preset.source) == preset
-    return preset if same else replace(joint, name=base + _CHANGED, source="")
+    same = joint.replace(name=preset.name, source=preset.source) == preset
+    return preset if same else joint.replace(name=base + _CHANGED, source="")
 
 
 def _with_name(file: JointFile, value: Any) -> JointFile:
     name = " ".join(check_text("the name", value).split())
     if len(name) > _MAX_NAME:
         raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
-    return replace(file, joint=replace(file.joint, name=name))
+    return replace(file, joint=file.joint.replace(name=name, source=file.joint.source))
 
 
 def _with_preset(file: JointFile, name: Any) -> JointFile:
@@ -216,8 +190,8 @@ def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
 
 def _with_tilt(screen: Screen, value: Any) -> JointFile:
     tilt, file = TILT.meant(value, screen.reading), screen.file
-    along = tilt == 0 and float(file.cup.tilt(UP)) == 0
-    return replace(file, aim={} if along else read_aim({"tilt": tilt}))
+    along = tilt == 0 and replace(file, aim={}).tilt == 0
+    return replace(file, aim={}) if along else varied(file, {"load": {"tilt": tilt}})
 
 
 def _with_allowable(screen: Screen, value: Any) -> JointFile:
@@ -258,8 +232,7 @@ def layer_fields(joint: Joint) -> dict[str, Field]:
         choice("behind.add", "Add a layer behind the liner", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE)
     )
     if joint.backing:
-        supports = [support.value for support in Support]
-        listed.append(segments("behind.support", "Outermost surface", supports, joint.support.value))
+        listed.append({**choice_of("joint.support", joint.support.value), "name": "behind.support"})
     return {field["name"]: field for field in listed}
 
 
@@ -286,4 +259,5 @@ def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
 
 
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
-    return replace(file, joint=_as_changed(replace(file.joint, **changes)))
+    joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
+    return replace(file, joint=_as_changed(joint))

@@ -9,7 +9,7 @@ from math import ceil, floor, inf, isclose, isnan, log10
 from ...contact.describe import Column
 from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT, JOINT, Quantity
-from ...reports.unit_systems import Units
+from ...core.unit_systems import Units
 
 _DIGITS, _BOX_DIGITS = 4, 5
 _INCH_DECIMALS = 4

@@ -14,12 +14,12 @@ from ...contact.describe import COLUMNS, Column
 from ...contact.verdict import Verdict
 from ...core.kinds import Unit
 from ...core.quantities import HEADLINE, Quantity
+from ...core.unit_systems import Units
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
 from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from ...reports.style import line_of
-from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
 
@@ -61,26 +61,8 @@ def doubt(valid: bool, name: str = "") -> str:
 
 def models_table(comparison: Comparison, reading: Reading) -> str:
     """Tabulate the models with deviation from the exact result, validity and line style."""
-    exact = comparison.contacts.get(reference.name)
-    rows = [_row(name, contact, exact, reading) for name, contact in comparison.items()]
-    legend = "<p class='quiet'>In small digits: the difference from the exact solution.</p>"
-    return f"{_table_of_models(rows, comparison, reading)}{legend}"
-
-
-def axial_models_table(comparison: Comparison, reading: Reading, real: Contact | None, excluded: str) -> str:
-    """Tabulate the contact in the real cup, and models of a load along its axis, which are `excluded` for a reason."""
-    first = [] if real is None else [_row(real.model.name, real, None, reading)]
-    rows = [_row(name, comparison[name], None, reading, f"no: {excluded}") for name in comparison]
-    return _table_of_models([*first, *rows], comparison, reading)
-
-
-@lru_cache(maxsize=8)
-def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
-    return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
-
-
-def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Reading) -> str:
-    columns = _shown_columns(reading)
+    exact, columns = comparison.contacts.get(reference.name), _shown_columns(reading)
+    rows = "".join(_row(name, contact, exact, reading) for name, contact in comparison.items())
     heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{head}</th>" for head, column in columns)
     missing = "".join(
         f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(columns) + 1}' class='text'>{escape(why)}</td></tr>"
@@ -88,16 +70,21 @@ def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Readi
     )
     return (
         "<div class='wide models' tabindex='0' role='region' aria-label='every model'><table>"
-        f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>valid here?</th></tr>"
-        f"{''.join(rows)}{missing}</table></div>"
+        f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>valid here?</th></tr>{rows}{missing}"
+        "</table></div><p class='quiet'>In small digits: the difference from the exact solution.</p>"
     )
 
 
+@lru_cache(maxsize=8)
+def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
+    return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
+
+
 @lru_cache(maxsize=1024)
-def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading, excluded: str = "") -> str:
+def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
     cells = "".join(_number(head, column, contact, exact) for head, column in _shown_columns(reading))
-    valid = bool(contact.valid) and not excluded
-    why = excluded or ("yes" if valid else f"no: {'; '.join(contact.notes)}")
+    valid = bool(contact.valid)
+    why = "yes" if valid else f"no: {'; '.join(contact.notes)}"
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"

@@ -230,10 +230,7 @@ _ASSUMED_MEMORY = 4_000_000_000
 def check_memory(subject: str, size: float) -> None:
     """Check that `size` bytes fit into the available memory.
 
-    Raises
-    ------
-    ValueError
-        The memory is too small; the message begins with `subject`, a plural noun.
+    Raises ValueError: the memory is too small; the message begins with `subject`, a plural noun.
     """
     free = available_memory()
     if size > free:

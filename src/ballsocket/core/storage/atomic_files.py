@@ -50,10 +50,7 @@ def check_parent_folder(path: Path) -> None:
 def check_ending(noun: str, path: Path, *endings: str) -> None:
     """Check that a path has one of the endings, and that its parent folder exists.
 
-    Raises
-    ------
-    ValueError
-        Another ending, in a message that begins with the noun, or a folder that does not exist.
+    Raises ValueError: another ending, in a message that begins with the noun, or a folder that does not exist.
     """
     if path.suffix.lower() not in endings:
         allowed = (" or " if len(endings) == 2 else ", ").join(endings)
@@ -101,10 +98,7 @@ def write_atomically(path: Path) -> Iterator[Path]:
 
     The draft is a file or a folder of the same name. An error in the block discards it.
 
-    Raises
-    ------
-    OSError
-        The folder is not writable or the disk is full. The error names `path`.
+    Raises OSError: the folder is not writable or the disk is full. The error names `path`.
     """
     with make_draft_folder(path) as folder:
         draft = folder / path.name
@@ -123,12 +117,8 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
 
     Draft folders of killed processes are removed first.
 
-    Raises
-    ------
-    ValueError
-        The address of a remote store.
-    OSError
-        The parent folder is not writable. The error names `path`.
+    Raises ValueError: the address of a remote store.
+    Raises OSError: the parent folder is not writable. The error names `path`.
     """
     check_local(path)
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
@@ -212,10 +202,7 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
 def unpack_arrays(stream: BinaryIO, name: str) -> dict[str, Numbers]:
     """Read the arrays of an npz file by name, and verify their checksums.
 
-    Raises
-    ------
-    ValueError
-        The file is damaged or is not an npz file; the message has its `name`.
+    Raises ValueError: the file is damaged or is not an npz file; the message has its `name`.
     """
     try:
         with ZipFile(stream) as archive:

@@ -43,20 +43,14 @@ class ResultFolder(ABC):
     def read(self, name: str, max_size: int | None = None) -> bytes:
         """Read a file, or its first `max_size` bytes.
 
-        Raises
-        ------
-        OSError
-            The file does not exist or is not readable.
+        Raises OSError: the file does not exist or is not readable.
         """
 
     @abstractmethod
     def write_blocks(self, name: str, blocks: Iterable[bytes]) -> None:
         """Write or replace a file from blocks of its content; its folder is created if necessary.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
+        Raises OSError: the folder is not writable or the disk is full.
         """
 
     def write(self, name: str, content: bytes) -> None:
@@ -75,10 +69,7 @@ class ResultFolder(ABC):
     def create(self, write: Callable[[Path], None]) -> None:
         """Create the folder from a draft that a function writes to a given path.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
+        Raises OSError: the folder is not writable or the disk is full.
         """
 
     @abstractmethod
@@ -196,21 +187,11 @@ class RemoteFolder(ResultFolder):
 
 @dataclass(frozen=True, kw_only=True)
 class ArrayPieceStore(PieceStore):
-    """Base class of stores with one npz file for each piece, which carries the identity of its run.
+    """Base class of stores with one npz file for each piece, which carries the identity of its run."""
 
-    Attributes
-    ----------
-    folder : ResultFolder
-        Local or remote folder.
-    identity : str
-        Digest of the run.
-    prefix : str
-        Beginning of the file names.
-    """
-
-    folder: ResultFolder
-    identity: str
-    prefix: str
+    folder: ResultFolder  # local or remote folder
+    identity: str  # digest of the run
+    prefix: str  # beginning of the file names
 
     @abstractmethod
     def to_arrays(self, result: Any) -> Mapping[str, Any]:
@@ -220,10 +201,7 @@ class ArrayPieceStore(PieceStore):
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> Any:
         """Return the result of a piece from its arrays; None if it belongs to another run.
 
-        Raises
-        ------
-        ValueError, TypeError, KeyError
-            An array is missing or has another shape.
+        Raises ValueError, TypeError, KeyError: an array is missing or has another shape.
         """
 
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
@@ -267,14 +245,9 @@ def folder_at(path: str | Path) -> ResultFolder:
 def open_address(address: str) -> tuple[Any, str]:
     """Return the file system of fsspec for an address, and the path in it.
 
-    Raises
-    ------
-    ImportError
-        The library of the store is not installed.
-    ValueError
-        An unknown kind of store.
-    OSError
-        The store does not respond.
+    Raises ImportError: the library of the store is not installed.
+    Raises ValueError: an unknown kind of store.
+    Raises OSError: the store does not respond.
     """
     needs("study", "fsspec")
     from fsspec.core import url_to_fs

@@ -46,10 +46,7 @@ def check_worker_code(code: str) -> None:
     code : str
         `fingerprint` of the process that started the run.
 
-    Raises
-    ------
-    ValueError
-        This process runs another code.
+    Raises ValueError: this process runs another code.
     """
     if fingerprint() != code:
         raise ValueError(f"this worker has ballsocket {fingerprint()}, but the run was started by {code}")
@@ -77,29 +74,17 @@ class PieceStore(ABC):
     def save(self, number: int, result: Any) -> Any:
         """Store the result of a piece of work; return the value to send back to the calling process.
 
-        Raises
-        ------
-        OSError
-            The store is not writable or the disk is full.
+        Raises OSError: the store is not writable or the disk is full.
         """
 
 
 @dataclass(frozen=True, eq=False)
 class PieceRun:
-    """Resumable run of numbered pieces of work: only pieces without a stored result are computed.
+    """Resumable run of numbered pieces of work: only pieces without a stored result are computed."""
 
-    Parameters
-    ----------
-    work : function
-        Computes the result of a piece from its number. Worker processes must be able to import it.
-    numbers : sequence of int
-        Numbers of the pieces.
-    store : PieceStore, optional
-        Each result is stored by the process that computed it. A killed run loses only unfinished pieces.
-    """
-
-    work: Work
-    numbers: Sequence[int]
+    work: Work  # computes the result of a piece from its number. Worker processes must be able to import it.
+    numbers: Sequence[int]  # numbers of the pieces
+    # each result is stored by the process that computed it. A killed run loses only unfinished pieces.
     store: PieceStore | None = None
 
     @cached_property
@@ -133,18 +118,10 @@ _SERIAL = Serial()
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """Named pieces of work in named parts.
+    """Named pieces of work in named parts."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the plan, which is the name of its folder of stored results.
-    parts : mapping of str to mapping of str to callable
-        Pieces by part and name.
-    """
-
-    name: str
-    parts: Mapping[str, Mapping[str, Piece]]
+    name: str  # name of the plan, which is the name of its folder of stored results
+    parts: Mapping[str, Mapping[str, Piece]]  # pieces by part and name
 
     def __len__(self) -> int:
         return sum(map(len, self.parts.values()))
@@ -154,10 +131,7 @@ class Plan:
 
         Results are stored in a subfolder with the plan's name.
 
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
+        Raises OSError: the folder is not writable or the disk is full.
         """
         folder = folder / self.name
         make_folder(folder)
@@ -210,10 +184,7 @@ class _ResultFiles(PieceStore):
     def save(self, number: int, result: Any) -> Any:
         """Write the result of a piece, and return it.
 
-        Raises
-        ------
-        ValueError
-            The result has a number that is NaN or infinite.
+        Raises ValueError: the result has a number that is NaN or infinite.
         """
         try:
             record = json.dumps({"key": self.keys[number], "result": result}, allow_nan=False)

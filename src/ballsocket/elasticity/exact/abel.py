@@ -41,12 +41,12 @@ class AbelState(PeakPressure):
     intervals: Intervals | CachedIntervals
     _cached_modes: list[Numbers] = field(default_factory=list, init=False, repr=False)  # for stresses in the socket
 
-    @property
+    @cached_property
     def half_angle(self) -> Numbers:
         """Half angles ε in rad."""
         return self.intervals.half_angle
 
-    @property
+    @cached_property
     def grid(self) -> QuadratureGrid:
         """Quadrature grid on the intervals [0, ε]."""
         return self.intervals.grid

@@ -14,7 +14,7 @@ from math import inf
 
 import numpy
 
-from ...contact.coordinates import angle_root, half_angle_at
+from ...contact.coordinates import angle_root, half_angle_at, log_angle_derivative
 from ...contact.per_joint import JointContacts
 from ...contact.roots import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers
@@ -24,7 +24,6 @@ from .abel import ROUNDING, AbelState, scaled_pressure
 from .kernel import Kernel
 from .load_curve import LoadCurve, estimate_errors, log_slope
 from .subsurface import StressCurve
-from .tabulated.curves import log_angle_derivative
 
 _TERMS, _POINTS, _ATTEMPTS = 32, 28, 4
 """Number of contacts and of quadrature points each at first; half as many more of one of them at each attempt."""
@@ -56,18 +55,10 @@ def _dimensionless_quantities(state: AbelState) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevCurve:
-    """Force, indentation and half angle of one joint from Chebyshev series.
+    """Force, indentation and half angle of one joint from Chebyshev series."""
 
-    Attributes
-    ----------
-    curve : LoadCurve
-        Exact solutions of the joint.
-    knots : AbelState
-        Contacts that the series interpolate, at `chebyshev_points`.
-    """
-
-    curve: LoadCurve
-    knots: AbelState
+    curve: LoadCurve  # exact solutions of the joint
+    knots: AbelState  # contacts that the series interpolate, at `chebyshev_points`
 
     def press(self, kind: str, load: Numbers) -> JointContacts:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""

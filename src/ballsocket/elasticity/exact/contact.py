@@ -29,7 +29,6 @@ from ...core.stress import Peak, Stress
 from ...core.validity import Range
 from ...problem import Support
 from .abel import AbelState
-from .chebyshev_curve import ChebyshevState
 from .hemisphere import CHANGES, hemisphere_of
 from .subsurface import (
     MIN_HALF_ANGLE,
@@ -219,18 +218,6 @@ class ElasticContact(SolvedContact):
             "stresses inside need a half angle of at least 1 degree: use hertz for narrower contacts",
         )
         return state
-
-
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class CurveContact(ElasticContact):
-    """Contact of the elastic solution with an interpolated largest stress in the liner."""
-
-    def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
-        if isinstance(contacts.state, ChebyshevState):
-            return contacts.state.largest_von_mises(contacts.reached)
-        return super()._joint_von_mises(position, contacts)
-
-    _estimate_von_mises = _joint_von_mises
 
 
 def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:

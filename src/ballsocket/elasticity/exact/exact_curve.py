@@ -6,17 +6,31 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
+import numpy
+
 from ...contact import Contact, ModelWrapper
 from ...contact.assembly import SolverResult
-from ...contact.per_joint import solve_per_joint
+from ...contact.per_joint import JointContacts, solve_per_joint
 from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
 from ...problem.gaps import CircularGap, LinearGap
-from .chebyshev_curve import ChebyshevCurve, fit_curve
-from .contact import CurveContact
+from .chebyshev_curve import ChebyshevCurve, ChebyshevState, fit_curve
+from .contact import ElasticContact
 from .load_curve import LoadCurve
 from .model import Exact, curve_of, make_solver_result
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class CurveContact(ElasticContact):
+    """Contact of the elastic solution with an interpolated largest stress in the liner."""
+
+    def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
+        if isinstance(contacts.state, ChebyshevState):
+            return contacts.state.largest_von_mises(contacts.reached)
+        return super()._joint_von_mises(position, contacts)
+
+    _estimate_von_mises = _joint_von_mises
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ class QuadratureGrid:
         y, w = self.nodes
         return y[self.points :], w[self.points :]
 
-    @property
+    @cached_property
     def weights(self) -> Numbers:
         """Gauss-Legendre weights of the sources, for integrals over y."""
         return self.nodes[1]

@@ -16,8 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import ceil, pi, prod
-from threading import local
+from math import ceil, pi
 
 import numpy
 
@@ -32,27 +31,6 @@ _BLOCK = 16_384  # waves in one block, which fits into the cache
 _PANEL_STEP = 8
 _LONGEST_PANEL = 96
 _CACHED_COUNTS = (32, 64, 128)  # numbers of waves that are cached
-_MAX_WORKSPACE = 1 << 18  # bytes of one reused array
-
-
-class _Workspace(local):
-    """Reusable arrays of one thread, stored by name."""
-
-    def __init__(self) -> None:
-        self.arrays: dict[str, numpy.ndarray] = {}
-
-
-_workspace = _Workspace()
-
-
-def workspace_array(name: str, shape: tuple[int, ...], dtype: type = float) -> numpy.ndarray:
-    """Return an uninitialised array, valid until the same thread requests that name again."""
-    size = prod(shape)
-    if size * numpy.dtype(dtype).itemsize > _MAX_WORKSPACE:
-        return numpy.empty(shape, dtype)
-    if name not in _workspace.arrays:
-        _workspace.arrays[name] = numpy.empty(_MAX_WORKSPACE, numpy.uint8)
-    return _workspace.arrays[name].view(dtype)[:size].reshape(shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,15 +43,14 @@ class Intervals:
     def closed_form_operators(self, a: Numbers) -> Operators:
         """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
-        square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
+        square = edge * grid.distance
         square *= square
-        log_weights = grid.weights * numpy.log(edge)
-        weights = _evaluate_polynomial("logarithm", logarithm_coefficients(a), square)
-        weights *= numpy.add(log_weights, grid.log_weights, out=workspace_array("log weights", weights.shape))
-        term = _evaluate_polynomial("term", distance_coefficients(a), square)
-        term *= numpy.multiply(edge, grid.distance_weights, out=workspace_array("modulus weights", weights.shape))
+        weights = _evaluate_polynomial(logarithm_coefficients(a), square)
+        weights *= grid.weights * numpy.log(edge) + grid.log_weights
+        term = _evaluate_polynomial(distance_coefficients(a), square)
+        term *= edge * grid.distance_weights
         weights += term
-        term = _evaluate_polynomial("term", smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
+        term = _evaluate_polynomial(smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
         term *= grid.weights
         weights += term
         weights *= edge * (grid.slope / 2)
@@ -123,10 +100,7 @@ class CachedIntervals:
             return
         count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
         if count not in self._cached_waves:
-            even, odd, even_integrals, odd_integrals = _waves_and_integration_matrices(
-                self.half_angle, self.grid, count
-            )
-            self._cached_waves[count] = even.copy(), odd.copy(), even_integrals.copy(), odd_integrals.copy()
+            self._cached_waves[count] = _waves_and_integration_matrices(self.half_angle, self.grid, count)
         even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
         _add_products(
@@ -138,8 +112,7 @@ def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: N
     """Add the operators of the remainder in place: cosines and sines times their integrals times r_n."""
     even, odd, even_integrals, odd_integrals = waves
     for operator, wave, integrals in zip(operators, (even, odd), (even_integrals, odd_integrals), strict=True):
-        weighted = numpy.multiply(wave, remainder, out=workspace_array("weighted waves", wave.shape))
-        operator += numpy.matmul(weighted, integrals, out=workspace_array("remainder", operator.shape))
+        operator += (wave * remainder) @ integrals
 
 
 def _waves_and_integration_matrices(
@@ -148,21 +121,17 @@ def _waves_and_integration_matrices(
     """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
 
     The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
-    All arrays are valid until the next call. The waves are shorter than the variations of the pressure, so they are
+    The waves are shorter than the variations of the pressure, so they are
     integrated at their own points.
     """
     edge = half_angle[:, None]
     panels = _wave_panels(half_angle, grid, count)
-    even, odd = _cosines_and_sines("targets", edge * grid.position, count)
+    even, odd = _cosines_and_sines(edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    panel_cosines, panel_sines = _cosines_and_sines("sources", edge * panels.position, count)
-    shape = (len(half_angle), count, grid.points)
     even_integrals, odd_integrals = (
-        numpy.matmul(
-            waves.swapaxes(-1, -2), _interpolation_matrix(grid, panels, parity), out=workspace_array(name, shape)
-        )
-        for parity, (name, waves) in enumerate({"even integrals": panel_cosines, "odd integrals": panel_sines}.items())
+        waves.swapaxes(-1, -2) @ _interpolation_matrix(grid, panels, parity)
+        for parity, waves in enumerate(_cosines_and_sines(edge * panels.position, count))
     )
     return even, odd, even_integrals, odd_integrals
 
@@ -175,21 +144,18 @@ def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Pane
     return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
 
 
-def _cosines_and_sines(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """Compute cos and sin of (n + ½) angle for n below count, in workspace arrays of this name."""
-    waves = workspace_array("waves", (*angle.shape, count), complex)
+def _cosines_and_sines(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+    """Compute cos and sin of (n + ½) angle for n below count."""
+    waves = numpy.empty((*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)
     waves[..., 1:] = numpy.exp(1j * angle)[..., None]
     numpy.multiply.accumulate(waves, axis=-1, out=waves)
-    parts = workspace_array(f"cos at {name}", waves.shape), workspace_array(f"sin at {name}", waves.shape)
-    parts[0][...], parts[1][...] = waves.real, waves.imag
-    return parts
+    return numpy.ascontiguousarray(waves.real), numpy.ascontiguousarray(waves.imag)
 
 
-def _evaluate_polynomial(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
-    """Evaluate a polynomial in x by Horner's rule, in the workspace array of this name."""
-    total = workspace_array(name, x.shape)
-    total[...] = coefficients[-1]
+def _evaluate_polynomial(coefficients: Numbers, x: Numbers) -> Numbers:
+    """Evaluate a polynomial in x by Horner's rule."""
+    total = numpy.full(x.shape, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         total *= x
         total += coefficient

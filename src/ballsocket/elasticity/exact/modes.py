@@ -24,24 +24,15 @@ from .waves import UNIT, SupportedLayer, fixed_surface_condition, free_surface_c
 class Shell:
     """Spherical layer of a socket.
 
-    Parameters
-    ----------
-    thickness : float
-        In mm, positive; `inf` for the last layer of a massive socket.
-    young : float
-        Young's modulus E in MPa, positive.
-    poisson : float
-        Poisson's ratio, above -1 and at most 0.5.
-
     Raises
     ------
     ValueError
         A number that is not allowed, named with its value.
     """
 
-    thickness: float
-    young: float
-    poisson: float
+    thickness: float  # in mm, positive; `inf` for the last layer of a massive socket
+    young: float  # Young's modulus E in MPa, positive
+    poisson: float  # Poisson's ratio, above -1 and at most 0.5
 
     def __post_init__(self) -> None:
         require("thickness", self.thickness, self.thickness > 0, "the thickness of a layer (mm) is above 0")
@@ -73,18 +64,6 @@ class Fields:
 class Socket:
     """Spherical socket of elastic layers that are bonded to each other.
 
-    Parameters
-    ----------
-    radius : float
-        R2 of the bore in mm.
-    shells : tuple of Shell
-        From the bore outwards; only the last may be infinite.
-    support : Support
-        Outermost surface: FIXED (default) or FREE of traction. An infinite last layer is fixed at infinity.
-
-        The mode n = 1 has a net force, which a free surface does not balance. A traction on the outermost surface with
-        uniform size and direction then carries it. Displacements are counted from the mean translation of that surface.
-
     Raises
     ------
     ValueError
@@ -97,8 +76,12 @@ class Socket:
     array([0.00330432, 0.0034047 , 0.00351705])
     """
 
-    radius: float
-    shells: tuple[Shell, ...]
+    radius: float  # R2 of the bore in mm
+    shells: tuple[Shell, ...]  # from the bore outwards; only the last may be infinite
+    # outermost surface: FIXED (default) or FREE of traction. An infinite last layer is fixed at infinity. The
+    # mode n = 1 has a net force, which a free surface does not balance. A traction on the outermost surface with
+    # uniform size and direction then carries it. Displacements are counted from the mean translation of that
+    # surface.
     support: Support = Support.FIXED
 
     def __post_init__(self) -> None:
@@ -205,13 +188,6 @@ class ElasticBall:
     surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition. The position of
     the ball is that of the sphere that fits its deformed surface best.
 
-    Parameters
-    ----------
-    radius : float
-        R1 in mm.
-    young, poisson : float
-        E in MPa and ν.
-
     Raises
     ------
     ValueError
@@ -223,7 +199,8 @@ class ElasticBall:
     array([0.00358 , 0.      , 0.015036])
     """
 
-    radius: float
+    radius: float  # R1 in mm
+    # E in MPa and ν
     young: float
     poisson: float
 

@@ -52,7 +52,7 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     counts = numpy.array([min(count, _mode_count(state, float(depth))) for depth in depths])
     halvings = numpy.floor(numpy.log2(count / counts)).astype(int)  # deep points need few modes
     tables = numpy.empty((5, len(depths), len(angles)))
-    for halving in numpy.unique(halvings):
+    for halving in sorted(set(halvings.ravel().tolist())):  # numpy.unique imports masked arrays
         band, size = halvings == halving, count >> halving
         tables[:, band] = _sum_fields(state, modes[:size], depths[band], tuple(wave[:size] for wave in waves))
     radial, meridional, hoop, tilt, shear = tables[:, row.ravel(), column.ravel()].reshape(5, *angle.shape)

@@ -30,20 +30,11 @@ _MAX_LEAF_SIZE = 24  # nodes in a part that is not halved further
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CondensedBody:
-    """Elastic block with supports, and normal loads on its contact surface.
-
-    Parameters
-    ----------
-    elastic : ElasticBlock
-    fixed_unknowns : array of bool (unknowns,)
-        Mask of the unknowns that the supports fix to zero.
-    contact : array (nodes,)
-        Nodes of the contact surface, from the pole outwards.
-    """
+    """Elastic block with supports, and normal loads on its contact surface."""
 
     elastic: ElasticBlock
-    fixed_unknowns: Numbers
-    contact: Numbers
+    fixed_unknowns: Numbers  # bool (unknowns,), mask of the unknowns that the supports fix to zero
+    contact: Numbers  # (nodes,), nodes of the contact surface, from the pole outwards
 
     @property
     def normal_unknowns(self) -> Numbers:

@@ -29,15 +29,10 @@ _SKIPPED_POLE_NODES = 10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CcxAnswer:
-    """Results of CalculiX, scaled back to the real joint: one number per step (steps,), NaN for missing steps.
+    """Results of CalculiX, scaled back to the real joint: one number per step (steps,), NaN for missing steps."""
 
-    Attributes
-    ----------
-    indentation, force, pole_pressure, half_angle : array
-        Values in mm, N, MPa and rad. Pressure and half angle are NaN on CAX4, whose facets CalculiX does not treat as
-        one surface.
-    """
-
+    # values in mm, N, MPa and rad. Pressure and half angle are NaN on CAX4, whose facets CalculiX does not treat
+    # as one surface.
     indentation: Numbers
     force: Numbers
     pole_pressure: Numbers
@@ -73,10 +68,7 @@ def run(out: Path, *, threads: int = 1) -> CcxAnswer:
 def run_calculix(out: Path, threads: int) -> subprocess.CompletedProcess[str]:
     """Run CalculiX on a deck, or the deck in a folder, until it ends; the results of an earlier run are deleted.
 
-    Raises
-    ------
-    FileNotFoundError
-        The command `ccx` is not installed, or there is no deck in the folder.
+    Raises FileNotFoundError: the command `ccx` is not installed, or there is no deck in the folder.
     """
     command = shutil.which("ccx")
     if command is None:

@@ -26,21 +26,11 @@ _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0]))[:, None]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Gradients:
-    """Strains of elements per unknown at quadrature points.
+    """Strains of elements per unknown at quadrature points."""
 
-    Attributes
-    ----------
-    coordinates : array (2, elements, points)
-        Coordinates (ρ, z) of the points.
-    strain : array (elements, points, 4, unknowns)
-        Strains ε_ρρ, ε_zz, γ_ρz and the hoop strain u_ρ/ρ.
-    volume : array (elements, points)
-        Volume of the full ring per weight on the unit square.
-    """
-
-    coordinates: Numbers
-    strain: Numbers
-    volume: Numbers
+    coordinates: Numbers  # (2, elements, points), coordinates (ρ, z) of the points
+    strain: Numbers  # (elements, points, 4, unknowns), strains ε_ρρ, ε_zz, γ_ρz and the hoop strain u_ρ/ρ
+    volume: Numbers  # (elements, points), volume of the full ring per weight on the unit square
 
     @property
     def trace(self) -> Numbers:
@@ -57,15 +47,10 @@ class Strains(Gradients):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticBlock:
-    """Meshed block of elastic layers.
-
-    Parameters
-    ----------
-    block : Block
-    young, poisson : array (layers,)
-    """
+    """Meshed block of elastic layers."""
 
     block: Block
+    # (layers,)
     young: Numbers
     poisson: Numbers
 

@@ -33,17 +33,10 @@ StiffnessPowers = tuple[csc_matrix, csc_matrix, csc_matrix]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Harmonics:
-    """Meridian mesh of a socket for loads on its bore that vary as cos mφ.
-
-    Parameters
-    ----------
-    elastic : ElasticBlock
-    shape : SocketShape
-        Shape of the meshed socket.
-    """
+    """Meridian mesh of a socket for loads on its bore that vary as cos mφ."""
 
     elastic: ElasticBlock
-    shape: SocketShape
+    shape: SocketShape  # shape of the meshed socket
 
     @property
     def _block(self) -> Block:

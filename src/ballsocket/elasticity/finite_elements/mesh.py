@@ -21,27 +21,16 @@ from ...problem.cup import Cup, Interface
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Block:
-    """Spherical block meshed along its angles and radii.
+    """Spherical block meshed along its angles and radii."""
 
-    Attributes
-    ----------
-    angle : array (angles,)
-        Angles of the nodes in rad, ascending. For order 2 every second one lies between the corners of the elements.
-    radius : array (angles, radii)
-        Radii of the nodes, ascending. A radius occurs twice where two layers slide on each other.
-    strips : array of int
-        Index of the first radius of each strip of elements.
-    layer : array of int
-        Layer of each strip.
-    order : int
-        1 is bilinear, 2 biquadratic.
-    """
-
+    # (angles,), angles of the nodes in rad, ascending. For order 2 every second one lies between the corners of
+    # the elements.
     angle: Numbers
+    # (angles, radii), radii of the nodes, ascending. A radius occurs twice where two layers slide on each other.
     radius: Numbers
-    strips: Numbers
-    layer: Numbers
-    order: int
+    strips: Numbers  # index of the first radius of each strip of elements
+    layer: Numbers  # layer of each strip
+    order: int  # 1 is bilinear, 2 biquadratic
 
     @cached_property
     def number(self) -> Numbers:
@@ -157,33 +146,15 @@ _MAX_RADIUS = 1e4  # over the bore's radius: outer radius of a massive socket
 
 @dataclass(frozen=True, kw_only=True)
 class Resolution:
-    """Element sizes of both bodies.
+    """Element sizes of both bodies."""
 
-    Attributes
-    ----------
-    size : float
-        Size of the elements along the contact and across it, in rad.
-    reach : float
-        Angle in rad up to which elements have this size.
-    growth : float
-        Ratio of the lengths of successive elements away from the contact.
-    widest : float
-        Longest element along the surface in rad.
-    deepest : float
-        Longest element across a layer, as a fraction of its thickness.
-    order : int
-        1 is bilinear, 2 biquadratic.
-    halvings : int
-        Number of times that every element is divided in four.
-    """
-
-    size: float
-    reach: float
-    growth: float
-    widest: float
-    deepest: float
-    order: int
-    halvings: int = 0
+    size: float  # size of the elements along the contact and across it, in rad
+    reach: float  # angle in rad up to which elements have this size
+    growth: float  # ratio of the lengths of successive elements away from the contact
+    widest: float  # longest element along the surface in rad
+    deepest: float  # longest element across a layer, as a fraction of its thickness
+    order: int  # 1 is bilinear, 2 biquadratic
+    halvings: int = 0  # number of times that every element is divided in four
 
     def refine(self, corners: Numbers) -> Numbers:
         """Halve the intervals between corners as many times as `halvings`."""
@@ -202,21 +173,13 @@ class Resolution:
 
 @dataclass(frozen=True, kw_only=True)
 class SocketShape:
-    """Socket of inner radius 1 with a liner of Young's modulus 1.
+    """Socket of inner radius 1 with a liner of Young's modulus 1."""
 
-    Attributes
-    ----------
-    layers : tuple of (outer radius, Young's modulus, Poisson's ratio)
-        Layers from the liner outwards.
-    rim, chamfer : float
-        Polar angle of the rim in rad; of its inner edge.
-    interface, support
-        Interface of the liner to the next layer, and support of the outermost surface.
-    """
-
-    layers: tuple[tuple[float, float, float], ...]
+    layers: tuple[tuple[float, float, float], ...]  # layers from the liner outwards
+    # polar angle of the rim in rad; of its inner edge
     rim: float
     chamfer: float
+    # interface of the liner to the next layer, and support of the outermost surface
     interface: Interface
     support: Support
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import nan
+from math import degrees, nan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -19,9 +19,9 @@ from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
 from ...core.sources import Source
 from ...core.stress import Peak
-from ...core.validity import SMALL_STRAIN, Range, Status, body_remarks
+from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Status, body_remarks, largest_poisson
 from ...problem import Joint
-from ...problem.cup import Cup
+from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
@@ -103,18 +103,6 @@ class MeshedContact(SolvedContact):
         """Return the contact as a dictionary for JSON, with error estimates and the mesh size of a single contact."""
         single = self.laws.shape == () and not Status(self.status).failed and self.indentation > 0
         return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}
-
-
-def largest_poisson(contact: Any) -> Array:
-    """Return the largest Poisson's ratio of liner, backing and ball."""
-    joint = contact.joint
-    ratios = [layer.material.poisson for layer in joint.backing]
-    if joint.ball is not None:
-        ratios.append(joint.ball.poisson)
-    largest = joint.liner.poisson
-    for poisson in ratios:
-        largest = arrays.where(poisson > largest, poisson, largest)
-    return largest
 
 
 _BODY_REMARKS = body_remarks("cut off at the plane of the socket's rim", "half a one on its equator")
@@ -221,8 +209,12 @@ class FiniteElement(Model):
         """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
         raise TypeError("finite elements are too noisy for a law, because each load has its own mesh: use exact")
 
-    def in_cup(self, cup: Cup) -> FiniteElement:
-        """Return a copy of the model with another cup."""
+    def in_cup(self, cup: Cup, **aim: Any) -> FiniteElement:
+        """Return a copy of the model with another cup; OutsideDomainError for a load at an angle to its axis."""
+        tilt = cup.load_tilt(**aim)
+        if tilt > AXIAL_TILT:
+            angle = f"{degrees(tilt):.3g}° from the cup's axis"
+            raise OutsideDomainError(f"fem solves axial loads only, and this one is {angle}: use sphere")
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:

@@ -34,29 +34,15 @@ _CLASS_MARGIN = 1.12  # factor by which the half angle may differ from its class
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MeshedLoadCurve:
-    """Force, indentation and half angle of one joint on finite element meshes.
+    """Force, indentation and half angle of one joint on finite element meshes."""
 
-    Parameters
-    ----------
-    pairs : function (number of the class, FINE or COARSE) -> SurfacePair
-        Function that makes the meshes.
-    classes : tuple of float
-        Half angles in rad, descending from the widest of all; a class lies between each and the next.
-    gap : Gap
-    ends_at_rim : bool
-        True if deeper contacts fill the socket; otherwise they are not solved.
-    meshes : int
-        1 gives errors of NaN, 2 estimates them.
-    order : int
-        Order of the elements and of the error estimate.
-    """
-
-    pairs: Callable[[int, int], SurfacePair]
+    pairs: Callable[[int, int], SurfacePair]  # function that makes the meshes
+    # half angles in rad, descending from the widest of all; a class lies between each and the next
     classes: tuple[float, ...]
     gap: Gap
-    ends_at_rim: bool
-    meshes: int
-    order: int
+    ends_at_rim: bool  # True if deeper contacts fill the socket; otherwise they are not solved
+    meshes: int  # 1 gives errors of NaN, 2 estimates them
+    order: int  # order of the elements and of the error estimate
     _cached_brackets: dict[tuple[int, int], ContactBracket] = field(default_factory=dict, init=False, repr=False)
 
     def press(self, kind: str, load: Numbers) -> JointContacts:

@@ -19,24 +19,14 @@ from .pressure_solver import solve_pressure, solve_pressure_change
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GapField:
-    """Gap between the undeformed ball and bore in every cell of a grid.
-
-    Attributes
-    ----------
-    grid : Grid
-    clearance, socket_radius : float
-        Radii in mm.
-    depth : array (rings, meridians)
-        Depth of the worn bore below its sphere in mm.
-    kind : type
-        `LinearGap` or `CircularGap`.
-    """
+    """Gap between the undeformed ball and bore in every cell of a grid."""
 
     grid: Grid
+    # radii in mm
     clearance: float
     socket_radius: float
-    depth: Numbers
-    kind: type[LinearGap] | type[CircularGap]
+    depth: Numbers  # (rings, meridians), depth of the worn bore below its sphere in mm
+    kind: type[LinearGap] | type[CircularGap]  # `LinearGap` or `CircularGap`
 
     def on_coarser_grid(self, grid: Grid) -> GapField:
         """Return this gap on the next coarser grid."""
@@ -121,21 +111,11 @@ class Equilibria(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EquilibriumBatch:
-    """Positions of the ball with their contacts.
+    """Positions of the ball with their contacts."""
 
-    Attributes
-    ----------
-    displacement : array (batch, 3)
-        Displacement of the ball's centre in mm, in the cup's frame.
-    pressure : array (batch, rings, meridians)
-        Pressure in MPa.
-    converged : array of bool (batch,)
-        True where the solver reached its tolerance.
-    """
-
-    displacement: Numbers
-    pressure: Numbers
-    converged: Numbers
+    displacement: Numbers  # (batch, 3), displacement of the ball's centre in mm, in the cup's frame
+    pressure: Numbers  # (batch, rings, meridians), pressure in MPa
+    converged: Numbers  # bool (batch,), True where the solver reached its tolerance
 
     def store(self, indices: Numbers, part: Equilibria) -> None:
         """Copy the solved balls of a part to these indices."""
@@ -145,18 +125,11 @@ class EquilibriumBatch:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoreContact:
-    """Ball in a bore, described by the compliance of both bodies and the gap between them.
-
-    Attributes
-    ----------
-    compliance : Compliance
-    gap : GapField
-    tether : array (3, 3)
-        Stiffness in N/mm of a spring between ball and socket, parallel to the contact; none by default.
-    """
+    """Ball in a bore, described by the compliance of both bodies and the gap between them."""
 
     compliance: Compliance
     gap: GapField
+    # (3, 3), stiffness in N/mm of a spring between ball and socket, parallel to the contact; none by default
     tether: Numbers = field(default_factory=lambda: numpy.zeros((3, 3)))
 
     @property

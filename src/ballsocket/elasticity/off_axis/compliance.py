@@ -22,15 +22,9 @@ from .surfaces import Springs, Surface
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxisymmetricOperator:
-    """Linear operator on fields of cells that is axisymmetric: one matrix (rings, rings) for each harmonic m.
+    """Linear operator on fields of cells that is axisymmetric: one matrix (rings, rings) for each harmonic m."""
 
-    Attributes
-    ----------
-    matrices : array (max_harmonic + 1, rings, rings)
-        Single precision where it is sufficient; it is twice as fast.
-    """
-
-    matrices: Numbers
+    matrices: Numbers  # (max_harmonic + 1, rings, rings), single precision where it is sufficient; it is twice as fast
 
     def __call__(self, fields: Numbers) -> Numbers:
         """Apply the operator to fields (batch, rings, meridians), in the precision of the matrices."""
@@ -63,16 +57,10 @@ class UniformOperator:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Compliance:
-    """Compliance of bore and ball together, between the cells of a grid.
-
-    Attributes
-    ----------
-    grid : Grid
-    softness, stiffness : AxisymmetricOperator or UniformOperator
-        From pressures in MPa to the sum of both displacements in mm, and the inverse.
-    """
+    """Compliance of bore and ball together, between the cells of a grid."""
 
     grid: Grid
+    # from pressures in MPa to the sum of both displacements in mm, and the inverse
     softness: AxisymmetricOperator | UniformOperator
     stiffness: AxisymmetricOperator | UniformOperator
 

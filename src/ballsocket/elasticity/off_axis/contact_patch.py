@@ -34,26 +34,14 @@ _MIN_EDGE_RINGS = 5.0  # smallest distance from the centre to the edge in ring w
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactPatch:
-    """Pressure of one contact on the grid, with its outline and its largest value.
-
-    Attributes
-    ----------
-    grid : Grid
-    pressure : array (rings, meridians)
-        Pressure in MPa.
-    level : array (rings, meridians)
-        Level in mm: positive in the contact, minus the gap outside, zero near the edge.
-    axis : array (3,)
-        Unit vector of the load, in the cup's frame.
-    inset : float
-        Distance of the edge inside the zero of `level`, as a fraction of a ring's width: see `EdgeRelation`.
-    """
+    """Pressure of one contact on the grid, with its outline and its largest value."""
 
     grid: Grid
-    pressure: Numbers
+    pressure: Numbers  # (rings, meridians), pressure in MPa
+    # (rings, meridians), level in mm: positive in the contact, minus the gap outside, zero near the edge
     level: Numbers
-    axis: Numbers
-    inset: float
+    axis: Numbers  # (3,), unit vector of the load, in the cup's frame
+    inset: float  # distance of the edge inside the zero of `level`, as a fraction of a ring's width: see `EdgeRelation`
 
     @cached_property
     def _cells(self) -> CellArrays:

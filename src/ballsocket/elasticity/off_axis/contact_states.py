@@ -58,35 +58,20 @@ LoadSolver = Callable[[BoreContact, Numbers, Numbers, EdgeRelation], "ContactSta
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactStates:
-    """Solved contacts of one joint, with one number per contact for each quantity.
-
-    Attributes
-    ----------
-    bore : BoreContact
-    equilibrium : EquilibriumBatch
-    axes : array (contacts, 3)
-        Unit vectors of the loads in the cup's frame, at which the pole pressure is read and angles start.
-    edges : EdgeRelation
-    dislocated : array of bool (contacts,)
-        True where the bore does not hold the ball.
-    load : array (contacts,)
-        Prescribed force (N), indentation (mm) or half angle (rad) along the axes.
-    solve : function
-        Solver of the same kind of load, for other loads and axes.
-    rim_curve : function, optional
-        Maker of the curve of tilts at first rim contact, for this kind of load: see `RimCurve`.
-    too_wide : array of bool (contacts,)
-        True where no contact in this bore has the prescribed half angle.
-    """
+    """Solved contacts of one joint, with one number per contact for each quantity."""
 
     bore: BoreContact
     equilibrium: EquilibriumBatch
+    # (contacts, 3), unit vectors of the loads in the cup's frame, at which the pole pressure is read and angles
+    # start
     axes: Numbers
     edges: EdgeRelation
-    dislocated: Numbers
-    load: Numbers
-    solve: LoadSolver
+    dislocated: Numbers  # bool (contacts,), True where the bore does not hold the ball
+    load: Numbers  # (contacts,), prescribed force (N), indentation (mm) or half angle (rad) along the axes
+    solve: LoadSolver  # solver of the same kind of load, for other loads and axes
+    # maker of the curve of tilts at first rim contact, for this kind of load: see `RimCurve`
     rim_curve: CurveFunction | None = None
+    # bool (contacts,), True where no contact in this bore has the prescribed half angle
     too_wide: Numbers | bool = False
 
     @property

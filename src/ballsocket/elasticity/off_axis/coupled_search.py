@@ -55,92 +55,51 @@ class BoreArrays(NamedTuple):
     """Ball and bore as arrays of one library and data type.
 
     A folded bore has the meridians of one side alone, and the components of its parity in place of three.
-
-    Attributes
-    ----------
-    cosines, sines : array (half, half)
-        From twice the even and odd parts of a field (half its meridians) to its cosine and sine coefficients. A folded
-        bore has one of them, from the part itself.
-    softness, stiffness : array (half + 1, rings, rings)
-        Matrices of `Compliance` for each harmonic; (half, rings, rings) of a folded bore.
-    normals : array (cells, 3)
-        Mean outward normals of the cells.
-    gap : array (meridians, rings, 1)
-        Clearance plus worn depth in mm.
-    areas : array (rings,)
-        Area of a cell of each ring on a unit sphere.
-    force_weights : array (3, cells)
-        Force in N by 1 MPa in a cell.
-    scale : array ()
-        Area of the bore per area of a unit sphere, R2² in mm².
-    tether : array (3, 3)
-        Stiffness in N/mm of a spring parallel to the contact.
     """
 
+    # (half, half), from twice the even and odd parts of a field (half its meridians) to its cosine and sine
+    # coefficients. A folded bore has one of them, from the part itself.
     cosines: Array
     sines: Array
+    # (half + 1, rings, rings), matrices of `Compliance` for each harmonic; (half, rings, rings) of a folded bore
     softness: Array
     stiffness: Array
-    normals: Array
-    gap: Array
-    areas: Array
-    force_weights: Array
-    scale: Array
-    tether: Array
+    normals: Array  # (cells, 3), mean outward normals of the cells
+    gap: Array  # (meridians, rings, 1), clearance plus worn depth in mm
+    areas: Array  # (rings,), area of a cell of each ring on a unit sphere
+    force_weights: Array  # (3, cells), force in N by 1 MPa in a cell
+    scale: Array  # (), area of the bore per area of a unit sphere, R2² in mm²
+    tether: Array  # (3, 3), stiffness in N/mm of a spring parallel to the contact
 
 
 class Lanes(NamedTuple):
-    """State of a search, one lane per ball.
+    """State of a search, one lane per ball."""
 
-    Attributes
-    ----------
-    load : array (3, lanes)
-        Prescribed force in N.
-    force_scale, overlap_scale : array (lanes,)
-        Force in N and overlap in mm to which residuals are relative.
-    displacement : array (3, lanes)
-        Displacement of the ball's centre in mm.
-    pressure : array (meridians, rings, lanes)
-        Pressure in MPa, at least 0.
-    remaining : array (meridians, rings, lanes)
-        Overlap in mm under these pressures, negative in a gap. It is updated by increments, which keeps its accuracy.
-    imbalance : array (3, lanes)
-        Load minus force in N.
-    residual, previous_residual, direction : array (meridians, rings, lanes)
-        Remaining overlap of cells that touch or overlap, that of the last iteration, and its search direction.
-    descent : array (lanes,)
-        Descent of the last iteration along its gradient.
-    error : array (lanes,)
-        Larger one of the relative residuals of overlap and force.
-    """
-
-    load: Array
+    load: Array  # (3, lanes), prescribed force in N
+    # (lanes,), force in N and overlap in mm to which residuals are relative
     force_scale: Array
     overlap_scale: Array
-    displacement: Array
-    pressure: Array
+    displacement: Array  # (3, lanes), displacement of the ball's centre in mm
+    pressure: Array  # (meridians, rings, lanes), pressure in MPa, at least 0
+    # (meridians, rings, lanes), overlap in mm under these pressures, negative in a gap. It is updated by
+    # increments, which keeps its accuracy.
     remaining: Array
-    imbalance: Array
+    imbalance: Array  # (3, lanes), load minus force in N
+    # (meridians, rings, lanes), remaining overlap of cells that touch or overlap, that of the last iteration, and
+    # its search direction
     residual: Array
     previous_residual: Array
     direction: Array
-    descent: Array
-    error: Array
+    descent: Array  # (lanes,), descent of the last iteration along its gradient
+    error: Array  # (lanes,), larger one of the relative residuals of overlap and force
 
 
 class Predictor(NamedTuple):
-    """Linear model of the contacts, for the Newton steps.
+    """Linear model of the contacts, for the Newton steps."""
 
-    Attributes
-    ----------
-    sensitivity : array (meridians, rings, 3 * lanes)
-        Derivative of the pressures by each component of the displacement, in MPa/mm.
-    inverse_tangent : array (lanes, 3, 3)
-        Displacement in mm by force in N.
-    """
-
+    # (meridians, rings, 3 * lanes), derivative of the pressures by each component of the displacement, in MPa/mm
     sensitivity: Array
-    inverse_tangent: Array
+    inverse_tangent: Array  # (lanes, 3, 3), displacement in mm by force in N
 
     def take(self, indices: Array) -> Predictor:
         """Return the predictor of the lanes at these indices."""

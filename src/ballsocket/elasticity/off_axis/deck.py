@@ -41,23 +41,14 @@ _NUMBERS_PER_LINE = 12
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SphericalBlock:
-    """Half of a spherical block, azimuths 0 to π, in quadratic bricks and, at the pole, wedges.
+    """Half of a spherical block, azimuths 0 to π, in quadratic bricks and, at the pole, wedges."""
 
-    Attributes
-    ----------
-    polar, azimuth, radius : array
-        Coordinates of the corners in rad and mm, ascending; the first polar angle is 0.
-    centre : array (3,)
-        Centre in mm.
-    offset : tuple of int
-        Numbers of nodes and of elements in other bodies that come first.
-    """
-
+    # coordinates of the corners in rad and mm, ascending; the first polar angle is 0
     polar: Numbers
     azimuth: Numbers
     radius: Numbers
-    centre: Numbers
-    offset: tuple[int, int] = (0, 0)
+    centre: Numbers  # (3,), centre in mm
+    offset: tuple[int, int] = (0, 0)  # numbers of nodes and of elements in other bodies that come first
 
     @cached_property
     def number(self) -> Numbers:
@@ -121,32 +112,15 @@ _WEDGE = _element_nodes([(0, 0), (2, 0), (2, 2)], [(1, 0), (2, 1), (1, 2)])
 class TiltedDeck:
     """Input deck of a rigid ball that is displaced into a cup at a tilt.
 
-    Parameters
-    ----------
-    joint : Joint
-        One joint with a rigid ball and a liner that is bonded to rigid ground or layers.
-    cup : Cup
-    indentation : float
-        Displacement of the ball's centre beyond the clearance, in mm.
-    tilt : float
-        Angle of the displacement from the cup's axis in rad, 0 to π.
-    element_size : float
-        Size of the elements along the bore in rad, 0.5° to 15°.
-    scale : float
-        Factor on clearance and indentation, above 0 and at most 1.
-
-    Raises
-    ------
-    ValueError
-        An elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
+    Raises ValueError: an elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
     """
 
-    joint: Joint
+    joint: Joint  # one joint with a rigid ball and a liner that is bonded to rigid ground or layers
     cup: Cup
-    indentation: float
-    tilt: float
-    element_size: float = pi / 60
-    scale: float = 1e-3
+    indentation: float  # displacement of the ball's centre beyond the clearance, in mm
+    tilt: float  # angle of the displacement from the cup's axis in rad, 0 to π
+    element_size: float = pi / 60  # size of the elements along the bore in rad, 0.5° to 15°
+    scale: float = 1e-3  # factor on clearance and indentation, above 0 and at most 1
 
     def __post_init__(self) -> None:
         check_cup(self.cup, self.joint)

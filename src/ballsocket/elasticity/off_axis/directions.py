@@ -28,12 +28,8 @@ def check_direction(direction: Any) -> Numbers:
 
     Those whose squared length would overflow or underflow are scaled.
 
-    Raises
-    ------
-    ValueError
-        An array without a last axis of 3, a length of zero, a component that is not finite.
-    TypeError
-        An array that does not contain numbers.
+    Raises ValueError: an array without a last axis of 3, a length of zero, a component that is not finite.
+    Raises TypeError: an array that does not contain numbers.
     """
     values = arrays.to_numpy(check_vectors("direction", direction, "x, y, z of a direction")).astype(float)
     largest = abs(values).max(axis=-1)

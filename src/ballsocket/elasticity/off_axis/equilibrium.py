@@ -79,26 +79,14 @@ def solve_force(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _SearchResult:
-    """Displacements and pressures of balls at the end of an equilibrium search.
+    """Displacements and pressures of balls at the end of an equilibrium search."""
 
-    Attributes
-    ----------
-    displacement : array (batch, 3)
-        Displacement of the ball's centre in mm.
-    pressure : array (batch, rings, meridians)
-        Pressure in MPa.
-    converged : array of bool (batch,)
-    sensitivity : array (batch, 3, rings, meridians)
-        Approximate derivative of the pressure by the displacement, in MPa/mm.
-    tangent : array (batch, 3, 3)
-        Approximate stiffness in N/mm.
-    """
-
-    displacement: Numbers
-    pressure: Numbers
-    converged: Numbers
+    displacement: Numbers  # (batch, 3), displacement of the ball's centre in mm
+    pressure: Numbers  # (batch, rings, meridians), pressure in MPa
+    converged: Numbers  # bool (batch,)
+    # (batch, 3, rings, meridians), approximate derivative of the pressure by the displacement, in MPa/mm
     sensitivity: Numbers
-    tangent: Numbers
+    tangent: Numbers  # (batch, 3, 3), approximate stiffness in N/mm
 
     def store_results(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
         """Copy the results of the balls in a mask from a search that is in progress."""

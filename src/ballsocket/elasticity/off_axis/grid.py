@@ -29,18 +29,10 @@ _MIN_RINGS_TO_COARSEN = 24  # a coarser start saves no time on fewer rings
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Grid:
-    """Cells of constant pressure on the bore, in rings and meridians.
+    """Cells of constant pressure on the bore, in rings and meridians."""
 
-    Attributes
-    ----------
-    edges : array (rings + 1,)
-        Polar angles in rad of the lines between rings, from 0 to the end of the bore.
-    meridians : int
-        Number of cells in a ring, even.
-    """
-
-    edges: Numbers
-    meridians: int
+    edges: Numbers  # (rings + 1,), polar angles in rad of the lines between rings, from 0 to the end of the bore
+    meridians: int  # number of cells in a ring, even
 
     @property
     def rings(self) -> int:

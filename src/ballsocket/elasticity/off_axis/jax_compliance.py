@@ -39,22 +39,12 @@ class Operators(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class LinerCompliance:
-    """Compliance matrices of one joint for any liner.
-
-    Parameters
-    ----------
-    surface : RealCup or ClosedShell
-    joint : Joint
-        A joint without arrays. Its bore stays the same.
-    cup : Cup
-    ring_width : float
-        In rad, 3° or less.
-    """
+    """Compliance matrices of one joint for any liner."""
 
     surface: Any
-    joint: Joint
+    joint: Joint  # a joint without arrays. Its bore stays the same.
     cup: Cup
-    ring_width: float
+    ring_width: float  # in rad, 3° or less
 
     def operators(self, liner: Numbers) -> Operators:
         """Compute the matrices for Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner."""

@@ -297,12 +297,8 @@ class JaxSphere:
 def _check_bore(model: Any, joint: Any) -> None:
     """Check that model and joint describe one bore that `Sphere` solves.
 
-    Raises
-    ------
-    TypeError
-        Another type than `Sphere` or `Joint`, or a joint with arrays.
-    OutsideDomainError
-        A joint outside the domain of the model.
+    Raises TypeError: another type than `Sphere` or `Joint`, or a joint with arrays.
+    Raises OutsideDomainError: a joint outside the domain of the model.
     """
     check_sphere(model)
     check_joint(joint)
@@ -323,12 +319,8 @@ def _check_precision(dtype: str) -> None:
 def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
     """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays.
 
-    Raises
-    ------
-    TypeError
-        Another type than real numbers.
-    ValueError
-        Another shape.
+    Raises TypeError: another type than real numbers.
+    Raises ValueError: another shape.
     """
     force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
     shape = numpy.shape(force)

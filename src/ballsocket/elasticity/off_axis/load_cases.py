@@ -302,10 +302,7 @@ def check_contact_memory(*shapes: tuple[int, ...]) -> None:
     *shapes : tuple of int
         Shapes of loads and directions. Shapes that do not broadcast are refused elsewhere.
 
-    Raises
-    ------
-    ValueError
-        The memory is too small.
+    Raises ValueError: the memory is too small.
     """
     try:
         count = math.prod(numpy.broadcast_shapes(*shapes))

@@ -25,11 +25,10 @@ from ...core.checks import (
     shown,
 )
 from ...core.sources import Source
-from ...core.validity import SMALL_STRAIN, Range, Remark, Status
+from ...core.validity import SMALL_STRAIN, Range, Remark, Status, largest_poisson
 from ...problem import Joint
 from ...problem.cup import UP, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
-from ..finite_elements.model import largest_poisson
 from .bore_shapes import BoreShape
 from .contact import OffAxisContact
 from .directions import check_direction, cup_frames, tilted_directions
@@ -178,9 +177,10 @@ class Sphere(Model):
         """Raise TypeError: a contact off the axis has no closed force law."""
         raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
-    def in_cup(self, cup: Cup) -> Sphere:
-        """Return a copy of the model with another cup."""
-        return replace(self, cup=cup)
+    def in_cup(self, cup: Cup, **aim: Any) -> Sphere:
+        """Return a copy of the model with another cup and direction of the load; a tilt tilts the cup as well."""
+        tilted = cup.tilted(min(aim["tilt"], pi / 2)) if "tilt" in aim else cup
+        return replace(self, cup=tilted).with_direction(**aim)
 
     def press(
         self,

@@ -32,29 +32,16 @@ _MIN_MARGIN = 1e-6  # margin in rad of a contact that comes to the end of the bo
 
 
 class CellArrays(NamedTuple):
-    """Cells of a grid as arrays of one library and data type.
+    """Cells of a grid as arrays of one library and data type."""
 
-    Attributes
-    ----------
-    polar : array (rings,)
-        Polar angles of the ring middles in rad.
-    nodes : array (rings + 3,)
-        Polar angles in rad between which fields are interpolated, from two beyond the pole to the end of the bore.
-    edge_nodes : array (rings,)
-        Polar angles in rad at which the edge lies when the level of a ring is 0.
-    middles : array (3, rings, meridians)
-        Unit vectors to the middles of the cells.
-    areas : array (rings, 1)
-        Areas of the cells on a unit sphere.
-    reach, width, inset : array ()
-        Polar angle of the end of the bore, width of a ring, and `EdgeRelation.inset` times that width, in rad.
-    """
-
-    polar: Array
+    polar: Array  # (rings,), polar angles of the ring middles in rad
+    # (rings + 3,), polar angles in rad between which fields are interpolated, from two beyond the pole to the end
+    # of the bore
     nodes: Array
-    edge_nodes: Array
-    middles: Array
-    areas: Array
+    edge_nodes: Array  # (rings,), polar angles in rad at which the edge lies when the level of a ring is 0
+    middles: Array  # (3, rings, meridians), unit vectors to the middles of the cells
+    areas: Array  # (rings, 1), areas of the cells on a unit sphere
+    # (), polar angle of the end of the bore, width of a ring, and `EdgeRelation.inset` times that width, in rad
     reach: Array
     width: Array
     inset: Array

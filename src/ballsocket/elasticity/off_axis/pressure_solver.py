@@ -26,24 +26,13 @@ _MIN_SINGLE_TOLERANCE = 1e-3  # tolerance of pressure changes below which they a
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PressureSolution:
-    """Solved pressures of a batch of contacts.
+    """Solved pressures of a batch of contacts."""
 
-    Attributes
-    ----------
-    pressure : array (batch, rings, meridians)
-        Pressure in MPa.
-    converged : array of bool (batch,)
-        True where the tolerance was reached.
-    energy : array (batch,)
-        Stored energy on a unit sphere in MPa mm; its relative error is the square of the tolerance.
-    iterations : int
-        Number of iterations of the slowest contact.
-    """
-
-    pressure: Numbers
-    converged: Numbers
+    pressure: Numbers  # (batch, rings, meridians), pressure in MPa
+    converged: Numbers  # bool (batch,), True where the tolerance was reached
+    # (batch,), stored energy on a unit sphere in MPa mm; its relative error is the square of the tolerance
     energy: Numbers
-    iterations: int
+    iterations: int  # number of iterations of the slowest contact
 
 
 def solve_pressure(

@@ -53,23 +53,13 @@ _MAX_MARGIN, _MAX_BRACKET = 0.05, 0.15
 
 
 class RimPoints(NamedTuple):
-    """Contacts of displaced balls near the rim: arrays (contacts,).
+    """Contacts of displaced balls near the rim: arrays (contacts,)."""
 
-    Attributes
-    ----------
-    rim_angle : array
-        Angle in rad from the displacement to the rim.
-    log_indentation : array
-        Logarithm of the displacement in mm beyond the clearance.
-    margin : array
-        Angle in rad from the edge of the contact to the rim, negative where the open last ring overlaps the ball.
-    log_force, tilt : array
-        Logarithm of the force in N, and angle in rad from the cup's axis to the force.
-    """
-
-    rim_angle: Numbers
-    log_indentation: Numbers
+    rim_angle: Numbers  # angle in rad from the displacement to the rim
+    log_indentation: Numbers  # logarithm of the displacement in mm beyond the clearance
+    # angle in rad from the edge of the contact to the rim, negative where the open last ring overlaps the ball
     margin: Numbers
+    # logarithm of the force in N, and angle in rad from the cup's axis to the force
     log_force: Numbers
     tilt: Numbers
 
@@ -92,18 +82,10 @@ class _RimCells(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RimCurve:
-    """Tilts of loads at first rim contact.
+    """Tilts of loads at first rim contact."""
 
-    Attributes
-    ----------
-    log_load : array (n,)
-        Logarithms of loads, ascending.
-    tilt : array (n,)
-        Tilts of the loads in rad.
-    """
-
-    log_load: Numbers
-    tilt: Numbers
+    log_load: Numbers  # (n,), logarithms of loads, ascending
+    tilt: Numbers  # (n,), tilts of the loads in rad
 
     def interpolate(self, load: Numbers) -> Numbers:
         """Interpolate the tilts in rad at loads by a spline; NaN beyond the ends of the curve."""

@@ -140,10 +140,7 @@ def cup_rings(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
 
     They are ∫ u dA in mm/MPa on a unit sphere.
 
-    Raises
-    ------
-    ValueError
-        A cup that does not fit this joint.
+    Raises ValueError: a cup that does not fit this joint.
     """
     from ..finite_elements.solver import check_cup  # slow to import
 

@@ -33,21 +33,12 @@ error of the edge is 0.01 cells.
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeRelation:
-    """Relation of pressure and gap that locates the edge of a contact between cells.
+    """Relation of pressure and gap that locates the edge of a contact between cells."""
 
-    Attributes
-    ----------
-    compliance : array (rings, 1)
-        Gap in mm of an open cell that is equivalent to 1 MPa in a loaded cell.
-    inset : float
-        Distance of the edge inside a cell's middle at the first load of that cell, as a fraction of a ring's width.
-    bounded : bool
-        True if the pressure stays finite in a contact that reaches the end of the bore.
-    """
-
-    compliance: Numbers
+    compliance: Numbers  # (rings, 1), gap in mm of an open cell that is equivalent to 1 MPa in a loaded cell
+    # distance of the edge inside a cell's middle at the first load of that cell, as a fraction of a ring's width
     inset: float
-    bounded: bool
+    bounded: bool  # True if the pressure stays finite in a contact that reaches the end of the bore
 
     def levels(self, pressure: Numbers, gap: Numbers) -> Numbers:
         """Compute levels in mm (..., rings, meridians) from pressures in MPa and gaps in mm.

@@ -181,23 +181,12 @@ def _xml_bytes(root: Element) -> bytes:
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """Version of the FMI standard: its description file, folder names of binaries, and words of the C template.
-
-    Attributes
-    ----------
-    version : str
-    folder : function
-        Returns the folder name of the binaries of a platform.
-    describe : function
-        Returns the file `modelDescription.xml`.
-    words : dict
-        Words in which the C functions of the versions differ, by their placeholders.
-    """
+    """Version of the FMI standard: its description file, folder names of binaries, and words of the C template."""
 
     version: str
-    folder: Callable[[Platform], str]
-    describe: Callable[[UnitInformation, Sequence[Variable]], bytes]
-    words: Mapping[str, str]
+    folder: Callable[[Platform], str]  # returns the folder name of the binaries of a platform
+    describe: Callable[[UnitInformation, Sequence[Variable]], bytes]  # returns the file `modelDescription.xml`
+    words: Mapping[str, str]  # words in which the C functions of the versions differ, by their placeholders
 
     @property
     def number(self) -> str:

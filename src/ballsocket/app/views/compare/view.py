@@ -174,7 +174,9 @@ def _explanation(base: str, screen: Screen) -> str:
 
 
 def _contacts(designs: Designs) -> dict[str, Contact]:
-    return {name: design.contact for name, design in designs.items() if design.contact is not None}
+    """Return the contacts whose curves are drawn: by the model of the page."""
+    pressed: dict[str, Any] = {name: design.contact for name, design in designs.items() if design.contact is not None}
+    return {name: contact for name, contact in pressed.items() if not contact.model.off_axis}
 
 
 def _lines(files: Mapping[str, JointFile]) -> dict[str, LineStyle]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from dataclasses import replace
 from functools import partial
 from html import escape
 from typing import Any
@@ -14,6 +15,7 @@ from ....core.quantities import BEARING, FIELD
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....files.joint_file import JointFile
 from ....model_catalogue import catalogue, reference
+from ....question import complete, real_cup_reason
 from ....reports.cup_plots import cup_figure
 from ....reports.figure_files import figure_bytes
 from ....reports.press_plots import press_figure
@@ -23,12 +25,12 @@ from ....studies.derivatives import LocalUncertainty, local_uncertainty
 from ...long_view import LongView
 from ...pictures.chart import swatch
 from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed, tilt_of
+from ...pressing import fine_curves, is_waiting, press_charts, pressed
 from ...running import Work
 from ...state.screen import PAINTED, Screen
 from ...view import STRESS_PAUSE, Document, Host
 from ...widgets.fields import choice, segments, several
-from ...widgets.words import alert, axial_models_table, headline, models_table, number_rows
+from ...widgets.words import alert, headline, models_table, number_rows
 from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
 from .drawing import first_view, frame_of, key
 
@@ -39,6 +41,7 @@ _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
 _NO_STRESSES = "this model has no stresses inside the liner"
+_AXIAL_CURVES = "<p class='quiet'>Curves: for loads along the axis of a full sphere.</p>"
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -71,6 +74,7 @@ class Press(LongView):
         super().__init__(page)
         self._cancel_further: Callable[[], None] = lambda: None
         self._real: OffAxisContact | None = None
+        self._requested: Hashable = None  # bore for which the real cup was requested
 
     def question_of(self, screen: Screen) -> Hashable:
         return bore_of(screen.file)
@@ -83,23 +87,30 @@ class Press(LongView):
         self._cancel_further()
         self.expect("charts", "table")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
-        if self._needs_cup(screen, comparison) is not None:
+        if self._needs_cup(screen, comparison):
             self.long.show(screen)
         else:
             self._show_axial(screen, comparison)
         self._cancel_further = self.page.later(_PAUSE, partial(self._fill, screen))
 
-    def _needs_cup(self, screen: Screen, comparison: Comparison) -> AxialLimit | None:
-        """Return the reason for the real cup; an axial load near the rim has one that is set up or requested."""
-        limit = _limit(comparison, screen)
-        if limit is None or tilt_of(screen.file) > AXIAL_TILT:
-            return limit
-        return limit if is_prepared(screen.file) or self.long.works_on(screen) else None
+    def _needs_cup(self, screen: Screen, comparison: Comparison) -> str:
+        """Return the reason for the real cup; it solves an axial load near the rim on request."""
+        reason, file = _reason(comparison, screen), screen.file
+        if not reason or not (real_cup_reason(file) or self._requested == bore_of(file)):
+            return ""
+        is_prepared(file)  # notes a bore whose rings are on disk, which needs no work
+        return reason
+
+    def _edited(self, key: str, value: Any) -> None:
+        self._requested = bore_of(self.page.screen.file) if value else None
+        super()._edited(key, value)
+        if value and is_prepared(self.page.screen.file):
+            self.show(self.page.screen)
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
         """Show the numbers of a model of a load along the axis of the cup."""
         self.long.leave()
-        near_rim = _limit(comparison, screen) is not None
+        near_rim = bool(_reason(comparison, screen))
         self.long.put_button(hidden=not near_rim)
         self.channel.put_fields(_fields(screen))
         by = comparison.contacts.get(screen.answered_by)
@@ -138,11 +149,12 @@ class Press(LongView):
 
     def _reason(self, screen: Screen) -> str:
         """State why the real cup is needed; empty where it is not."""
-        limit = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
-        if limit is None:
+        reason = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
+        if not reason:
             return ""
-        words = "Computed by the elastic model of the real cup (<code>sphere</code>)"
-        return f"<p class='quiet'>{words}, because {limit.reason}.</p>"
+        words = f"Computed by the elastic model of the real cup (<code>sphere</code>), because {escape(reason)}."
+        assumptions = complete(screen.file)[1].values()
+        return "".join(f"<p class='quiet'>{text}</p>" for text in (words, *map(escape, assumptions)))
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
         """Draw the joint with its pressure; stresses follow from a thread."""
@@ -152,7 +164,7 @@ class Press(LongView):
             self.compute(lambda: _stresses(contact), partial(self._put_drawing, screen, contact))
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
-        file, tilt = screen.file, tilt_of(screen.file)
+        file, tilt = complete(screen.file)[0], screen.file.tilt
         painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
         drawing = first_view(file, contact, self.page.inputs, (tilt, screen.reading.length), painted)
         if contact is None:
@@ -167,13 +179,10 @@ class Press(LongView):
     def _fill(self, screen: Screen) -> None:
         """Show the curves and the table of all models, then the numbers with the stress of the model itself."""
         comparison, reading = pressed(screen.file, _EVERY), screen.reading
-        limit = self._needs_cup(screen, comparison)
         drawn = _drawn(comparison, screen)
         charts = press_charts(drawn, {name: line_of(name) for name in drawn}, reading)
-        if limit is not None:
-            excluded = f"<p class='quiet'>Curves: {limit.excluded}</p>"
-            self.put(charts=excluded + charts)
-            self.put(table=axial_models_table(comparison, reading, self._real, limit.excluded))
+        if self._needs_cup(screen, comparison):
+            self.put(charts=_AXIAL_CURVES + charts, table=models_table(_with_real(self._real, comparison), reading))
         else:
             self.put(charts=charts, table=models_table(comparison, reading))
             self._cancel_further = self.page.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
@@ -191,9 +200,8 @@ class Press(LongView):
 
     def document(self, screen: Screen) -> Document:
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units
-        limit = self._needs_cup(screen, comparison)
-        if limit is not None:
-            return self._real_document(screen, comparison, limit)
+        if self._needs_cup(screen, comparison):
+            return self._real_document(screen, comparison)
         by = comparison.contacts.get(screen.answered_by)
         drawn = _drawn(comparison, screen)
         return Document(
@@ -206,16 +214,14 @@ class Press(LongView):
             contact=by,
         )
 
-    def _real_document(self, screen: Screen, comparison: Comparison, limit: AxialLimit) -> Document:
+    def _real_document(self, screen: Screen, comparison: Comparison) -> Document:
         if not is_prepared(screen.file):
             raise ValueError("the real cup is still being prepared: wait until its pressure is there")
         contact, units = pressed_in_cup(screen.file), screen.reading.units
         real = Comparison(screen.file.joint, {contact.model.name: contact}, {})
-        heads, row = _rows(real, screen)
-        axial = ([*row[:-2], False, limit.excluded] for row in _rows(comparison, screen)[1:])
         return Document(
             picture=lambda form: figure_bytes(cup_figure(contact), form),
-            rows=lambda: [heads, row, *axial],
+            rows=lambda: _rows(_with_real(contact, comparison), screen),
             sections=lambda: press_sections(real, units),
             lede=lambda: press_lede(contact, screen.file.cup, units),
             contact=contact,
@@ -240,10 +246,16 @@ def _stresses(contact: Contact) -> LinerStresses | None:
         return None
 
 
-def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
+def _with_real(real: Contact | None, comparison: Comparison) -> Comparison:
+    """Return a comparison with the contact in the real cup first."""
+    first = {} if real is None else {real.model.name: real}
+    return replace(comparison, contacts={**first, **comparison.contacts})
+
+
+def _reason(comparison: Comparison, screen: Screen) -> str:
     """Return the reason why the screen needs the real cup, judged by the chosen model or the first with a result."""
     contacts = successful_contacts(comparison)
-    return axial_limit(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
+    return real_cup_reason(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
 
 
 def _fields(screen: Screen) -> dict[str, Any]:

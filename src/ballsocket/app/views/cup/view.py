@@ -212,6 +212,8 @@ def _verdict(contact: OffAxisContact, reading: Reading) -> str:
         return _verdict_html(Verdict.UNDECIDED, "No contact: the ball is not loaded")
     bar = error_bar(contact, EDGE_DISTANCE)
     verdict = rim_verdict(contact)
+    if contact.edge_loaded and contact.joint.clearance < 0:
+        return _verdict_html(Verdict.UNDECIDED, "The contact reaches the rim, as is normal in a preloaded joint")
     if verdict is Verdict.EXCEEDED:
         return _verdict_html(verdict, "Rim contact (edge loading): the contact reaches the rim of the cup")
     apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))

@@ -12,13 +12,16 @@ import numpy
 
 from ....elasticity.finite_elements.mesh import socket_shape
 from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis import Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....elasticity.off_axis.grid import rim_grid
+from ....elasticity.off_axis.model import Sphere
+from ....elasticity.off_axis.orientations import orient
 from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
 from ....files.joint_file import JointFile
+from ....model_catalogue import OFF_AXIS, named_models
 from ....problem import Joint
 from ....problem.cup import Cup, Side
+from ....question import PressAnswer, PressQuestion, answer, complete
 from ....reports.figure_files import figure_bytes
 from ....reports.orientation_results import orientation_figure
 from ...results import RESULTS, without_name
@@ -35,7 +38,7 @@ PREPARING = "Preparing the real cup ..."
 
 def bore_of(file: JointFile) -> tuple[Joint, Cup]:
     """Return the inputs of the bore's ring matrices: joint and cup without orientation."""
-    return without_name(file.joint), replace(file.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
+    return without_name(file.joint), replace(complete(file)[0].cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
 
 
 def is_prepared(file: JointFile) -> bool:
@@ -54,16 +57,25 @@ def _are_rings_cached(joint: Joint, cup: Cup) -> bool:
 
 
 @lru_cache(maxsize=32)
-def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> OffAxisContact:
-    contact = Sphere(cup=cup).press(joint, **dict(load), **dict(aim))
-    if not isinstance(contact, OffAxisContact) or contact.status.failed:
+def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> PressAnswer:
+    file = JointFile(joint, dict(load), cup, dict(aim))
+    answered = answer(PressQuestion(file=file, models={OFF_AXIS: named_models[OFF_AXIS]}, exact=None))
+    contact: Any = answered.comparison[OFF_AXIS]
+    if contact.status.failed:
         raise ValueError("; ".join(contact.notes) or contact.status.sentence)
-    return contact
+    return answered
+
+
+def answer_in_cup(file: JointFile) -> PressAnswer:
+    """Press the load of a joint file in its cup; raise ValueError without a result."""
+    file, _ = complete(file)
+    return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
 
 
 def pressed_in_cup(file: JointFile) -> OffAxisContact:
-    """Press the load of a joint file in its cup; raise ValueError without a result."""
-    return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
+    """Return the contact of a joint file in its cup; raise ValueError without a result."""
+    contact: Any = answer_in_cup(file).comparison[OFF_AXIS]
+    return contact
 
 
 def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
@@ -97,7 +109,7 @@ def map_orientations(file: JointFile, report: Report) -> OrientationMap:
     """Press one load of the body in cups of many orientations, in a separate process."""
     if "tilt" in file.aim:
         raise ValueError("a load that is given by its tilt turns with the cup: give its direction in the body")
-    model = Sphere(cup=file.cup, **file.aim)
+    model = Sphere(cup=complete(file)[0].cup, **file.aim)
     count = len(INCLINATIONS)
 
     def heard(words: str) -> None:

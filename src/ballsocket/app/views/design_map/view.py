@@ -84,8 +84,8 @@ def _end_setting(key: str) -> Setting:
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         axis: MapAxis = getattr(screen, which)
         quantity = QUANTITIES[axis.name]
-        spec = of_parameter(axis.name, label)
-        number = spec.times * spec.meant(value, screen.reading) / quantity.written.factor
+        spec = replace(of_parameter(axis.name), label=label)
+        number = spec.meant(value, screen.reading) / quantity.written.factor
         ends = {**vars(axis), end: number}
         low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
         if not ends["low"] < ends["high"]:

@@ -19,7 +19,7 @@ from ....core.validity import OutsideDomainError, check_domain
 from ....files.joint_file import JointFile
 from ....model_catalogue import catalogue
 from ....problem import Joint
-from ....problem.dimensions import DIAMETERS, give
+from ....problem.dimensions import give
 from ....studies.design import Span, grid
 from ....studies.limits import Limit, allowed, count_verdicts, undecided_reason
 from ....studies.metadata import held_in
@@ -27,7 +27,7 @@ from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
 from ....studies.task import with_bounds
 from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
-from ...widgets.numbers import NUMBERS
+from ...widgets.numbers import of_parameter
 from ...widgets.reading import Reading
 
 _POINTS = 61
@@ -198,6 +198,4 @@ def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
 
 
 def _nearest_size(name: str, value: float) -> float:
-    single, times = (DIAMETERS[name], 2) if name in DIAMETERS else (name, 1)
-    sizes = NUMBERS[single].sizes if single in NUMBERS else ()
-    return min((times * size for size in sizes), key=lambda size: abs(size - value), default=value)
+    return min(of_parameter(name).typical.sizes, key=lambda size: abs(size - value), default=value)

@@ -12,7 +12,7 @@ from ....core.quantities import BEARING, JOINT
 from ....elasticity.finite_elements.model import MeshedContact
 from ....elasticity.finite_elements.section import Part
 from ....files.joint_file import JointFile
-from ....model_catalogue import judge, reference
+from ....model_catalogue import JUDGE, reference
 from ....reports.style import line_of
 from ...pictures import svg
 from ...pictures.chart import legend
@@ -135,7 +135,7 @@ def _coloured(bands: StressBands) -> Iterator[str]:
 
 def pressure_picture(pressures: Mapping[str, tuple[numpy.ndarray, numpy.ndarray]], reading: Reading) -> str:
     """Draw pressures (MPa) over angles (rad) by the names of their models."""
-    names = {judge.name: "finite elements", reference.name: "exact"}
+    names = {JUDGE: "finite elements", reference.name: "exact"}
     lines = {names[model]: line_of(model) for model in pressures}
     profiles = {names[model]: (*profile, True) for model, profile in pressures.items()}
     return f"{pressure_chart(profiles, lines, reading)}<p class='legend'>{legend(lines)}</p>"

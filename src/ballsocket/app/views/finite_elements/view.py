@@ -44,7 +44,8 @@ class ElementCheck(LongView):
 
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
-        return without_name(file.joint), tuple(file.load.items()), cup.arc_of_cover, cup.chamfer, cup.interface
+        load = tuple(file.load.items())
+        return without_name(file.joint), load, file.tilt, cup.arc_of_cover, cup.chamfer, cup.interface
 
     def work(self, screen: Screen) -> Work:
         return partial(run_finite_elements, screen.file)

@@ -13,7 +13,7 @@ from ....contact.describe import to_summary
 from ....core.validity import OutsideDomainError
 from ....elasticity.finite_elements.model import MeshedContact
 from ....files.joint_file import JointFile
-from ....model_catalogue import judge, reference
+from ....model_catalogue import JUDGE, named_models, reference
 from ....reports.figure_files import figure_bytes
 from ....reports.section_plots import section_figure
 from ...pressing import profile
@@ -46,7 +46,7 @@ class ElementResult:
 def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     """Press a joint in load steps by finite elements, and report progress as `Reached`."""
     start = time.perf_counter()
-    model = judge.in_cup(file.cup)
+    model = named_models[JUDGE].in_cup(file.cup, **file.aim)
     ((kind, load),) = file.load.items()
     report(Reached(share=0.05, words="making the meshes"))
     for share in _LOAD_STEPS:
@@ -58,7 +58,7 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     exact = _exact(file)
     report(Reached(share=0.85, words="drawing stresses"))
     figure = section_figure(contact, exact)
-    contacts = {judge.name: contact, reference.name: exact}
+    contacts = {JUDGE: contact, reference.name: exact}
     return ElementResult(
         file=file,
         numbers=to_summary(contact),

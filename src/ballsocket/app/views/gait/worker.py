@@ -91,7 +91,7 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
     unworn = hip.unworn
     report(Reached(share=0.7, words="distance to the rim"))
     edge = hip.edge(unworn)
-    worst, first, checks = edge.closest_approach(hip), hip.first, hip.unworn_checks
+    worst, first, checks = edge.closest_approach(hip.frame), hip.first, hip.unworn_checks
     valid = all(check.valid for check in checks)
     sizes = hip.cycle.force_magnitudes
     return GaitResult(
@@ -100,9 +100,11 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
         force=sizes,
         pressure=_course(hip, unworn.pressure.max(axis=1, initial=0.0)),
         edge=_course(hip, edge.distance),
-        load=numpy.divide(hip.forces, sizes[:, None], out=numpy.zeros_like(hip.forces), where=sizes[:, None] > 0),
+        load=numpy.divide(
+            hip.frame.forces, sizes[:, None], out=numpy.zeros_like(hip.frame.forces), where=sizes[:, None] > 0
+        ),
         frames=_frames(hip, unworn.pressure, float(unworn.pressure.max(initial=0.0))),
-        reach=hip.reach,
+        reach=hip.frame.reach,
         worst="no contact in this cycle" if worst is None else worst.location,
         valid=valid,
         checks=checks_in_use(hip, checks, edge.distance),
@@ -125,7 +127,7 @@ def checks_in_use(hip: HipSimulation, contacts: Sequence[ContactCheck], distance
         hip.joint,
         pressure=worst.pressure,
         von_mises=worst.von_mises,
-        edge=(hip.reach, exact_number(float(distances.min()))) if len(distances) else None,
+        edge=(hip.frame.reach, exact_number(float(distances.min()))) if len(distances) else None,
         trusted=all(check.valid for check in contacts),
     )
 
@@ -158,17 +160,19 @@ _SHOWN_SHARE = 95.0
 def _course(hip: HipSimulation, values: numpy.ndarray) -> numpy.ndarray:
     """Return values of the loaded instants over all instants, NaN in the others."""
     series = numpy.full(hip.cycle.n_steps, numpy.nan)
-    series[hip.loaded] = values
+    series[hip.frame.loaded] = values
     return series
 
 
 def _frames(hip: HipSimulation, fields: numpy.ndarray, highest: float) -> Frames:
     """Interpolate fields (loaded, cells) to the moving bore; NaN cells are outside, and 0."""
-    nodes = node_directions(hip.reach, RINGS, MERIDIANS).reshape(3, 1, -1)
+    nodes = node_directions(hip.frame.reach, RINGS, MERIDIANS).reshape(3, 1, -1)
     interpolation = interpolation_at(hip.grid, nodes)
     cells = numpy.zeros((hip.cycle.n_steps, RINGS + 1, MERIDIANS), dtype=numpy.uint8)
     inside = numpy.isfinite(fields)
-    for instant, field, known in zip(hip.loaded, numpy.where(inside, fields, 0.0), inside.astype(float), strict=True):
+    for instant, field, known in zip(
+        hip.frame.loaded, numpy.where(inside, fields, 0.0), inside.astype(float), strict=True
+    ):
         share = interpolation.interpolate(known[None])[0]
         values = interpolation.interpolate(field[None])[0] / numpy.where(share > 0, share, 1.0)
         scaled = numpy.where(share >= _INSIDE, relative_bytes(values, highest), 0)

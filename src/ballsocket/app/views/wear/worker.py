@@ -105,7 +105,7 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
         share = f"{100 * bands.level:g} % of the predictions for {bands.n_patients} patients"
         band = f"band: {share}, for the scatter of the wear coefficient"
-    largest = hip.loads[hip.largest_load_index[0]]
+    largest = hip.frame.loads[hip.frame.largest_load_index[0]]
     return WearResult(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),
         penetration=penetration,
@@ -116,7 +116,7 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
         band=band,
         depth=history.last.wear,
         grid=hip.grid,
-        cup=hip.placed,
+        cup=hip.frame.placed,
         load=largest / numpy.linalg.norm(largest),
         summary=history.summary(),
         notes=history.notes,
@@ -140,7 +140,7 @@ def worn_rim_rows(hip: HipSimulation, distances: numpy.ndarray, edge_loaded: num
     row = Check(
         title="reach of the contact",
         quantity=EDGE_DISTANCE,
-        demand=exact_number(hip.reach * float(hip.joint.socket_radius)),
+        demand=exact_number(hip.frame.reach * float(hip.joint.socket_radius)),
         capacity=None,
         limit="arc from pole to rim",
         source="worn to the rim, which is not edge loading: see the notes",

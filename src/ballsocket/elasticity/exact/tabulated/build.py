@@ -88,10 +88,7 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
     workers : int
         Number of processes.
 
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    Raises OSError: the file cannot be written.
     """
     path = Path(path)
     if path.is_dir():

@@ -14,9 +14,9 @@ import numpy
 
 from ....contact.coordinates import RATIO_SHIFT, angle_root
 from ....core import arrays
-from ....core.arrays import Array, exp, sqrt
+from ....core.arrays import Array, convert_like, exp, sqrt
 from ....core.arrays import log as ln
-from ....core.chebyshev import chebyshev_polynomials, contract_factors, convert_like
+from ....core.chebyshev import chebyshev_polynomials, contract_factors
 from ....core.input_files import open_input
 
 POISSON = (-0.5, 0.4993)
@@ -144,12 +144,8 @@ def load_tables(file: str = "") -> dict[str, ChebyshevTable]:
     The names are "rigid" for a rigid ball, "ball" for the change by an elastic one, and "profile" and "profile_ball"
     for the pressure profile.
 
-    Raises
-    ------
-    ValueError
-        The file holds no tables.
-    OSError
-        The file cannot be read.
+    Raises ValueError: the file holds no tables.
+    Raises OSError: the file cannot be read.
     """
     shipped = files("ballsocket") / "data" / "exact_tables.npz"
     with open_input(Path(file)) if file else shipped.open("rb") as stream:

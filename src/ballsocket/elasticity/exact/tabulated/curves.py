@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy
 
-from ....contact.coordinates import ANGLE_SCALE, LIMIT, angle_root
+from ....contact.coordinates import LIMIT, angle_root, log_angle_derivative
 from ....core import arrays
-from ....core.arrays import Array, exp, log1p, short_sine, sqrt
-from ....core.chebyshev import Pair, chebyshev_polynomials, convert_like, derivative_matrix, sum_series, traced_series
+from ....core.arrays import Array, convert_like, exp, short_sine, sqrt
+from ....core.chebyshev import Pair, chebyshev_polynomials, derivative_matrix, sum_series, traced_series
 from ....core.lazy import cached_property
 from ....problem import Joint
 from .chebyshev import (
@@ -90,12 +90,6 @@ def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple
     return tuple(
         (sum_series(curve.functions[k, ...], waves), sum_series(curve.slopes[k, ...], waves) / spacing) for k in rows
     )
-
-
-def log_angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
-    """Compute the derivative of ln ε with respect to the table coordinate 2 root - 1."""
-    near = ANGLE_SCALE * (1 + ratio)
-    return (1 + near * angle) * log1p(near * LIMIT) * root / (near * angle)
 
 
 def opening(angle: Array, share: Pair) -> Pair:

@@ -17,12 +17,11 @@ import numpy
 from ....contact.coordinates import LIMIT, angle_root, half_angle_at
 from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
-from ....core.arrays import Array, Numbers, exp, log, where
+from ....core.arrays import Array, Numbers, convert_like, exp, log, where
 from ....core.chebyshev import (
     Pair,
     chebyshev_coefficients,
     chebyshev_points,
-    convert_like,
     multiply_factors,
     series_values,
 )

@@ -16,8 +16,8 @@ from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....contact.coordinates import LIMIT
 from ....core import arrays
-from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
-from ....core.chebyshev import chebyshev_polynomials, convert_like, sum_series
+from ....core.arrays import Array, broadcast, clip, convert_like, gauss_legendre, safe_divisor, sin, sqrt, where
+from ....core.chebyshev import chebyshev_polynomials, sum_series
 from ....core.lazy import cached_property
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Status

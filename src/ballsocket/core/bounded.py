@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import inf
 from typing import Any, NamedTuple
 
-from ..core.arrays import all_true, logical_not
+from .arrays import all_true, logical_not
 
 _ESTIMATE_WIDTH = 0.06
 """Width of an error bar, relative to its value, above which a number is named as an estimate."""

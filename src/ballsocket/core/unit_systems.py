@@ -1,43 +1,24 @@
-"""Systems of units for tables, figures and sentences: mm, N and MPa, or inches and pounds."""
+"""Systems of units for tables, figures and sentences: mm, N and MPa, or inches and pounds.
+
+A sentence keeps its numbers, so that every door writes them in the units of its reader::
+
+    note = Sentence("the contact ends {} from the rim", Amount(2.7, MILLIMETRE))
+    str(note)                            # "the contact ends 2.7 mm from the rim"
+    Units.IMPERIAL.sentence(note)        # "the contact ends 0.1063 in from the rim"
+"""
 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from enum import StrEnum
-from functools import reduce
-from math import isinf, nan
+from math import isinf
 from types import MappingProxyType
 from typing import Any
 
-from ..contact.describe import UTILISATION, Column
-from ..core.display import plain_number
-from ..core.kinds import Kind, Unit
-from ..core.quantities import CONTACT, Quantity
-from ..problem import Joint, elementwise_maximum
-
-
-class PressureRatioColumn(Column):
-    """Column of the largest pressure over the allowable pressure, the larger of liner and ball."""
-
-    def values_of(self, contact: Any) -> Any:
-        """Return the ratios of a contact; NaN without an allowable pressure."""
-        materials = (contact.joint.liner, contact.joint.ball)
-        allowed = [material.allowable_pressure for material in materials if material is not None]
-        ratios = [contact.max_pressure / pressure for pressure in allowed if pressure is not None]
-        return reduce(elementwise_maximum, ratios) if ratios else nan * contact.max_pressure
-
-
-PRESSURE_RATIO = PressureRatioColumn(
-    Quantity(
-        "pressure_ratio",
-        "pmax/pa",
-        "largest over allowable pressure",
-        Kind.NUMBER,
-        "Largest pressure over the allowable pressure, the larger of liner and ball.",
-    ),
-    Unit(""),
-)
-"""Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
+from .display import plain_number
+from .kinds import PLAIN, Kind, Unit
+from .quantities import Quantity
 
 _KSI_FROM = 1e4
 """Pressure in psi from which it is written in ksi."""
@@ -138,14 +119,32 @@ class Units(StrEnum):
         return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
 
     def sentence(self, text: str) -> str:
-        """Convert every number with a unit in a sentence that is written in mm, N and MPa.
+        """Write a sentence in this system: the amounts of a `Sentence`, else every number with a unit in the text.
 
         Examples
         --------
         >>> Units.IMPERIAL.sentence("contact 2.7 mm from the rim, 1 to 3 kN")
         'contact 0.1063 in from the rim, 224.8 to 674.4 lbf'
         """
-        return text if self is Units.SI else _QUANTITY.sub(_imperial, text)
+        if isinstance(text, Sentence) and text.parts:
+            return text.template.format(*(self._part(part) for part in text.parts))
+        return str(text) if self is Units.SI else _QUANTITY.sub(_imperial, text)
+
+    def _part(self, part: Amount | str) -> str:
+        if isinstance(part, Amount):
+            return self.amount(part)
+        return self.sentence(part) if isinstance(part, Sentence) else part
+
+    def written(self, unit: Unit) -> Unit:
+        """Return the unit of this system for a metric unit with its factor."""
+        converted = self.of_text(unit.text)
+        return Unit(converted.text, unit.factor * converted.factor)
+
+    def amount(self, amount: Amount) -> str:
+        """Write an amount with its unit."""
+        unit = _legible(self.written(amount.unit), amount.value)
+        text = plain_number(amount.value * unit.factor, amount.digits)
+        return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
@@ -163,22 +162,55 @@ class Units(StrEnum):
         changed = converted.removesuffix(self.of_text(unit).text).rstrip()
         return text if converted == f"{text.rstrip('*')} {unit}" else changed + "*" * text.endswith("*")
 
-    def joint(self, joint: Joint) -> str:
+    def joint(self, joint: Any) -> str:
         """Describe a joint in one line; its name stays as it is."""
         head = f"{joint.name}: " if joint.name else ""
         return head + self.sentence(str(joint).removeprefix(head))
 
-    def columns_of(self, joint: Joint) -> tuple[Column, ...]:
-        """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
-        materials = [material for material in (joint.liner, joint.ball) if material is not None]
-        known = {name for material in materials for name in material.strengths}
-        ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
-        return (*self.columns[:-1], *(column for name, column in ratios.items() if name in known))
 
-    @property
-    def columns(self) -> tuple[Column, ...]:
-        """Columns of a contact, each with its unit."""
-        return (*(Column(quantity, self.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
+@dataclass(frozen=True)
+class Amount:
+    """Number in a sentence or a cell.
+
+    Attributes
+    ----------
+    value : float
+        Number in the internal unit.
+    unit : Unit
+        Metric unit in which it is written.
+    digits : int
+        Number of significant digits.
+    """
+
+    value: float
+    unit: Unit = PLAIN
+    digits: int = 4
+
+
+class Sentence(str):
+    """Sentence with amounts, which stands for its text in mm, N and MPa.
+
+    Parameters
+    ----------
+    template : str
+        Text with a gap `{}` for each part.
+    *parts : Amount or str
+        Numbers, names, which are written as they are, and other sentences. Without parts, the numbers with units in
+        the text are the amounts.
+    """
+
+    __slots__ = ("parts", "template")
+    template: str
+    parts: tuple[Amount | str, ...]
+
+    def __new__(cls, template: str, *parts: Amount | str) -> Sentence:
+        text = template.format(*map(Units.SI._part, parts)) if parts else template
+        sentence = super().__new__(cls, text)
+        sentence.template, sentence.parts = template, parts
+        return sentence
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Sentence, (self.template, *self.parts)
 
 
 def _legible(unit: Unit, number: float) -> Unit:

@@ -1,0 +1,109 @@
+"""Description of the bands of a cohort: quantiles at each report, shares at the rim, and influences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from math import inf, isnan
+
+import numpy
+
+from ..core.answers import Answer, Cell, Column, Row, Table
+from ..core.arrays import Numbers
+from ..core.kinds import MILLIONS, PERCENT
+from ..core.quantities import WEAR
+from ..core.unit_systems import Amount, Sentence
+from .bands import Bands
+from .variability import INFLUENCED_RESULTS
+
+_ORDERS = {"first_order": "first order", "total_order": "total order"}
+
+_ANY = "any"
+"""Wear coefficient of a row that holds for all coefficients."""
+
+
+def describe_bands(bands: Bands) -> Answer:
+    """Describe the bands of patients who differ."""
+    tables = [band_table(bands)] + ([] if bands.indices is None else [_influence_table(bands)])
+    return Answer(title=f"{_summary(bands)} lie between", tables=tables, notes=bands.notes)
+
+
+def describe_cohort(bands: Bands) -> Answer:
+    """Describe the bands of a cohort, with the notes on its nominal patient."""
+    answer = describe_bands(bands)
+    return replace(answer, notes=[*answer.notes, *bands.nominal_notes])
+
+
+def _summary(bands: Bands) -> str:
+    """Describe what a band holds: the share of the patients or of the predictions."""
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
+    if bands.shared is None:
+        among = "predictions from " if bands.subject == "predictions" else ""
+        return f"{share} of {among}{patients} {bands.noun}"
+    return (
+        f"{share} of {patients} {bands.noun} for a low, median and high wear coefficient, and {share} of the "
+        f"predictions for {_ANY} coefficient,"
+    )
+
+
+def band_table(bands: Bands) -> Table:
+    """List the band of each result at each report, and its median in data; a shared coefficient has rows of its own."""
+    per_year, shared, (low, high) = bands.variability.cycles_per_year, bands.shared, bands.ends
+    columns = [
+        Column.of(WEAR["cycles"]),
+        *([] if shared is None else [Column.of_words("coefficient")]),
+        *([] if per_year is None else [Column.of(WEAR["years"], digits=3, rank=1)]),
+        *(Column.of(WEAR[name], digits=3) for name in INFLUENCED_RESULTS),
+        Column.of_number("edge_loading", "edge loading", PERCENT, digits=3),
+    ]
+
+    def row(report: int, coefficient: str, quantile: Callable[[str, float], Numbers], edge: float | None) -> Row:
+        count, years = bands.counts[report], [] if per_year is None else [bands.counts[report] / per_year]
+        ranges = [(quantile(name, low)[report], quantile(name, high)[report]) for name in INFLUENCED_RESULTS]
+        return Row([count, *([] if shared is None else [coefficient]), *years, *ranges, edge])
+
+    rows = []
+    for report in range(len(bands.counts)):
+        if shared is not None:
+            rows += [row(report, name, partial(shared.quantile, name), None) for name in shared.values]
+        rows.append(row(report, _ANY, bands.quantile, bands.edge_loaded_fraction(report)))
+    return Table("bands", "Bands of different patients", columns, rows, [*_rim_lines(bands), _contact_line(bands)])
+
+
+def _rim_lines(bands: Bands) -> Iterator[Sentence]:
+    """Describe the shares with a contact at the rim."""
+    for report, count in enumerate(bands.counts):
+        share = Amount(bands.edge_loading(report), PERCENT, 3)
+        after = Amount(count, MILLIONS)
+        yield Sentence("contact at the rim, worn to it or edge loading: {} after {} cycles", share, after)
+
+
+def _contact_line(bands: Bands) -> str:
+    """Describe validity and utilisation of the contacts from the first cycle to the last report."""
+    low, high = (bands.utilisation_quantile(share)[-1] for share in bands.ends)
+    patients = bands.variability.coarse_simulation
+    reasons = [check.utilisation_note for check in patients.unworn_checks] or ["nothing is pressed"]
+    peak = reasons[0] if isnan(low) else f"estimated utilisation σv/σy {low:.3g} to {high:.3g}"
+    model = patients.contact_model.name
+    return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
+
+
+def _influence_table(bands: Bands) -> Table:
+    """List the first and total Sobol indices of each result with their intervals, the largest total first."""
+    indices, names = bands.indices or {}, list(bands.variability.distributions)
+    columns = [Column.of_words("result"), Column.of_words("quantity")]
+    for order, head in _ORDERS.items():
+        columns += [
+            Column.of_number(order, head, digits=2),
+            Column.of_number(f"{order}_interval", "95 %", digits=2, rank=1),
+        ]
+    rows = []
+    for number, result in enumerate(INFLUENCED_RESULTS):
+        for i in numpy.argsort(-numpy.nan_to_num(indices["total_order"][number], nan=-inf)):
+            value = {name: float(values[number, i]) for name, values in indices.items()}
+            cells: list[Cell] = [result, names[i].replace("_", " ")]
+            for order in _ORDERS:
+                cells += [value[order], (value[f"{order}_low"], value[f"{order}_high"])]
+            rows.append(Row(cells))
+    return Table("sobol", "Sobol indices: shares of the variance", columns, rows)

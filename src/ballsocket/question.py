@@ -1,0 +1,194 @@
+"""One question and its answer: a joint under one load, what is assumed, the models that solve it, and their results.
+
+The command line, the tools for assistants and the explorer ask the same question::
+
+    answered = answer(PressQuestion(file=read_joint("hip.toml")))
+    answered.comparison[answered.leading].max_pressure
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import degrees, pi
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from .comparison import Comparison, compare
+from .contact import Contact, Model
+from .files.joint_file import JointFile
+from .model_catalogue import OFF_AXIS, catalogue, named_models, reference, with_gap
+from .problem.cup import AXIAL_TILT
+from .problem.presets import long_term_note
+
+if TYPE_CHECKING:
+    from .elasticity.off_axis.model import Sphere
+    from .elasticity.off_axis.preload import PullOut
+
+DEFAULT_MODEL = "hess-forsbach"
+"""Name of the model that solves a load along the axis of the cup without a request."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressQuestion:
+    """Joint under one load, and the wanted results.
+
+    Parameters
+    ----------
+    file : JointFile
+        Joint, load, cup and direction of the load, as they are stated.
+    models : mapping of str to Model
+        Requested models by name; empty for the default.
+    sphere : Sphere
+        The model `sphere`, where it is requested or the default; by default that of the catalogue.
+    exact : Model, optional
+        Solution with which the others are compared; None without a comparison.
+    gap : str, optional
+        Name of the gap of the models that have a choice.
+    pull_out : float, optional
+        Coefficient of friction of the ball while it is pulled out of its cup; None without a pull-out force.
+    """
+
+    file: JointFile
+    models: Mapping[str, Model] = field(default_factory=dict)
+    sphere: Sphere | None = None
+    exact: Model | None = reference
+    gap: str | None = None
+    pull_out: float | None = None
+
+    @property
+    def chosen(self) -> dict[str, Model]:
+        """Models that solve the question, by name: the requested ones, or the default one."""
+        needs_sphere = self.pull_out is not None or real_cup_reason(self.file)
+        default = OFF_AXIS if needs_sphere else DEFAULT_MODEL
+        models = self.models or {default: named_models[default]}
+        return {name: (self.sphere or model) if name == OFF_AXIS else model for name, model in models.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressAnswer:
+    """Results of a question.
+
+    Attributes
+    ----------
+    file : JointFile
+        Joint, load, cup and direction that were solved, with what was assumed.
+    assumptions : tuple of str
+        Sentences on what was assumed.
+    models : tuple of str
+        Names of the requested models, or of the default one.
+    comparison : Comparison
+        Contacts of these models and of the exact solution.
+    seconds : dict of str to float
+        Time of each press in s.
+    wear_depth_to_loosen : float or None
+        Uniform wear of the bore in mm that ends a preload; None without a preload.
+    pulled : PullOut or None
+        Largest force while the ball is pulled out; None without a request.
+    """
+
+    file: JointFile
+    assumptions: tuple[str, ...]
+    models: tuple[str, ...]
+    comparison: Comparison
+    seconds: dict[str, float]
+    wear_depth_to_loosen: float | None
+    pulled: PullOut | None
+
+    @property
+    def leading(self) -> str:
+        """Name of the model whose contact gets the verdict: `sphere` where it is needed, or the first valid one."""
+        ordered = [name for name in (OFF_AXIS, reference.name, *self.models) if name in self.comparison]
+        needed = [OFF_AXIS] if OFF_AXIS in ordered and real_cup_reason(self.file) else []
+        return [*needed, *(name for name in ordered if self.comparison[name].valid), *ordered][0]
+
+
+def complete(file: JointFile) -> tuple[JointFile, dict[str, str]]:
+    """Assume what the description of a preloaded joint leaves open: rest without a load, and a cup that holds the ball.
+
+    Returns
+    -------
+    JointFile
+        The same for a joint with a clearance.
+    dict of str to str
+        A sentence on each assumption, by the name of the number.
+    """
+    if file.joint.clearance >= 0:
+        return file, {}
+    cup, load = file.cup.around_ball(file.joint.clearance), file.load or {"force": 0.0}
+    arc = f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set arc_of_cover"
+    sentences = {
+        "force": "" if file.load else "force 0 assumed, the ball is at rest in its socket; set force",
+        "arc_of_cover": "" if cup is file.cup else arc,
+        "young": long_term_note(file.joint.liner),
+    }
+    return replace(file, cup=cup, load=load), {name: sentence for name, sentence in sentences.items() if sentence}
+
+
+def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
+    """Return the reason why only the model `sphere` solves a question; empty where models of a full sphere do.
+
+    The contact of such a model tells if the rim is near: the models hold up to one liner thickness from it.
+    """
+    if file.joint.clearance < 0:
+        return "the ball is preloaded"
+    if file.tilt > AXIAL_TILT:
+        return f"the load is tilted {degrees(file.tilt):.3g}° against the axis of the cup"
+    radius = float(file.joint.socket_radius)
+    near_rim = (
+        contact is not None
+        and not contact.status.failed
+        and file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius)
+    )
+    return "the contact ends near the rim of the cup" if near_rim else ""
+
+
+def every_model(file: JointFile) -> dict[str, Model]:
+    """Return the catalogue, and first the model `sphere` if no other one solves the question."""
+    return {**({OFF_AXIS: named_models[OFF_AXIS]} if real_cup_reason(file) else {}), **catalogue}
+
+
+def answer(question: PressQuestion) -> PressAnswer:
+    """Press a joint by the requested models and by the exact solution.
+
+    Raises
+    ------
+    ValueError
+        None of the requested models has a result for such a joint; no load; a pull-out force without the model
+        `sphere`, or without an arc of cover.
+    """
+    file, assumptions = complete(question.file)
+    models = question.chosen
+    if question.pull_out is not None and OFF_AXIS not in models:
+        raise ValueError(f"a pull-out force is solved by the model {OFF_AXIS}: add it to the models")
+    if question.pull_out is not None and "arc_of_cover" in assumptions:
+        raise ValueError("a pull-out force needs the arc of cover: set arc_of_cover")
+    comparison, seconds = Comparison(file.joint, {}, {}), {}
+    compared = {} if question.exact is None else {question.exact.name: question.exact}
+    for name, model in {**models, **{name: model for name, model in compared.items() if name not in models}}.items():
+        chosen, start = with_gap(model, question.gap if hasattr(model, "gap") else None), perf_counter()
+        pressed = compare(file.joint, models={name: chosen}, cup=file.cup, **file.aim, **file.load)
+        comparison.contacts.update(pressed.contacts)
+        comparison.missing.update(pressed.missing)
+        seconds[name] = perf_counter() - start
+    if not any(name in comparison for name in models):
+        raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in models))
+    sphere: Any = comparison[OFF_AXIS].model if OFF_AXIS in comparison else None
+    wear_depth = pulled = None
+    if question.pull_out is not None:
+        from .elasticity.off_axis.preload import pull_out
+
+        pulled = pull_out(sphere, file.joint, question.pull_out)
+    if sphere is not None and file.joint.clearance < 0 and file.cup.arc_of_cover > pi:
+        from .elasticity.off_axis.preload import Preload
+
+        wear_depth = Preload(model=sphere, joint=file.joint).wear_depth_to_loosen()
+    return PressAnswer(
+        file=file,
+        assumptions=tuple(assumptions.values()),
+        models=tuple(models),
+        comparison=comparison,
+        seconds=seconds,
+        wear_depth_to_loosen=wear_depth,
+        pulled=pulled,
+    )
