@@ -1,5 +1,6 @@
 """Lengths that a joint gives stay while others vary, in every kind of study."""
 
+import csv
 import json
 from dataclasses import replace
 
@@ -133,8 +134,7 @@ def test_a_study_takes_the_load_and_the_tilt_of_the_joint_file(tmp_path):
     row = next(csv.DictReader((tmp_path / "study.csv").open(encoding="utf-8")))
     expected = bs.HessForsbach().press(UNBACKED, force=3000.0)
     assert float(row["max_pressure_MPa"]) == pytest.approx(expected.max_pressure, rel=1e-9)
-    distance = bs.Cup().tilted(np.radians(50.0)).edge_distance(14.1, expected.half_angle)
-    assert 0 < distance < UNBACKED.liner_thickness  # the full sphere of this model ends at the rim
+    assert np.radians(40.0) < expected.half_angle  # the rim cuts the contact, a full sphere in this model
     assert "near the rim" in row["why_not_valid"]
 
 
