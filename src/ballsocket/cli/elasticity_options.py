@@ -121,16 +121,12 @@ class RingTable(Table, frozen=True, kw_only=True):
         if self.ring_width is not None:
             raise ValueError(f"--ring-width is for contact on the sphere: add --model {OFF_AXIS}, or a --tilt")
 
-    def stated_model(self) -> Sphere | None:
-        """Return the model `sphere` with the ring width of the options; None without one."""
-        return None if self.ring_width is None else self.model()
-
-    def model(self) -> Sphere:
-        """Return the model `sphere` with the ring width of the options."""
+    def model(self) -> Sphere | None:
+        """Return the model `sphere` with the ring width of the options; None for the model of the catalogue."""
+        if self.ring_width is None:
+            return None
         from ..elasticity.off_axis.model import Sphere
 
-        if self.ring_width is None:
-            return Sphere()
         with as_given({"ring_width": self.ring_width.written}):
             return Sphere(ring_width=float(self.ring_width))
 

@@ -142,7 +142,7 @@ def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: 
     question = PressQuestion(
         file=file,
         models={model.name: model for model in map(requested_model, names or ())},
-        sphere=rings.stated_model(),
+        sphere=rings.model(),
     )
     contacts = []
     for chosen in question.chosen.values():

@@ -173,8 +173,7 @@ def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     A text in the annotation of a group, `mesh: Annotated[MeshTable, "fem"]`, is put before the help of its options.
     """
     parameters = signature(command, eval_str=True).parameters.values()
-    types = {parameter.name: _group_type(parameter) for parameter in parameters}
-    groups: dict[str, Any] = {name: entry for name, entry in types.items() if _is_group(entry[0])}
+    groups: dict[str, Any] = {parameter.name: group for parameter in parameters if (group := _group_of(parameter))}
 
     def expanded_command(**options: Any) -> None:
         built = {name: _built(group, annotation, options) for name, (group, annotation) in groups.items()}
@@ -190,15 +189,13 @@ def expand_groups(command: Callable[..., None]) -> Callable[..., None]:
     return expanded_command
 
 
-def _group_type(parameter: Parameter) -> tuple[Any, Any]:
-    """Return the type of a parameter, and the rest of its annotation."""
-    if get_origin(parameter.annotation) is not Annotated:
-        return parameter.annotation, ""
-    return get_args(parameter.annotation)
-
-
-def _is_group(kind: Any) -> bool:
-    return isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, Table))
+def _group_of(parameter: Parameter) -> tuple[Any, Any] | None:
+    """Return the type of a group of options and the rest of its annotation; None for a single option."""
+    kind, annotation = parameter.annotation, ""
+    if get_origin(kind) is Annotated:
+        kind, annotation = get_args(kind)
+    is_group = isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, Table))
+    return (kind, annotation) if is_group else None
 
 
 def _built(group: Any, annotation: Any, options: dict[str, Any]) -> Any:

@@ -16,6 +16,7 @@ from ..core.kinds import Kind
 from ..core.quantities import CUP
 from ..core.unit_systems import Units
 from ..elasticity.finite_elements.progress import progress_to
+from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.inputs import LOAD, PARTS, RIM
@@ -150,7 +151,7 @@ def orient(
     file = joint_options.read(joint)
     if "tilt" in file.aim:
         raise ValueError("the load of the file has a tilt from the cup's axis; give its --direction in the body")
-    model = replace(with_gap(rings.model(), orientation.gap), cup=file.cup).with_direction(**file.aim)
+    model = replace(with_gap(rings.model() or Sphere(), orientation.gap), cup=file.cup).with_direction(**file.aim)
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))

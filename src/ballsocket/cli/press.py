@@ -230,7 +230,7 @@ def press(
         question = PressQuestion(
             file=file,
             models=model_options.models(file, mesh, meshes or 2),
-            sphere=rings.stated_model(),
+            sphere=rings.model(),
             gap=model_options.gap,
             pull_out=(friction_options.friction or 0.0) if friction_options.pull_out else None,
         )

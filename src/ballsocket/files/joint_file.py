@@ -1,6 +1,7 @@
-"""Joint files: TOML with units that describes a joint, its cup and its load; joints of files of other kinds."""
+"""Joint files: TOML with units that describes a joint, its cup and its load; joints of files of other kinds.
 
-from __future__ import annotations
+Annotations are objects here, not text, which msgspec would compile at each start.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -416,7 +417,7 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
     if described:
         name = shown(tables.joint)
         raise ValueError(f"joint = {name} is a whole joint: [{described[0]}] belongs to a table [joint]")
-    return named_joint(tables.joint, folder)
+    return named_joint(check_text("joint", tables.joint), folder)
 
 
 def named_joint(name: str, folder: Path = Path()) -> JointFile:
@@ -427,7 +428,7 @@ def named_joint(name: str, folder: Path = Path()) -> JointFile:
     ValueError
         No such file or preset.
     """
-    if not check_text("joint", name):
+    if not name:
         raise ValueError("the joint's name is empty")
     path = resolve_input(folder / name)
     if path.exists() and not path.is_dir():

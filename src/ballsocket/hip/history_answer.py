@@ -67,12 +67,12 @@ def _wear_lines(history: History) -> Iterator[Sentence]:
         Amount(history.radiographic_penetration(last), MILLIMETRES),
         after,
     )
-    for stage, nearest in {"new": history.worst, "at the end": last.edge.closest_approach(use.frame)}.items():
+    for stage, nearest in {"unworn": history.worst, "at the end": last.edge.closest_approach(use.frame)}.items():
         if nearest is not None and nearest.distance > 0:
             distance = Amount(nearest.distance, MILLIMETRES)
-            yield Sentence("{} the contact comes within {} of the rim at {}", stage, distance, nearest.location)
+            yield Sentence("{}, the contact comes within {} of the rim at {}", stage, distance, nearest.location)
         elif nearest is not None:
-            yield Sentence("{} the contact reaches the rim ({}) at {}", stage, nearest.kind, nearest.location)
+            yield Sentence("{}, the contact reaches the rim ({}) at {}", stage, nearest.kind, nearest.location)
     yield Sentence(
         "estimated numerical error {} of the volume and {} of the depth, {} blocks of cycles",
         Amount(error.volume, PERCENT, 2),

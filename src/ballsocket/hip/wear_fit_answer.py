@@ -33,10 +33,10 @@ def _coefficients(fit: WearFit) -> Table:
 
 
 def _readings(fit: WearFit) -> Table:
-    columns = [Column.of_words("rate"), Column.of_number("coefficient", unit=Unit(fit.unit))]
+    columns = [Column.of_words("rate", "the same as another rate")]
+    columns.append(Column.of_number("coefficient", unit=Unit(fit.unit)))
     rows = [Row([description, coefficient]) for description, coefficient in fit.readings.items()]
-    lines = ["the same number as a rate of another kind"]
-    return Table("readings", "Rates of other kinds", columns, rows, lines)
+    return Table("readings", "Rates of other kinds", columns, rows)
 
 
 def _measured(fit: WearFit) -> Table:

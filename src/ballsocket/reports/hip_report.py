@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,9 @@ def hip_report(
     answer = describe_history(history)
     sections = answer_sections(answer, units)
     if bands is not None:
-        sections |= answer_sections(describe_bands(bands), units)
+        described = describe_bands(bands)
+        sections |= answer_sections(described, units)
+        answer = replace(answer, notes=[*answer.notes, f"bands: {described.title} the values", *described.notes])
     if len(history.use.frame.loaded):
         for section, (title, figure, caption) in _figures(history, bands).items():
             sections[section] = (title, picture(figure_bytes(in_units(figure, units)), title, caption))
