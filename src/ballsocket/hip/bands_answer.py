@@ -91,7 +91,6 @@ def _contact_line(bands: Bands) -> str:
 def _influence_table(bands: Bands) -> Table:
     """List the first and total Sobol indices of each result with their intervals, the largest total first."""
     indices, names = bands.indices or {}, list(bands.variability.distributions)
-    known = indices.items()
     entries = [
         IndexEntry(
             result, [names[i].replace("_", " ")], {name: float(index[number, i]) for name, index in indices.items()}
