@@ -31,6 +31,7 @@ press /proc/self/mem => /proc/self/mem
 curve {hip} --points x => --points must be a whole number, got 'x'
 fmu {hip} --out a.fmu --fmi 2.5 => --fmi must be a whole number, got '2.5'
 fmu {hip} --out a.fmu --restitution 0.5 --impact-speed x => impact_speed = 'x' is not a speed, such as '0.1 m/s'
+map {hip} --limit 'max_pressure<=12 N' => max_pressure = '12 N' is not a pressure, stress or modulus, such as '12 MPa'
 press {hip} --force -3 => force = '-3' is not allowed: a force (N) is 0 or more and finite
 press {hip} --force 1 --indentation 1 => one load is needed, got force, indentation
 press {numbers} --clearance=-100um => clearance = '-100um' is not allowed: a radial clearance (mm) is

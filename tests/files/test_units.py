@@ -22,6 +22,7 @@ def test_a_coefficient_is_not_evaluated(units, read):
         ("mm^3/(N m)", {"millimeter": 3, "newton": -1, "meter": -1}),
         ("mm³/(N·m)", {"millimeter": 3, "newton": -1, "meter": -1}),
         ("mm3 / (N * m)", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("mPa.s", {"millipascal": 1, "second": 1}),
         ("N/mm m", {"newton": 1, "millimeter": -1, "meter": 1}),
         ("mm**-2", {"millimeter": -2}),
         ("m/m", {}),

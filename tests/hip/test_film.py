@@ -242,7 +242,7 @@ def test_json_and_notes_state_the_limit_and_the_excluded_share():
 
 def test_a_file_has_the_limit_with_its_lubricant(tmp_path):
     limit = ("[wear]", "[wear]\nfilm_limit = 1.5")
-    file = write_edited_file(tmp_path, *SHORT, limit, text=f"{TEXT}\n[film]\nviscosity = 1e-3\n")
+    file = write_edited_file(tmp_path, *SHORT, limit, text=f"{TEXT}\n[film]\nviscosity = '1 mPa s'\n")
     assert read_hip(file).use.film_limit == FilmLimit(ratio=1.5, lubricant=Lubricant(viscosity=1e-3))
 
 

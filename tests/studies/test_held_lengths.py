@@ -1,5 +1,6 @@
 """Lengths that a joint gives stay while others vary, in every kind of study."""
 
+import csv
 import json
 from dataclasses import replace
 
@@ -47,7 +48,7 @@ def test_heads_of_one_cup_share_its_outside():
     assert HEADS[expected.argmin()] == 32.0
     assert (found.outer_diameter.item(), found.clearance.item()) == (52.0, 0.1)
     np.testing.assert_allclose(joint_dimension(found, "liner_thickness"), [joint.liner_thickness for joint in BY_HAND])
-    assert json.loads(found.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0}
+    assert json.loads(found.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0, "shell_thickness": 4.0}
 
 
 def test_the_best_head_and_its_scatter_hold_the_outside():
@@ -60,7 +61,22 @@ def test_the_best_head_and_its_scatter_hold_the_outside():
     thicker, thinner = (bs.HessForsbach().press(CUP.replace(head_diameter=d), force=3e3) for d in (27.9, 28.1))
     slope = np.log(thinner.max_pressure / thicker.max_pressure) / np.log(28.1 / 27.9)
     assert spread.elasticity.sel(quantity="max_pressure").item() == pytest.approx(slope, rel=1e-3)
-    assert json.loads(spread.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0}
+    assert json.loads(spread.attrs["held"]) == {"clearance": 0.1, "outer_diameter": 52.0, "shell_thickness": 4.0}
+
+
+def test_a_thicker_shell_takes_from_the_liner_of_one_outside():
+    found = bs.study(bs.Exact(), CUP, shell_thickness=[2.0, 4.0, 5.0], force=3000.0)
+    shells = [(bs.Layer(thickness=thickness, material=bs.TITANIUM),) for thickness in (2.0, 4.0, 5.0)]
+    by_hand = [
+        bs.Joint(
+            ball_radius=14.0, clearance=0.1, liner_thickness=11.9 - shell.thickness, liner=bs.UHMWPE, backing=(shell,)
+        )
+        for (shell,) in shells
+    ]
+    np.testing.assert_allclose(found.max_pressure, pressures(bs.Exact(), by_hand), rtol=1e-9)
+    np.testing.assert_allclose(joint_dimension(found, "liner_thickness"), [9.9, 7.9, 6.9])
+    with pytest.raises(ValueError, match="the joint has no shell"):
+        bs.study(bs.Hertz(), bs.joints["hip-28"], shell_thickness=[2.0, 4.0], force=3000.0)
 
 
 def test_a_varied_wall_needs_the_length_that_stays():
@@ -88,7 +104,7 @@ def test_files_keep_what_they_give_through_the_shell_and_the_explorer(tmp_path):
         'joint = "cup.toml"\nmodel = "exact"\n[axes]\nforce = "3 kN"\nhead_diameter = ["28 mm", "40 mm"]'
     )
     printed = run("study", "heads.toml", f"--out={out}", folder=tmp_path).stdout
-    assert "held: radial clearance 0.1 mm, outer diameter 52 mm" in printed
+    assert "held: radial clearance 0.1 mm, outer diameter 52 mm, shell thickness 4 mm" in printed
     rows = np.genfromtxt(out, delimiter=",", names=True)
     np.testing.assert_allclose(rows["outer_diameter_mm"], 52.0)
     np.testing.assert_allclose(rows["liner_thickness_mm"], [7.9, 1.9])  # which follows
@@ -101,9 +117,38 @@ def test_files_keep_what_they_give_through_the_shell_and_the_explorer(tmp_path):
 def test_a_study_of_a_preloaded_joint_holds_its_interference():
     fitted = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
     model = bs.Sphere(cup=bs.Cup(arc_of_cover=np.radians(240.0)), ring_width=np.radians(6.0))
-    pressures = bs.study(model, fitted, quantities=["max_pressure"], liner_thickness=[2.0, 3.0], force=0.0)
-    alone = [model.press(fitted.replace(liner_thickness=value), force=0.0).max_pressure for value in (2.0, 3.0)]
-    np.testing.assert_allclose(pressures.max_pressure.values.ravel(), alone, rtol=1e-9)
+    for name, values in (("liner_thickness", [2.0, 3.0]), ("interference", [0.02, 0.03])):
+        found = bs.study(model, fitted, quantities=["max_pressure"], force=0.0, **{name: values})
+        alone = [model.press(fitted.replace(**{name: value}), force=0.0).max_pressure for value in values]
+        np.testing.assert_allclose(found.max_pressure.values.ravel(), alone, rtol=1e-9)
+
+
+TILTED = f"{FILE[: FILE.index('[shell]')]}[load]\nforce = '3 kN'\ntilt = '50 deg'"
+UNBACKED = bs.Joint(head_diameter=28.0, clearance=0.1, outer_diameter=52.0, liner=bs.UHMWPE)
+
+
+def test_a_study_takes_the_load_and_the_tilt_of_the_joint_file(tmp_path):
+    (tmp_path / "cup.toml").write_text(TILTED, encoding="utf-8")
+    (tmp_path / "study.toml").write_text("joint = 'cup.toml'\n[axes]\nclearance = [0.1]", encoding="utf-8")
+    run("study", "study.toml", "--out=study.csv", folder=tmp_path)
+    row = next(csv.DictReader((tmp_path / "study.csv").open(encoding="utf-8")))
+    expected = bs.HessForsbach().press(UNBACKED, force=3000.0)
+    assert float(row["max_pressure_MPa"]) == pytest.approx(expected.max_pressure, rel=1e-9)
+    assert np.radians(40.0) < expected.half_angle  # the rim cuts the contact, a full sphere in this model
+    assert "near the rim" in row["why_not_valid"]
+
+
+@pytest.mark.long
+def test_maps_off_the_axis_press_along_the_direction_of_the_joint_file(tmp_path):
+    (tmp_path / "cup.toml").write_text(TILTED, encoding="utf-8")
+    ranges = ("--x=clearance=0.2..0.3", "--y=force=1..3 kN", "--points=2", "--limit=edge_distance>=1 mm", "--json")
+    mapped = json.loads(run("map", "cup.toml", "--model=sphere", *ranges, folder=tmp_path).stdout)
+    contacts = bs.Sphere().press(
+        UNBACKED.replace(clearance=np.array([[0.2], [0.3]]), head_diameter=28.0),
+        force=np.array([1e3, 3e3]),
+        tilt=np.radians(50.0),
+    )
+    assert mapped["verdicts"]["kept"] == (contacts.edge_distance > 1.0).sum() == 2
 
 
 def test_a_shell_that_follows_from_the_outside_leaves_the_wall_open():

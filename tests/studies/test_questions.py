@@ -100,7 +100,7 @@ def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
 def test_only_the_whole_error_bar_keeps_a_limit():
     """The pressure of the springs is known to 15 %, and so is their stress at least."""
     springs, limit = bs.HessForsbach(), Limit(name="max_pressure", high=15.0)
-    names = ["utilisation", *limited_quantities([limit])]
+    names = ["utilisation", *limited_quantities([limit], springs)]
     found = bs.study(springs, HIP, ball_radius=np.linspace(10.0, 20.0, 21), force=3000.0, quantities=names)
     codes = np.select([1.15 * found.max_pressure <= 15.0, 0.85 * found.max_pressure > 15.0], [0, 2], 1)
     assert (verdicts(found, [limit]).values.tolist(), set(codes)) == (codes.tolist(), {0, 1, 2})

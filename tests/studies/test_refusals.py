@@ -54,6 +54,7 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: press(outer_radius=20.0, force=1.0), "add the one that stays, ball_radius = .* or liner_thickness = "),
         (lambda: press(head_diameter=[30.0], ball_radius=[15.0], force=1.0), "head_diameter.* ball_radius|ball_radius"),
         (lambda: press(clearance=[], force=1.0), "clearance has no values"),
+        (lambda: press(head_diameter=[28.0, 32.0, 28.0], force=1.0), "head_diameter has 28 mm twice"),
         (lambda: press(clearance=[0.1, np.nan], force=1.0), r"clearance\[1\] = nan is not allowed"),
         (lambda: press(force=Span(-1.0, 5.0, 10**6)), r"force\[0\] = -1 is not allowed: a force .N. is 0 or more"),
         (lambda: press(force=["1 kN"]), "force must be a row of numbers"),

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from pyarrow import parquet
 
 import ballsocket as bs
+from ballsocket.contact.verdict import Verdict, assess_strength
 from ballsocket.core.executors import Processes, Serial
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
@@ -94,14 +95,22 @@ def test_a_material_keeps_its_strength_while_its_elastic_constants_vary():
             expected = bs.Exact().press(hip.replace(liner=liner), force=3000.0).utilisation
             got = found.utilisation.sel(liner_young=young, liner_poisson=poisson).item()
             assert got == pytest.approx(expected, rel=1e-9)
-    unknown = bs.study(bs.Hertz(), hip, quantities=["utilisation"], force=1.0, liner=[bs.UHMWPE, bs.ALUMINA])
-    assert "utilisation is that of the ball alone" in study_summary(unknown)["notes"][-1]
-    rigid = bs.study(bs.Hertz(), replace(hip, ball=None), quantities=["utilisation"], force=1.0, liner=bs.ALUMINA)
-    assert np.isnan(rigid.utilisation.item())
-    assert (
-        study_summary(rigid)["notes"][-1]
-        == "utilisation: strength not checked: the liner has no yield stress, give yield_stress in its table"
-    )
+
+
+@pytest.mark.parametrize("ball", [bs.COCR, None])
+def test_a_material_without_a_yield_stress_leaves_the_utilisation_of_the_others(ball, tmp_path):
+    hip, liners = replace(bs.joints["hip-28"], ball=ball), [bs.UHMWPE, bs.ALUMINA, bs.POM]
+    found = bs.study(bs.Exact(), hip, quantities=["utilisation"], force=3000.0, liner=liners)
+    contacts = [bs.Exact().press(hip.replace(liner=liner), force=3000.0) for liner in liners]
+    np.testing.assert_allclose(found.utilisation, [float(contact.utilisation) for contact in contacts], rtol=1e-9)
+    expected = [assess_strength(contact).verdict for contact in contacts]
+    assert expected == [Verdict.KEPT, Verdict.UNDECIDED, Verdict.KEPT]
+    assert found.verdict.values.tolist() == [0, -1 if ball is None else 1, 0]
+    reason = study_summary(found)["notes"][-1].removeprefix("utilisation: ")
+    assert reason.startswith("strength not checked: the liner has no yield stress, give yield_stress in its table")
+    export(found, tmp_path / "study.csv")
+    reasons = [row["why_no_utilisation"] for row in rows_of(tmp_path / "study.csv")]
+    assert reasons == ["", reason if ball is None else "", ""]
 
 
 def test_each_point_that_is_not_valid_has_its_reason(tmp_path):

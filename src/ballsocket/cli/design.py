@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from math import pi
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +18,6 @@ from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
-from ..problem.cup import Cup
 from ..reports import study_plots
 from ..reports.terminal import print_answer
 from ..studies.axes import Span
@@ -105,13 +105,13 @@ def design_map(
     output.check()
     _check_points(points)
     file = joint_options.read(joint)
-    limits = _limits(limit, file.cup)
+    limits = _limits(limit, file)
     ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     stated = joint_options.stated(file, ends)
     sizes = {name: [value] for name, value in stated.items()}
     load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
-    result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits))
+    result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
     output.print(lambda: map_summary(result, limits), lambda: print_answer(describe_map(result, limits), output.units))
     output.draw(lambda: study_plots.design_map(result, limits, units=output.units))
 
@@ -145,7 +145,7 @@ def optimise(
     output.check()
     _check_points(points)
     file, goals = joint_options.read(joint), minimise or ["max_pressure"]
-    limits = _limits(limit, file.cup)
+    limits = _limits(limit, file)
     lists = [parse_choices(phrase) for phrase in vary]
     choices = _unique(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
@@ -160,7 +160,7 @@ def optimise(
         count = points or _default_points(model)
         axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
         design = grid(**axes, **fixed, **load)
-        return study(model, joint, design, quantities=_quantities(goals, limits))
+        return study(model, joint, design, quantities=_quantities(goals, limits, model))
 
     if len(goals) == 2:
         result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
@@ -292,8 +292,9 @@ def _default_points(model: Model) -> int:
     return 41 if model.seconds_a_press < 1e-3 else 21
 
 
-def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
-    """Parse limits from text; distances from the edge are those of the cup."""
+def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
+    """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
+    cup = file.cup.tilted(min(file.tilt, pi / 2))
     return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
 
 
@@ -313,6 +314,6 @@ def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     return values
 
 
-def _quantities(goals: Iterable[str], limits: Iterable[Limit]) -> list[str]:
+def _quantities(goals: Iterable[str], limits: Iterable[Limit], model: Model) -> list[str]:
     """Return the results to compute: the default ones, the goals and the limited ones."""
-    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited_quantities(limits))))
+    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited_quantities(limits, model))))

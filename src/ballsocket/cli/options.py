@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
-from ..core.quantities import JOINT as LENGTHS
 from ..core.quantities import LOADS
 from ..core.unit_systems import Units
 from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
@@ -107,7 +106,7 @@ class JointOptions:
     def stated(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
         """Return the lengths in mm that the options state beside those that vary, for a study to hold."""
         lengths = self.tables.get("joint", {})
-        return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths) if name in LENGTHS}
+        return {name: float(getattr(file.joint, name)) for name in fit_beside(varied, lengths)}
 
     @property
     def orients(self) -> bool:

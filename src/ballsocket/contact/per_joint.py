@@ -214,8 +214,11 @@ class SolvedContact(Contact):
 
     @cached_property
     def error(self) -> dict[str, Array]:
-        """Estimated relative errors, one array for each quantity name."""
-        return {name: self._match_load(error) for name, error in self.laws.error.items()}
+        """Estimated relative errors, one array for each quantity name; that of a solved stress is measured."""
+        errors = {name: self._match_load(error) for name, error in self.laws.error.items()}
+        if self.stress_error is not None:
+            errors["von_mises"] = (1 + self.stress_error) * (1 + errors["max_pressure"]) - 1
+        return errors
 
     @property
     def stated_error(self) -> dict[str, Array]:

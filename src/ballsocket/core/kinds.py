@@ -64,6 +64,7 @@ class Kind(StrEnum):
     VOLUME = "volume"
     CYCLES = "number of cycles"
     TIME = "time"
+    DURATION = "duration"
 
     @property
     def unit(self) -> str:
@@ -94,7 +95,7 @@ class Kind(StrEnum):
 _KINDS = {
     Kind.LENGTH: ("mm", "a length, such as '16 mm'"),
     Kind.FORCE: ("N", "a force, such as '3 kN'"),
-    Kind.MODULUS: ("MPa", "a modulus, such as '1 GPa'"),
+    Kind.MODULUS: ("MPa", "a pressure, stress or modulus, such as '12 MPa'"),
     Kind.ANGLE: ("rad", "an angle, such as '40 deg'"),
     Kind.NUMBER: ("1", "a number, such as 0.4"),
     Kind.AREA: ("mm2", "an area, such as '8 cm^2'"),
@@ -111,6 +112,7 @@ _KINDS = {
     Kind.VOLUME: ("mm3", "a volume, such as '80 mm^3'"),
     Kind.CYCLES: ("1", "a number of cycles, such as 5e6"),
     Kind.TIME: ("years", "a time in years, such as 5"),
+    Kind.DURATION: ("s", "a time, such as '1.1 s'"),
     Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }
 _WRITTEN = {

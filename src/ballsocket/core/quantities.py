@@ -269,6 +269,13 @@ FIT = _make_quantity_table(
 )
 """Alternative to the clearance for a joint that is preloaded without a load."""
 
+SHELL = _make_quantity_table(
+    Quantity("shell_thickness", "Ls", "shell thickness", Kind.LENGTH,
+             "Thickness of the layer of finite thickness right behind the liner.",
+             allows=_is_positive, allowed="the thickness of a shell (mm) is above 0 and finite"),
+)
+"""Dimension of a shell behind the liner."""
+
 MATERIAL = _make_quantity_table(
     Quantity("young", "E", "Young's modulus", Kind.MODULUS, "Stress over strain of a bar in tension.",
              allows=_is_positive, allowed="Young's modulus (MPa) is above 0 and finite"),
@@ -391,6 +398,7 @@ QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
         **BEARING,
         **JOINT,
         **FIT,
+        **SHELL,
         **MATERIAL,
         **STRESS_LIMITS,
         **PARTS,

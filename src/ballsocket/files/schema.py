@@ -235,6 +235,12 @@ class RotationRate(QuantityValue):
     kind = Kind.ROTATION_RATE
 
 
+class Duration(QuantityValue):
+    """Time in s."""
+
+    kind = Kind.DURATION
+
+
 class Speed(QuantityValue):
     """Speed in mm/s."""
 

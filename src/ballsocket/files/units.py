@@ -29,7 +29,7 @@ _TOKEN = re.compile(
     r"""(?P<blank>\s+)
     | (?P<name>[A-Za-z\u00b5\u03bc\u00b0]+)
       (?:(?P<digit>[2-9\u00b2\u00b3](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?(?:[1-9]|0\.5))(?!\d))?
-    | (?P<sign>[*/()\u00b7\u00d7])""",
+    | (?P<sign>[*/()\u00b7\u00d7\u22c5.])""",
     re.ASCII | re.VERBOSE,
 )
 _SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
@@ -209,7 +209,7 @@ def _product(tokens: list[re.Match[str]]) -> dict[str, float]:
         if following == ")":
             return units
         sign = -1 if following == "/" else 1
-        if following in ("*", "/", "·", "×"):
+        if following in ("*", "/", "·", "×", "⋅", "."):
             tokens.pop()
 
 

@@ -13,6 +13,7 @@ from ..files.joint_file import CupTable, JointTables, ReportDetails
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
+    Duration,
     Force,
     Length,
     Parsed,
@@ -22,6 +23,7 @@ from ..files.schema import (
     Text,
     Texts,
     Value,
+    Viscosity,
     WholeNumber,
     Word,
     meaning,
@@ -260,13 +262,13 @@ class CreepTable(Table, frozen=True, kw_only=True):
 
     law: Annotated[CreepLawName | None, meaning("creep law")] = None
     confinement: Annotated[Confinement | None, meaning("confinement of the liner; unconfined by default")] = None
-    seconds_per_cycle: Annotated[PlainNumber | None, meaning("time in s that a cycle stands for")] = None
+    seconds_per_cycle: Annotated[Duration | None, meaning("time that a cycle stands for")] = None
 
 
 class FilmTable(Table, frozen=True, kw_only=True):
     """Fluid film and friction; without this table no film is computed."""
 
-    viscosity: Annotated[PlainNumber | None, meaning("dynamic viscosity in Pa s")] = None
+    viscosity: Annotated[Viscosity | None, meaning("dynamic viscosity")] = None
     ball_roughness: Annotated[Length | None, meaning("roughness Ra of the ball")] = None
     cup_roughness: Annotated[Length | None, meaning("roughness Ra of the cup")] = None
     friction: Annotated[PlainNumber | None, meaning("coefficient of friction")] = None

@@ -145,16 +145,27 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
         _check_sufficient_lengths(numbers)
     held = held_lengths(numbers, given)
     stored = derive_lengths({**held, **numbers}, shell)
-    for name in ("outer_radius", "outer_diameter"):
-        if name in numbers or name in held:
-            allowed = "it must leave a liner between socket and backing"
-            require(name, {**held, **numbers}[name], stored["liner_thickness"] > 0, allowed)
+    outer = next((name for name in (*numbers, *held) if canonical(name) == "outer_radius"), None)
+    if outer is not None:
+        _check_liner_fits(outer, {**held, **numbers}, stored["liner_thickness"], tuple(numbers))
     if "interference" in numbers:
         good = numbers["interference"] <= 0.1 * stored["ball_radius"]
         require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
     unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
     checked = {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
     return {**checked, "given": (*held, *numbers)}
+
+
+def _check_liner_fits(outer: str, lengths: Mapping[str, Array], thickness: Array, changed: Sequence[str]) -> None:
+    """Check that the outer dimension leaves a liner; the message has the new length, with the room that there is."""
+    inner = next((name for name in changed if canonical(name) in _RADIAL_LENGTHS), outer)
+    name, other = (outer, inner) if outer in changed else (inner, outer)
+    allowed = "it must leave a liner between socket and backing"
+    if name != other and is_plain_number(lengths[other]) and is_plain_number(thickness):
+        factor = (2 if name in DIAMETERS else 1) * (1 if name == outer else -1)
+        limit = lengths[name] - factor * thickness
+        allowed += f" with {other} = {lengths[other]:g} mm: {'above' if name == outer else 'below'} {limit:.6g} mm"
+    require(name, lengths[name], thickness > 0, allowed)
 
 
 def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str, Array]:
@@ -166,7 +177,7 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     Raises ValueError: several choices; the message has each of them.
     """
     changed_names = tuple(changed)
-    new = {canonical(name) for name in changed_names}
+    new = {canonical(name) for name in changed_names if name in LENGTHS}
     old = {canonical(name): name for name in given}
     choices = [basis for basis in _BASES if new <= basis <= {*new, *old}]
     if len(choices) > 1:

@@ -15,7 +15,7 @@ from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
 from ..core.quantities import JOINT
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, check_given, lost_lengths, resolve_lengths
-from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
+from .material import ByValue, Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
 
 class Support(Choice):
@@ -28,8 +28,8 @@ class Support(Choice):
     FREE = "free"
 
 
-@dataclass(frozen=True, kw_only=True, init=False, repr=False)
-class Joint(OneLine, Dimensions):
+@dataclass(frozen=True, kw_only=True, init=False, repr=False, eq=False)
+class Joint(OneLine, ByValue, Dimensions):
     """Ball in a socket of nearly equal radius, lined with an elastic layer.
 
     The support of the liner is rigid unless `backing` or `support` define it. The validity of a model states if it

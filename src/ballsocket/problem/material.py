@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cache
+from operator import attrgetter
 from typing import Any
 
-from ..core.arrays import Array, is_plain_number, to_list, where
+from ..core.arrays import Array, all_true, is_plain_number, to_list, where
 from ..core.checks import shown
 from ..core.display import OneLine, html_list
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
@@ -27,6 +29,37 @@ def set_fields(instance: Any, **fields: Any) -> None:
         object.__setattr__(instance, name, value)
 
 
+class ByValue:
+    """Base class of frozen dataclasses that are equal if all compared fields are; arrays by shape and all elements.
+
+    An instance with arrays has no hash.
+    """
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        kind: Any = type(self)
+        read = _compared_fields(kind)
+        return self is other or all(map(_is_equal, read(self), read(other)))
+
+    def __hash__(self) -> int:
+        kind: Any = type(self)
+        return hash(_compared_fields(kind)(self))
+
+
+@cache
+def _compared_fields(kind: Any) -> Any:
+    """Make the function that reads the compared fields of a dataclass as a tuple."""
+    return attrgetter(*(field.name for field in fields(kind) if field.compare))
+
+
+def _is_equal(value: Any, other: Any) -> bool:
+    if getattr(value, "shape", ()) != getattr(other, "shape", ()):
+        return False
+    equal = value == other
+    return equal if isinstance(equal, bool) else bool(all_true(equal))
+
+
 def short_text(value: Array) -> str:
     """Format a number with six digits, or the shape of an array; "<traced>" without a value."""
     shape = tuple(getattr(value, "shape", ()))
@@ -41,8 +74,8 @@ def elementwise_maximum(x: Array, y: Array) -> Array:
     return max(x, y) if is_plain_number(x) and is_plain_number(y) else where(x > y, x, y)
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
-class Material(OneLine):
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class Material(OneLine, ByValue):
     """Linear elastic, isotropic material.
 
     Parameters
@@ -123,8 +156,8 @@ class Material(OneLine):
         return f"{self.name} ({numbers})" if self.name else numbers
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
-class Layer(OneLine):
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class Layer(OneLine, ByValue):
     """Layer behind the liner: a metal shell, cement or bone.
 
     Parameters

@@ -56,10 +56,23 @@ class Axis(ABC):
 
 @dataclass(frozen=True, eq=False)
 class GridAxis(Axis):
-    """Axis of one parameter with listed values."""
+    """Axis of one parameter with listed values.
+
+    Raises
+    ------
+    ValueError
+        The same value twice.
+    """
 
     name: str
     column: Numbers
+
+    def __post_init__(self) -> None:
+        values, counts = numpy.unique(self.column, return_counts=True)
+        if counts.max(initial=1) > 1:
+            unit = QUANTITIES[self.name].written
+            repeated = float(values[counts.argmax()]) * unit.factor
+            raise ValueError(f"{self.name} has {f'{repeated:g} {unit.text}'.strip()} twice: list each value once")
 
     @property
     def values(self) -> Mapping[str, Numbers]:
@@ -117,7 +130,7 @@ class Span:
 class MaterialAxis(Axis):
     """Axis of materials of the "liner" or the "ball", whose properties vary together.
 
-    The yield stress is NaN unless all of them have one.
+    An unknown yield stress is NaN.
 
     Raises
     ------
@@ -143,7 +156,7 @@ class MaterialAxis(Axis):
     def values(self) -> Mapping[str, Numbers]:
         yields = [nan if material.yield_stress is None else float(material.yield_stress) for material in self.materials]
         numbers = {name: [float(getattr(material, name)) for material in self.materials] for name in MATERIAL}
-        numbers["yield_stress"] = [nan] * len(yields) if numpy.isnan(yields).any() else yields
+        numbers["yield_stress"] = yields
         return {f"{self.name}_{name}": numpy.array(column) for name, column in numbers.items()}
 
     @property

@@ -16,7 +16,7 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from .design import check_values, sample
 from .distributions import Distribution, check_nominal
-from .parameters import AIMS, JOINT, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
+from .parameters import AIMS, LENGTHS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -95,7 +95,9 @@ def _choose_steps(joint: Joint, at: Mapping[str, float], name: str, relative_ste
     if not allowed:
         raise ValueError(f"{name} = {value:g} is not allowed: {PARAMETERS[name].allowed}")
     for steps in allowed:
-        if name not in JOINT or numpy.all(press_arguments(joint, {**at, name: value + numpy.array((0.0, *steps))})[2]):
+        if name not in LENGTHS or numpy.all(
+            press_arguments(joint, {**at, name: value + numpy.array((0.0, *steps))})[2]
+        ):
             return steps
     return allowed[0]
 

@@ -113,13 +113,14 @@ def result_names(study: xarray.Dataset) -> list[str]:
 
 
 def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
-    """Return the parameters at a point, by its index in the order of the dimensions."""
+    """Return the parameters at a point, by its index in the order of the dimensions; None is an unknown strength."""
     dims = dimension_names(study)
     index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
-    return {
-        str(name): variable.isel({dim: int(index[dim]) for dim in variable.dims}).values.item()
-        for name, variable in study.coords.items()
-    }
+    values = {}
+    for name, variable in study.coords.items():
+        value = variable.isel({dim: int(index[dim]) for dim in variable.dims}).values.item()
+        values[str(name)] = None if value != value else value
+    return values
 
 
 def plain_values(values: numpy.ndarray) -> Any:

@@ -38,7 +38,7 @@ from .design import Design, check_values, grid, sample, table
 from .distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
 from .distributions import Distribution
 from .expressions import parse_correlations
-from .parameters import PARAMETERS
+from .parameters import LOADS, PARAMETERS
 from .sampling import Method
 from .task import EDGE_DISTANCE, QUANTITIES
 
@@ -200,8 +200,8 @@ def read_study(path: str | Path) -> StudyFile:
     """Read a study file.
 
     The design is the product of `[axes]`, `[samples]` and the rows of a `[table]`. The joint is described as in joint
-    files, or named. The page "Keys of files" of the reference lists all tables and keys. Paths are relative to the
-    folder of the file.
+    files, or named. A design without a load has that of the joint file. The page "Keys of files" of the reference lists
+    all tables and keys. Paths are relative to the folder of the file.
 
     Raises
     ------
@@ -217,13 +217,16 @@ def read_study(path: str | Path) -> StudyFile:
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
-    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup)
+    model = with_gap(named_models[tables.model], tables.gap).in_cup(file.cup, **file.aim)
+    design = _design(tables, content, folder)
+    if not any(name in LOADS for name in design.names):
+        design = design * grid(**file.load)
     store = None if tables.store is None else str(check_filled("store", tables.store))
     everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
     return StudyFile(
         model=model,
         joint=file.joint,
-        design=_design(tables, content, folder),
+        design=design,
         quantities=tuple(map(str, tables.quantities or everything)),
         store=store if store is None or address_of(store) is not None else folder / store,
         engine=_engine(tables.engine),

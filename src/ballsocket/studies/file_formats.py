@@ -14,7 +14,8 @@ from ..core.checks import needs
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from ..core.storage.folders import folder_at, open_address
-from .metadata import derived_lengths, invalid_reasons
+from ..core.validity import Status
+from .metadata import derived_lengths, invalid_reasons, missing_reasons
 from .task import BOUNDS, VERDICT, Blocks
 
 if TYPE_CHECKING:
@@ -71,8 +72,9 @@ def export(study: xarray.Dataset, path: str | Path) -> None:
 
     The file appears when it is complete. CSV and Parquet have a row for each point: first the parameters in the order
     of the design, then the lengths that follow from them, the quantities, and `why_not_valid`, the reason of an invalid
-    point. Column names end in their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have
-    the labelled arrays of the study in mm, N, MPa, rad.
+    point. A missing utilisation has its reason in `why_no_utilisation`. Column names end in their units:
+    `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`. NetCDF and Zarr have the labelled arrays of the study in mm,
+    N, MPa, rad.
 
     Parameters
     ----------
@@ -176,7 +178,11 @@ def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]
                 written[quantity.column] = column * quantity.written.factor
             else:
                 written[name] = words[column] if name == VERDICT else column
-        yield {**written, "why_not_valid": numpy.array(why)}
+        missing = {
+            f"why_no_{name}": numpy.where(numpy.isnan(values[name]) & (values["status"] == int(Status.OK)), reason, "")
+            for name, reason in missing_reasons(study).items()
+        }
+        yield {**written, "why_not_valid": numpy.array(why), **missing}
 
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..contact import Model
 from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
 from ..core.kinds import Kind
-from ..core.quantities import CONTACT, JOINT
+from ..core.quantities import CONTACT, SHELL
 from ..core.quantities import QUANTITIES as ALL_QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
-from ..problem.dimensions import STORED_LENGTHS, Dimensions, derive_lengths
+from ..problem.dimensions import LENGTHS, STORED_LENGTHS, Dimensions, derive_lengths
 from .metadata import missing_reasons
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
@@ -124,7 +125,7 @@ def joint_dimension(study: xarray.Dataset, name: str) -> Any:
     if name in study.coords:
         return study[name]
     joint = json.loads(study.attrs["joint"])
-    if name in JOINT:
+    if name in (*LENGTHS, *SHELL):
         return getattr(_derive_dimensions(study, joint), name)
     part, _, number = name.rpartition("_")
     value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
@@ -140,17 +141,17 @@ class _LengthDimensions(Dimensions):
     ball_radius: Any
     clearance: Any
     liner_thickness: Any
-    shell_thickness: float
+    shell_thickness: Any
 
     @property
-    def shell(self) -> float:
+    def shell(self) -> Any:
         return self.shell_thickness
 
 
 def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
-    varied = {str(name): study[name] for name in study.coords if name in JOINT}
+    varied = {str(name): study[name] for name in study.coords if name in (*LENGTHS, *SHELL)}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
-    shell = thickness if thickness < inf else 0.0
+    shell = varied.pop("shell_thickness", thickness if thickness < inf else 0.0)
     lengths = derive_lengths(varied or {name: float(joint[name]) for name in STORED_LENGTHS}, shell)
     return _LengthDimensions(**lengths, shell_thickness=shell)
 
@@ -180,10 +181,14 @@ def relative_margins(
     return numpy.clip(worst, -1.0, 1.0), numpy.clip(best, -1.0, 1.0)
 
 
-def limited_quantities(limits: Iterable[Limit]) -> tuple[str, ...]:
-    """Return the quantities that a study needs for limits: the limited ones and the ends of their error bars."""
-    names = ("half_angle" if limit.name == EDGE_DISTANCE else limit.name for limit in limits)
-    return with_bounds(dict.fromkeys(name for name in names if name in QUANTITIES))
+def limited_quantities(limits: Iterable[Limit], model: Model) -> tuple[str, ...]:
+    """Return the quantities that a study needs for limits: the limited ones and the ends of their error bars.
+
+    The edge distance of a model for axial loads follows from the half angle.
+    """
+    known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
+    names = (limit.name if limit.name in known or limit.name != EDGE_DISTANCE else "half_angle" for limit in limits)
+    return with_bounds(dict.fromkeys(name for name in names if name in known))
 
 
 def verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:

@@ -40,7 +40,7 @@ HELD = "held"
 
 _DERIVED = "derived_lengths"  # attribute with the lengths that follow from varied ones and the shell in mm, as JSON
 _LIMITS = "limits"  # attribute with the sentences of the limits of the model's validity, as JSON
-_MISSING = "missing"  # attribute with the reason why a quantity is missing at every point, by its name, as JSON
+_MISSING = "missing"  # attribute with the reason why a quantity is missing at some points, by its name, as JSON
 _LABELS = "labels"  # attribute with the names of materials by axis, as JSON
 _MAX_LISTED_VALUES = 40  # number of values above which an axis is described by its ends and a digest
 _MAX_VALUE_CHARACTERS = 60  # characters of a value in a message
@@ -106,6 +106,7 @@ def derived_lengths(study: xarray.Dataset, values: Mapping[str, Numbers]) -> dic
     names, shell = json.loads(study.attrs.get(_DERIVED, "[[], 0]"))
     if not names:
         return {}
+    shell = values.get("shell_thickness", shell)
     stored = derive_lengths({name: values[name] for name in values if name in LENGTHS}, shell)
     return {name: length_of(name, stored, shell) for name in names}
 
@@ -141,7 +142,7 @@ def invalid_reasons(study: xarray.Dataset) -> dict[tuple[int, int], str]:
 
 
 def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
-    """Return the reason why a quantity is missing at every point of a study, by its name."""
+    """Return the reason why a quantity is missing at some points of a study, by its name."""
     reasons: dict[str, str] = json.loads(study.attrs[_MISSING])
     return reasons
 

@@ -242,7 +242,7 @@ class _Problem:
     def study(self, design: Design) -> Any:
         """Press the joint at the points of a design."""
         points = design * grid(**self.search.load)
-        names = dict.fromkeys((self.search.minimise, *limited_quantities(self.search.limits)))
+        names = dict.fromkeys((self.search.minimise, *limited_quantities(self.search.limits, self.search.model)))
         return study(self.search.model, self.joint, points, quantities=names)
 
     def refine(self, start: Numbers) -> tuple[Numbers, float]:

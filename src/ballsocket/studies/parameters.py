@@ -10,9 +10,9 @@ from typing import Any
 from ..contact import Model
 from ..core import quantities
 from ..core.arrays import Array, all_true, where
-from ..core.quantities import JOINT, MATERIAL, PARTS, STRESS_LIMITS, Quantity
+from ..core.quantities import MATERIAL, PARTS, SHELL, STRENGTH, STRESS_LIMITS, Quantity
 from ..problem import Joint, Material
-from ..problem.dimensions import STORED_LENGTHS, canonical, check_unique_lengths, derive_lengths, held_lengths
+from ..problem.dimensions import LENGTHS, STORED_LENGTHS, canonical, check_unique_lengths, derive_lengths, held_lengths
 from ..problem.material import make_unchecked
 
 AIMS: Mapping[str, Quantity] = MappingProxyType(
@@ -20,7 +20,7 @@ AIMS: Mapping[str, Quantity] = MappingProxyType(
 )
 """Directions of the load and of the cup, for models with loads off the axis."""
 
-PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**JOINT, **PARTS, **quantities.LOADS, **AIMS})
+PARAMETERS: Mapping[str, Quantity] = MappingProxyType({**LENGTHS, **SHELL, **PARTS, **quantities.LOADS, **AIMS})
 """Parameters that a study can vary, by the name of their axis."""
 
 LOADS = tuple(quantities.LOADS)
@@ -55,15 +55,19 @@ def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]
     Raises
     ------
     ValueError
-        A number outside its range, names that contradict each other, or lengths of which several could stay.
+        A number outside its range, names that contradict each other, lengths of which several could stay, or a
+        property of a rigid ball or of a missing shell.
     """
     check_contradictions(values)
     ball_names = [name for name in PARTS if name.startswith("ball_") and name in values]
     if joint.ball is None and ball_names and not all(f"ball_{number}" in values for number in MATERIAL):
         raise ValueError(f"the ball of this joint is rigid: it has no {ball_names[0]}")
-    lengths, possible = _vary_lengths(joint, {name: value for name, value in values.items() if name in JOINT})
+    lengths, possible = _vary_lengths(joint, {name: values[name] for name in values if name in (*LENGTHS, *SHELL)})
     liner = _vary_material(joint.liner, values, "liner") or joint.liner
     parts = {**vars(joint), "liner": liner, "ball": _vary_material(joint.ball, values, "ball")}
+    shell = values.get("shell_thickness", joint.shell)
+    if all_true(shell == joint.shell) is not True:
+        parts["backing"] = (replace(joint.backing[0], thickness=shell), *joint.backing[1:])
     if not lengths:
         return make_unchecked(Joint, **parts), possible
     return Joint(**{name: part for name, part in parts.items() if name not in STORED_LENGTHS} | lengths), possible
@@ -79,11 +83,13 @@ def hold(joint: Joint, names: Iterable[str]) -> dict[str, float]:
     ValueError
         Several of them could stay.
     """
-    varied = [name for name in names if name in JOINT]
+    varied = [name for name in names if name in (*LENGTHS, *SHELL)]
+    if "shell_thickness" in varied and not joint.shell:
+        raise ValueError("the joint has no shell, so that shell_thickness cannot vary: give it one in [shell]")
     held = held_lengths(varied, joint.given_lengths) if varied else {}
     if "interference" in held:
         held["clearance"] = -held.pop("interference")
-    return held
+    return {**held, **({"shell_thickness": joint.shell} if held and joint.shell and not {*SHELL} & {*varied} else {})}
 
 
 def _vary_lengths(joint: Joint, varied: Mapping[str, Array]) -> tuple[dict[str, Any], Array]:
@@ -91,7 +97,7 @@ def _vary_lengths(joint: Joint, varied: Mapping[str, Array]) -> tuple[dict[str, 
     lengths = {**hold(joint, varied), **varied}
     if not varied:
         return {}, True
-    stored = derive_lengths(lengths, joint.shell)
+    stored = derive_lengths(lengths, lengths.pop("shell_thickness", joint.shell))
     radius, clearance, thickness = (stored[name] for name in STORED_LENGTHS)
     fit, gap = ("interference", -clearance) if all_true(clearance < 0) else ("clearance", clearance)
     possible = (radius > 0) & (gap > -_ROUNDING * radius) & (thickness > _ROUNDING * radius)
@@ -117,16 +123,20 @@ def _vary_material(material: Material | None, values: Mapping[str, Array], part:
     if not replaced:
         return material
     limits = dict.fromkeys(STRESS_LIMITS) if all(number in replaced for number in names) else {}
-    stress = replaced.get("yield_stress")
-    if stress is not None and all_true(stress == stress) is False:
-        del replaced["yield_stress"]
-    return Material(**replaced) if material is None else replace(material, **{**limits, **replaced})
+    stress = replaced.pop("yield_stress", None)
+    varied = Material(**replaced) if material is None else replace(material, **{**limits, **replaced})
+    if stress is None or all_true(stress != stress) is True:
+        return varied
+    STRENGTH["yield_stress"].check(where(stress == stress, stress, 1.0))
+    return make_unchecked(Material, **{**vars(varied), "yield_stress": stress})
 
 
 def nominal_value(joint: Joint, name: str) -> float | None:
     """Return the value of a parameter in a joint; None for a property of a rigid ball."""
-    if name in JOINT:
+    if name in LENGTHS:
         return float(getattr(joint, name))
+    if name in SHELL:
+        return float(joint.shell) or None
     part, _, number = name.partition("_")
     material = getattr(joint, part)
     value = None if material is None else getattr(material, number)
@@ -152,7 +162,7 @@ def check_aims(model: Model, names: Iterable[str]) -> None:
 
 def check_contradictions(names: Mapping[str, object]) -> None:
     """Check that parameters can vary together; raise ValueError otherwise."""
-    check_unique_lengths([name for name in names if name in JOINT])
+    check_unique_lengths([name for name in names if name in LENGTHS])
     loads = [name for name in LOADS if name in names]
     if len(loads) > 1:
         raise ValueError(f"one load is needed, got {', '.join(loads)}")

@@ -199,9 +199,10 @@ def quantity_of_bound(name: str) -> str:
 def _read_variable(contact: Contact, name: str) -> Any:
     """Read a variable of a study from a contact: a quantity, an end of its error bar, or the verdict on yielding."""
     if name == VERDICT:
-        bar = error_bar(contact, "utilisation")
+        bar, limit = error_bar(contact, "utilisation"), contact.joint.liner.yield_stress
         verdict = bar.decide(high=1.0)
-        verdict = numpy.where(contact.valid, verdict, numpy.maximum(verdict, int(Verdict.UNDECIDED)))
+        is_checked = numpy.asarray(contact.valid) & (limit is not None and limit == limit)
+        verdict = numpy.where(is_checked, verdict, numpy.maximum(verdict, int(Verdict.UNDECIDED)))
         return numpy.where(numpy.isnan(bar.value), NO_VERDICT, verdict)
     if name in BOUNDS:
         return getattr(error_bar(contact, quantity_of_bound(name)), name.rpartition("_")[2])
