@@ -146,9 +146,9 @@ def _point_text(study: xarray.Dataset, end: Mapping[str, Any] | None) -> Sentenc
     """List the varying parameters at an end with symbols and units."""
     if end is None:
         return None
-    names = varying_parameters(study)
-    heads = (QUANTITIES[name].symbol or name if name in QUANTITIES else name for name in names)
-    return Sentence(", ".join(f"{head} {{}}" for head in heads), *(amount_of(name, end["at"][name]) for name in names))
+    at = {name: end["at"][name] for name in varying_parameters(study)}
+    heads = (QUANTITIES[name].symbol or name if name in QUANTITIES else name for name in at)
+    return Sentence(", ".join(f"{head} {{}}" for head in heads), *map(amount_of, at, at.values()))
 
 
 def amount_of(name: str, value: Any) -> Any:

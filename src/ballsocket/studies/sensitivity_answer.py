@@ -28,8 +28,6 @@ _HEADS = {
 _TABLES = {1: ("sensitivity", "Sensitivity", "number"), 2: ("pairs", "Pairs of parameters", "pair")}
 """Key, title and head of the table of single parameters, and of pairs."""
 
-_DATA_ORDER = ("first_order", "total_order", "shapley", "second_order", "elasticity")
-
 
 def describe_sensitivity(indices: xarray.Dataset) -> Answer:
     """Describe the scatter of each result, and the parts of the parameters and of their pairs in it."""
@@ -95,7 +93,7 @@ def index_table(indices: xarray.Dataset) -> Table:
     rows = [
         Row([quantity, name, *(*parameters, "")[:2], *(numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))])
         for quantity, parameters, numbers in _entries(indices)
-        for name in _DATA_ORDER
+        for name in _HEADS
         if name in numbers
     ]
     return Table("indices", "Indices", [*map(Column.of_words, words), *map(Column.of_number, ends)], rows)

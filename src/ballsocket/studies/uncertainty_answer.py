@@ -10,7 +10,7 @@ from .sensitivity_answer import rounded
 
 
 def uncertainty_tables(surroundings: LocalUncertainty) -> list[Table]:
-    """List the elasticities of a contact, and its bands if tolerances are stated."""
+    """List the elasticities of a contact, and its bands."""
     names = list(next(iter(surroundings.changes.values())))
     heads = [Column.of_words("quantity", "change in % if 1 % is added to the")]
     heads += [Column.of_number(name, QUANTITIES[name].title, digits=3) for name in names]
@@ -27,8 +27,8 @@ def uncertainty_tables(surroundings: LocalUncertainty) -> list[Table]:
         for name, band in surroundings.band.items()
     ]
     method = f"From {surroundings.presses} presses by {surroundings.model}: a quadratic of each tolerance."
-    elasticities = Table("elasticities", "Elasticities", heads, changes, [] if bands else ["No tolerances are stated."])
+    lines = [] if bands else ["No tolerances are stated."]
     return [
-        elasticities,
-        *([Table("bands", "Bands", ends, bands, [method] if surroundings.presses else [])] if bands else []),
+        Table("elasticities", "Elasticities", heads, changes),
+        Table("bands", "Bands", ends, bands, [method] if surroundings.presses else lines),
     ]
