@@ -72,9 +72,9 @@ def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[
     rows: list[list[Cell]] = [[*[entry.quantity] * several, " x ".join(entry.parameters)] for entry in entries]
     main = next(name for name in ("shapley", "total_order", "second_order") if name in known)
     for name in names:
-        columns.append(Column.of_number(name, _HEADS[name], digits=3 if name == "elasticity" else 2))
+        columns.append(Column.of_number(name, _HEADS[name], digits=3))
         if f"{name}_low" in known:
-            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=int(name != main)))
+            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=3, rank=int(name != main)))
         for cells, (_, _, numbers) in zip(rows, entries, strict=True):
             cells.append(rounded(numbers[name]))
             if f"{name}_low" in known:
@@ -84,7 +84,7 @@ def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[
 
 def rounded(share: float | None) -> float:
     """Round a share of the variance or an elasticity, of which smaller parts are noise; NaN for none."""
-    return nan if share is None else round(share, 3) + 0.0
+    return nan if share is None else round(share, 2) + 0.0
 
 
 def index_table(indices: xarray.Dataset) -> Table:
