@@ -338,7 +338,7 @@ def test_what_is_typed_is_a_question_file(tmp_path):
     assert found.axes["force"] == (2000.0, 3000.0)
     assert found.axes["inclination"] == pytest.approx((radians(30.0), radians(45.0)))
     assert (found.file.joint.ball_radius, found.file.cup) == (18.0, EVIDENCE_CUP)
-    assert [str(limit) for limit in found.limits] == ["max_pressure ≤ 20", "half_angle ≤ 1.0472"]
+    assert [str(limit) for limit in found.limits] == ["max_pressure ≤ 20 MPa", "half_angle ≤ 60°"]
     assert (found.accuracy, found.friction, found.finite_elements) == (0.1, 0.06, True)
     hip = read_hip(found.hip)
     assert (hip.cycles, hip.use.cycle.name, hip.use.creep is not None) == (2e6, "walking", True)

@@ -8,14 +8,24 @@ from io import StringIO
 import pint
 import pytest
 
+import ballsocket as bs
 from ballsocket.core.answers import PAGE, named_records, records
-from ballsocket.core.unit_systems import Amount, Units
+from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.comparison_answer import HipRun, describe_hips
 from ballsocket.hip.history_answer import describe_history
 from ballsocket.lubrication import Lubricant
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
+from ballsocket.studies.distributions import Rectangular, tolerance
+from ballsocket.studies.limits import Limit
+from ballsocket.studies.map_answer import describe_map
+from ballsocket.studies.optimisation import optimise
+from ballsocket.studies.optimum_answer import describe_front, describe_optimum
+from ballsocket.studies.pareto_front import pareto
+from ballsocket.studies.sensitivity_answer import describe_sensitivity
+from ballsocket.studies.study_answer import describe_study
+from ballsocket.studies.variance_shares import sensitivity
 
 from ..hip.hips import QUICK, hip
 from ..hip.test_uncertainty import bands
@@ -50,6 +60,38 @@ ANSWERS = {
 """Descriptions of cheap results of every kind."""
 
 
+def plain_study(**axes):
+    return bs.study(bs.HessForsbach(), bs.joints["hip-28"], quantities=QUANTITIES, **axes)
+
+
+QUANTITIES = ("indentation", "half_angle", "max_pressure", "area", "stiffness", "utilisation")
+LIMITS = (Limit(name="outer_radius", high=26.0), Limit(name="half_angle", low=0.2))
+SPACE = {"clearance": [0.05, 0.2], "liner_thickness": [5.0, 8.0], "force": 3000.0}
+SPREAD = {"clearance": tolerance(0.1, 0.05), "liner_young": Rectangular(low=700.0, high=1100.0)}
+
+
+def best():
+    ranges = {"liner_thickness": (4.0, 8.0), "liner_young": (700.0, 1100.0)}
+    joint, load = bs.joints["hip-28"], {"force": 3000.0}
+    return optimise(bs.HessForsbach(), joint, ranges, load=load, limits=LIMITS, minimise="indentation")
+
+
+def shares(**options):
+    settings = {"quantities": ["max_pressure", "area"], "count": 32, "load": {"force": 3000.0}, **options}
+    return sensitivity(bs.HessForsbach(), bs.joints["hip-28"], SPREAD, **settings)
+
+
+ANSWERS |= {
+    "study": lambda: describe_study(plain_study(**SPACE)),
+    "study with materials": lambda: describe_study(plain_study(liner=[bs.UHMWPE, bs.POM], force=[1.0, 3000.0])),
+    "map": lambda: describe_map(plain_study(**SPACE), LIMITS),
+    "front": lambda: describe_front(pareto(plain_study(**SPACE), limits=LIMITS)),
+    "optimum": lambda: describe_optimum(best()),
+    "sensitivity": lambda: describe_sensitivity(shares(second_order=True)),
+    "correlated sensitivity": lambda: describe_sensitivity(shares(correlation={("clearance", "liner_young"): 0.5})),
+}
+
+
 @cache
 def registry():
     return pint.UnitRegistry()
@@ -57,8 +99,14 @@ def registry():
 
 def converted(value, metric, shown):
     """Convert a number by pint, which is independent of the factors of the package."""
-    metric, counted = SYMBOLS.get(metric, metric), COUNTS.get(shown, 1.0)
-    return registry().Quantity(value, metric).to(SYMBOLS.get(shown, shown)).magnitude * counted
+    counted = COUNTS.get(shown, 1.0)
+    metric, shown = ("/".join(SYMBOLS.get(part, part) for part in split(unit)) for unit in (metric, shown))
+    return registry().Quantity(value, metric).to(shown).magnitude * counted
+
+
+def split(unit):
+    """Split the unit of a slope, such as "µm/mm"."""
+    return [unit] if unit in SYMBOLS else unit.split("/")
 
 
 def numbers_in(line):
@@ -71,17 +119,29 @@ def contains(line, expected):
     return all(any(number == approx for number in found) for approx in expected)
 
 
+def amount(part, units):
+    """Yield the number of an amount in the unit that the doors write."""
+    shown = re.sub(r"^\S+? ?(?=[^\d.e+-]|$)", "", units.amount(part)) if part.unit.text else ""
+    value, metric = part.value * part.unit.factor, part.unit.text
+    number = value if metric == shown else converted(value, metric, shown)
+    yield pytest.approx(number, rel=0.6 * 10 ** (1 - part.digits), abs=1e-12)
+
+
 def expected_numbers(row, table, units, most_rank):
     """Return the numbers of a row as a reader of its data expects them in the unit that the door writes."""
     (keyed,) = records(table._replace(rows=[row]))
     for cell, column in zip(row.cells, table.columns, strict=True):
-        if column.unit is None or column.rank > most_rank or isinstance(cell, str):
+        if column.rank > most_rank:
+            continue
+        if isinstance(cell, Sentence):
+            yield from (number for part in cell.parts if isinstance(part, Amount) for number in amount(part, units))
+        if column.unit is None or isinstance(cell, str):
             continue
         value, metric, digits = keyed[column.key], column.written.text, column.digits
         shown = units.written(column.unit).text
         if isinstance(cell, Amount):
-            value, metric, digits = cell.value * cell.unit.factor, cell.unit.text, cell.digits
-            shown = units.amount(cell).rpartition(" ")[2] if cell.unit.text else ""
+            yield from amount(cell, units)
+            continue
         for end in value if isinstance(value, list) else [value]:
             if end is not None and end == end:
                 number = end if metric == shown else converted(end, metric, shown)

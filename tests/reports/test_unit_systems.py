@@ -2,7 +2,6 @@
 
 import re
 from io import StringIO
-from math import degrees
 
 import pytest
 
@@ -11,12 +10,10 @@ from ballsocket.core.answers import Column, Row, Table
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.unit_systems import Units
 from ballsocket.reports import study_plots
-from ballsocket.reports.study_tables import print_optimum, print_study
 from ballsocket.reports.terminal import Terminal, print_table
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit
-from ballsocket.studies.optimisation import optimise
 
 from ..cli.command import run
 
@@ -125,23 +122,3 @@ def test_axes_are_drawn_in_the_unit_that_they_name():
     assert "median" in bands.get_legend_handles_labels()[1]
     with pytest.raises(ValueError, match="a map needs two axes"):
         study_plots.design_map(study.isel(indentation=0))
-
-
-def test_a_study_is_told_in_micrometres_and_degrees(capsys):
-    found = bs.study(bs.HessForsbach(), bs.joints["hip-28"], force=[1000.0, 3000.0])
-    print_study(found)
-    rows = {line.split()[0]: line.split() for line in capsys.readouterr().out.splitlines() if line.strip()}
-    deepest = bs.HessForsbach().press(bs.joints["hip-28"], force=3000.0)
-    assert rows["indentation"][1] == "µm"
-    assert float(rows["indentation"][4]) == pytest.approx(1e3 * deepest.indentation, rel=1e-3)
-    assert rows["half_angle"][1] == "°"
-    assert float(rows["half_angle"][4]) == pytest.approx(degrees(deepest.half_angle), rel=1e-3)
-
-
-def test_a_slope_is_told_in_the_units_of_its_numbers(capsys):
-    thickness, load = {"liner_thickness": (4.0, 8.0)}, {"force": 3000.0}
-    best = optimise(bs.HessForsbach(), bs.joints["hip-28"], thickness, load=load, minimise="indentation")
-    print_optimum(best)
-    told = capsys.readouterr().out
-    assert re.search(rf"^indentation {1e3 * best.value:.4g} µm$", told, flags=re.MULTILINE)
-    assert f"{1e3 * best.slopes['liner_thickness']:.4g}" in told

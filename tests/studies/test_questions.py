@@ -116,7 +116,7 @@ def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
     least = fine.max_pressure.where(allowed(fine, SHELL)).min().item()
     assert best.value <= least * (1 + 1e-9)
     assert best.value == pytest.approx(least, rel=2e-3)
-    assert best.active == ("outer_radius ≤ 26",)
+    assert best.active == ("outer_radius ≤ 26 mm",)
     along_limit = best.slopes["ball_radius"] - best.slopes["liner_thickness"]
     assert along_limit == pytest.approx(0.0, abs=1e-2 * abs(best.slopes["ball_radius"]))
     assert model.press(best.joint, force=3000.0).max_pressure == pytest.approx(best.value, rel=1e-9)
@@ -126,7 +126,7 @@ def test_an_optimum_without_limits_lies_at_an_end():
     ranges = {"clearance": (0.05, 0.2)}
     best = optimise(bs.HessForsbach(), HIP, ranges, load=LOAD)
     assert best.point["clearance"] == pytest.approx(0.05)
-    assert best.active == ("clearance = 0.05",)
+    assert best.active == ("clearance = 0.05 mm",)
     with pytest.raises(ValueError, match="none of 4096 joints within the ranges is allowed by outer_radius ≤ 1"):
         optimise(bs.HessForsbach(), HIP, ranges, load={"force": 1.0}, limits=[TINY])
 
@@ -373,7 +373,7 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     assert json.loads(found.stdout)["model"] == "exact"
     assert "model exact is used, since tabulated is valid for none of these joints" in found.stderr
     limited = run("map", "backed.toml", *ranges, "--limit", "max_pressure<=1", folder=tmp_path)
-    assert "no point of the map is allowed by max_pressure ≤ 1, according to exact" in limited.stderr
+    assert "no point of the map is allowed by max_pressure ≤ 1 MPa, according to exact" in limited.stderr
     named = run("map", "backed.toml", *ranges, "--model", "tabulated", folder=tmp_path)
     assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
     best = answer("optimise", "backed.toml", "--vary", "liner_thickness=4,6 mm", folder=tmp_path)
@@ -409,7 +409,7 @@ def test_maps_and_fronts_on_the_command_line(tmp_path):
     assert np.all(np.diff(front["area"]) > 0)
     assert np.all(np.diff(front["max_pressure"]) < 0)
     loads = ("--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9")
-    assert answer("map", "hess-forsbach", *loads, folder=tmp_path)["limits"] == ["area ≤ 500"]
+    assert answer("map", "hess-forsbach", *loads, folder=tmp_path)["limits"] == ["area ≤ 500 mm²"]
 
 
 @pytest.mark.parametrize(

@@ -18,13 +18,13 @@ from pyarrow import parquet
 import ballsocket as bs
 from ballsocket.contact.verdict import Verdict, assess_strength
 from ballsocket.core.executors import Processes, Serial
-from ballsocket.reports.study_tables import study_summary
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.file import read_study
 from ballsocket.studies.file_formats import export
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.parameters import vary_joint
+from ballsocket.studies.study_answer import study_summary
 from ballsocket.studies.task import Blocks
 
 from ..cli.command import run

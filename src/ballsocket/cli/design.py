@@ -13,20 +13,24 @@ import typer
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
-from ..core.storage.atomic_files import check_ending
+from ..core.storage.atomic_files import check_ending, write_csv
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
-from ..reports import study_plots, study_tables
+from ..reports import study_plots
+from ..reports.terminal import print_answer
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit, limited_quantities
+from ..studies.map_answer import describe_map, map_summary
 from ..studies.optimisation import optimise as find_optimum
+from ..studies.optimum_answer import describe_front, describe_optimum, front_summary
 from ..studies.parameters import LOADS
 from ..studies.pareto_front import pareto
 from ..studies.run import check_model_domain, default_model, study
+from ..studies.sensitivity_answer import describe_sensitivity, index_table, sensitivity_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
@@ -108,8 +112,8 @@ def design_map(
     load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
-    output.print(lambda: study_tables.map_summary(result, limits), lambda: study_tables.print_map(result, limits))
-    output.draw(lambda: study_plots.design_map(result, limits))
+    output.print(lambda: map_summary(result, limits), lambda: print_answer(describe_map(result, limits), output.units))
+    output.draw(lambda: study_plots.design_map(result, limits, units=output.units))
 
 
 @app.command()
@@ -161,7 +165,7 @@ def optimise(
     if len(goals) == 2:
         result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
         front = pareto(result, both, limits)
-        output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
+        output.print(lambda: front_summary(front), lambda: print_answer(describe_front(front), output.units))
         output.draw(lambda: study_plots.front_figure(result, front, both, limits))
         return
     if len(goals) != 1:
@@ -169,11 +173,13 @@ def optimise(
     best = find_optimum(model, file.joint, ranges, choices=choices, minimise=goals[0], limits=limits, load=load)
     output.print(
         lambda: {"version": __version__, "model": model.name, **best.summary()},
-        lambda: study_tables.print_optimum(best),
+        lambda: print_answer(describe_optimum(best), output.units),
     )
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
-    output.draw(lambda: study_plots.design_map(study_ranges(best.joint, sizes), limits, names, best=best.point))
+    output.draw(
+        lambda: study_plots.design_map(study_ranges(best.joint, sizes), limits, names, best.point, output.units)
+    )
 
 
 class IntervalMethod(Choice):
@@ -259,12 +265,13 @@ def sensitivity(
         correlation=parse_correlations(correlation or ()),
     )
     output.print(
-        lambda: {"version": __version__, "model": result.attrs["model"], **study_tables.sensitivity_summary(result)},
-        lambda: study_tables.print_sensitivity(result),
+        lambda: {"version": __version__, "model": result.attrs["model"], **sensitivity_summary(result)},
+        lambda: print_answer(describe_sensitivity(result), output.units),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))
     if csv is not None:
-        study_tables.write_sensitivity(result, csv)
+        table = index_table(result)
+        write_csv(csv, [[column.name for column in table.columns], *(row.cells for row in table.rows)])
 
 
 def _load(options: JointOptions, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:

@@ -10,7 +10,6 @@ import numpy
 from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.inputs import PARTS
 from ..files.joint_file import Direction, JointFile
@@ -31,7 +30,6 @@ from .options import (
     JointName,
     JointOptions,
     OutputOptions,
-    UnitSystem,
     expand_groups,
     needed_load,
 )
@@ -98,7 +96,6 @@ def film(
     gap: GapName = None,
     inputs: FilmInputs,
     rings: Annotated[RingTable, "sphere"],
-    units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:
     """Compute the lubricating film between ball and socket.
@@ -122,7 +119,7 @@ def film(
     ]
     output.print(
         lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
-        lambda: print_films(films, units),
+        lambda: print_films(films, output.units),
     )
     output.draw(lambda: film_figure(films[0]))
     failed = [film for film in films if film.status.failed]

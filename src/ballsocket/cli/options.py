@@ -19,6 +19,7 @@ from ..files.tables import read_table
 from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
+from ..reports.style import in_units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
@@ -126,6 +127,7 @@ class OutputOptions:
     """Options of a command that prints one result and can draw it."""
 
     figure: Annotated[Path | None, typer.Option(help="Write a figure to this file (.png, .svg, .pdf).")] = None
+    units: UnitSystem = Units.SI
     as_json: AsJson = False
 
     def check(self) -> None:
@@ -143,7 +145,7 @@ class OutputOptions:
     def draw(self, draw: Callable[[], Figure]) -> None:
         """Draw and write the figure if there is a file for it."""
         if self.figure is not None:
-            save(draw(), self.figure)
+            save(in_units(draw(), self.units), self.figure)
 
 
 def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:

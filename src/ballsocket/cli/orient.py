@@ -14,7 +14,6 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
 from ..core.quantities import CUP
-from ..core.unit_systems import Units
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.orientations import Orientations
@@ -31,7 +30,6 @@ from .options import (
     JointName,
     JointOptions,
     OutputOptions,
-    UnitSystem,
     expand_groups,
     needed_load,
 )
@@ -133,7 +131,6 @@ def orient(
     joint_options: Annotated[JointOptions, (*PARTS, *LOAD, "load.direction", "cup.side", *RIM)],
     orientation: OrientationOptions,
     rings: Annotated[RingTable, "sphere"],
-    units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:
     """Map edge distance and peak pressure over cup orientations.
@@ -157,8 +154,8 @@ def orient(
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))
     output.print(
         lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
-        lambda: print_orientations(orientations, limits, units),
+        lambda: print_orientations(orientations, limits, output.units),
     )
-    output.draw(lambda: orientation_figure(orientations, units, limits))
+    output.draw(lambda: orientation_figure(orientations, output.units, limits))
     if not orientations.held.any():
         fail("no orientation has an answer (see the statuses)")

@@ -18,14 +18,16 @@ from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
 from ..core.unit_systems import Units
 from ..model_catalogue import with_gap
-from ..reports import study_plots, study_tables
+from ..reports import study_plots
 from ..reports.figure_files import check_format, save
+from ..reports.terminal import print_answer
 from ..studies.file import StudyFile, read_study
 from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener
 from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
 from ..studies.store import check_store
+from ..studies.study_answer import describe_study, study_summary
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor
@@ -84,10 +86,10 @@ def study(
             listen=progress,
         )
     if as_json:
-        summary = study_tables.study_summary(result)
+        summary = study_summary(result)
         echo_json({"version": __version__, "joint": study_file.joint.summary(), **summary})
     else:
-        study_tables.print_study(result, units)
+        print_answer(describe_study(result), units)
     if out is not None:
         export(result, out)
     if draw is not None and figure is not None:

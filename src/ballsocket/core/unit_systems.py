@@ -148,7 +148,10 @@ class Units(StrEnum):
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
-        return _WRITTEN_UNITS.get(unit, Unit(unit)) if self is Units.IMPERIAL else Unit(unit)
+        if self is Units.SI or unit in _WRITTEN_UNITS or "/" not in unit:
+            return _WRITTEN_UNITS.get(unit, Unit(unit)) if self is Units.IMPERIAL else Unit(unit)
+        over, under = map(self.of_text, unit.rsplit("/", 1))
+        return Unit(f"{over.text}/{under.text}", over.factor / under.factor)
 
     def axis(self, label: str) -> tuple[str, float]:
         """Return the label of an axis such as "penetration [mm]" in this system, and the factor of its numbers."""

@@ -9,15 +9,14 @@ from math import inf, isnan
 
 import numpy
 
-from ..core.answers import Answer, Cell, Column, Row, Table
+from ..core.answers import Answer, Column, Row, Table
 from ..core.arrays import Numbers
 from ..core.kinds import MILLIONS, PERCENT
 from ..core.quantities import WEAR
 from ..core.unit_systems import Amount, Sentence
+from ..studies.sensitivity_answer import IndexEntry, share_table
 from .bands import Bands
 from .variability import INFLUENCED_RESULTS
-
-_ORDERS = {"first_order": "first order", "total_order": "total order"}
 
 _ANY = "any"
 """Wear coefficient of a row that holds for all coefficients."""
@@ -92,18 +91,11 @@ def _contact_line(bands: Bands) -> str:
 def _influence_table(bands: Bands) -> Table:
     """List the first and total Sobol indices of each result with their intervals, the largest total first."""
     indices, names = bands.indices or {}, list(bands.variability.distributions)
-    columns = [Column.of_words("result"), Column.of_words("quantity")]
-    for order, head in _ORDERS.items():
-        columns += [
-            Column.of_number(order, head, digits=2),
-            Column.of_number(f"{order}_interval", "95 %", digits=2, rank=1),
-        ]
-    rows = []
-    for number, result in enumerate(INFLUENCED_RESULTS):
-        for i in numpy.argsort(-numpy.nan_to_num(indices["total_order"][number], nan=-inf)):
-            value = {name: float(values[number, i]) for name, values in indices.items()}
-            cells: list[Cell] = [result, names[i].replace("_", " ")]
-            for order in _ORDERS:
-                cells += [value[order], (value[f"{order}_low"], value[f"{order}_high"])]
-            rows.append(Row(cells))
-    return Table("sobol", "Sobol indices: shares of the variance", columns, rows)
+    entries = [
+        IndexEntry(
+            result, [names[i].replace("_", " ")], {name: float(index[number, i]) for name, index in indices.items()}
+        )
+        for number, result in enumerate(INFLUENCED_RESULTS)
+        for i in numpy.argsort(-numpy.nan_to_num(indices["total_order"][number], nan=-inf))
+    ]
+    return share_table("sobol", "Sobol indices: shares of the variance", ("result", "quantity"), entries)

@@ -10,6 +10,7 @@ from typing import Any
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
 from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of, verdict_text
+from ..studies.metadata import held_text
 from . import evidence_parts as figures
 from .evidence_parts import (
     Record,
@@ -26,7 +27,6 @@ from .evidence_parts import (
 )
 from .figure_files import default_style
 from .pages import render_page, svg_address
-from .study_tables import held_text
 
 _SECTIONS = MappingProxyType(
     {

@@ -11,7 +11,8 @@ import numpy
 
 from ..contact.verdict import Verdict
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Units
+from ..core.unit_systems import Sentence, Units
+from ..studies.extremes import amount_of
 from ..studies.limits import (
     Limit,
     allowed,
@@ -21,7 +22,7 @@ from ..studies.limits import (
     undecided_reason,
     verdicts,
 )
-from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, single_axes
+from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, in_units, new_figure, single_axes
 
 if TYPE_CHECKING:
     import xarray
@@ -72,8 +73,9 @@ def design_map(
     figure = new_figure(4.4 * len(names) + 0.4, 4.4)
     answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values = read(study, name, units).transpose(up, across).values
-        x, y = read(study, across, units).values, read(study, up, units).values
+        shown = units.written(QUANTITIES[name].shown)
+        values = study[name].transpose(up, across).values * shown.factor
+        x, y = read(study, across).values, read(study, up).values
         axes.contourf(x, y, values, levels=14, cmap="viridis")
         lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
         if not answered.all():
@@ -82,14 +84,14 @@ def design_map(
             hatching = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
             hatching.set_edgecolor("0.85")
             hatching.set_linewidth(0)
-        _draw_limits(axes, study, limits, (across, up), units)
+        _draw_limits(axes, study, limits, (across, up))
         _label_lines(axes, lines)
         if best is not None:
-            position = (best[axis] * units.unit_of(QUANTITIES[axis]).factor for axis in (across, up))
+            position = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
             axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set(xlabel=_label(across, units), ylabel=_label(up, units))
-        axes.set_title(_label(name, units), fontsize=10)
-    figure.suptitle(_title(study, units), fontsize=10, parse_math=False)
+        axes.set(xlabel=QUANTITIES[across].label(), ylabel=QUANTITIES[up].label())
+        axes.set_title(QUANTITIES[name].label(shown), fontsize=10)
+    figure.suptitle(_title(study), fontsize=10, parse_math=False)
     counts = count_verdicts(study, limits)
     texts = {
         "pale: a limit is exceeded, or no result": counts["exceeded"] or counts["no result"],
@@ -97,16 +99,12 @@ def design_map(
         "hatched: the model is not valid": not trusted.all(),
     }
     figure.supxlabel("; ".join(words for words, present in texts.items() if present), fontsize=8, color="0.3")
-    return figure
+    return in_units(figure, units)
 
 
-def read(study: xarray.Dataset, name: str, units: Units = Units.SI) -> xarray.DataArray:
+def read(study: xarray.Dataset, name: str) -> xarray.DataArray:
     """Return a quantity or axis of a study in the unit of figures."""
-    return study[name] * units.unit_of(QUANTITIES[name]).factor
-
-
-def _label(name: str, units: Units) -> str:
-    return QUANTITIES[name].label(units.unit_of(QUANTITIES[name]))
+    return study[name] * QUANTITIES[name].shown.factor
 
 
 def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
@@ -120,9 +118,9 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
     return long[0], long[1]
 
 
-def _title(study: xarray.Dataset, units: Units) -> str:
+def _title(study: xarray.Dataset) -> str:
     fixed = [
-        _value_text(str(name), "=", float(coordinate), units)
+        Sentence("{} = {}", QUANTITIES[str(name)].title, amount_of(str(name), float(coordinate)))
         for name, coordinate in study.coords.items()
         if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
@@ -130,17 +128,10 @@ def _title(study: xarray.Dataset, units: Units) -> str:
     return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
 
 
-def _value_text(name: str, sign: str, value: float, units: Units) -> str:
-    quantity, unit = QUANTITIES[name], units.unit_of(QUANTITIES[name])
-    return f"{quantity.title} {sign} {value * unit.factor:.4g} {unit.text}".strip()
-
-
-def _draw_limits(
-    axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str], units: Units
-) -> None:
+def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str]) -> None:
     """Veil the area that exceeds the limits, dot the undecided area, and draw each limit as a line with its text."""
     across, up = names
-    x, y = (read(study, name, units).values for name in names)
+    x, y = (read(study, name).values for name in names)
     worst, best = relative_margins(study, limits, across, up)
     if numpy.nanmin(best) < 0:
         axes.contourf(x, y, best, levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
@@ -150,21 +141,11 @@ def _draw_limits(
         dots.set_edgecolor("0.15")
         dots.set_linewidth(0)
     for limit in limits:
-        for end in _one_sided_limits(limit):
+        for end in (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf)):
             values = margin_on_plane(study, end, across, up).value
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
-                _label_lines(axes, line, _limit_text(end, units))
-
-
-def _one_sided_limits(limit: Limit) -> list[Limit]:
-    ends = (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf))
-    return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
-
-
-def _limit_text(limit: Limit, units: Units) -> str:
-    sign, end = ("≤", limit.high) if limit.high < numpy.inf else ("≥", limit.low)
-    return _value_text(limit.name, sign, end, units)
+                _label_lines(axes, line, f"{QUANTITIES[end.name].title}{str(end).removeprefix(end.name)}")
 
 
 def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:
@@ -192,14 +173,14 @@ def band_figure(
     names = [name for name in quantities if name in study.data_vars]
     figure = new_figure(5.0 * len(names), 4.0)
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = read(study, name, units), read(study, axis_names[0], units).values
+        values, x = read(study, name), read(study, axis_names[0]).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
         axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
-        finish(axes, _label(axis_names[0], units), _label(name, units))
+        finish(axes, QUANTITIES[axis_names[0]].label(), QUANTITIES[name].label())
     figure.axes[0].legend(**LEGEND)
-    return figure
+    return in_units(figure, units)
 
 
 def front_figure(

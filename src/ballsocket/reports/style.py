@@ -117,8 +117,11 @@ def in_units(figure: Figure, units: Units) -> Figure:
 
     if units is Units.SI:
         return figure
+    figure.suptitle(units.sentence(figure.get_suptitle()), fontsize=10, parse_math=False)
     for axes in figure.axes:
         axes.set_title(units.sentence(axes.get_title()), fontsize=10)
+        for text in axes.texts:
+            text.set_text(units.sentence(text.get_text()))
         for axis in (axes.xaxis, axes.yaxis):
             label, factor = units.axis(axis.get_label_text())
             if label != axis.get_label_text():

@@ -15,6 +15,8 @@ from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, SHELL
+from ..core.quantities import QUANTITIES as ALL_QUANTITIES
+from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, Dimensions, derive_lengths
@@ -103,10 +105,13 @@ class Limit:
         above = self.high - largest if self.high < inf else inf + 0.0 * numpy.isnan(largest)
         return numpy.minimum(below, above)
 
-    def __str__(self) -> str:
+    def __str__(self) -> Sentence:
+        low, high = (Amount(end, ALL_QUANTITIES[self.name].shown, 6) for end in (self.low, self.high))
         if self.high == inf:
-            return f"{self.name} ≥ {self.low:g}"
-        return f"{self.name} ≤ {self.high:g}" if self.low == -inf else f"{self.low:g} ≤ {self.name} ≤ {self.high:g}"
+            return Sentence("{} ≥ {}", self.name, low)
+        if self.low == -inf:
+            return Sentence("{} ≤ {}", self.name, high)
+        return Sentence("{} ≤ {} ≤ {}", low, self.name, high)
 
 
 def joint_dimension(study: xarray.Dataset, name: str) -> Any:

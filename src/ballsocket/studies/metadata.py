@@ -18,8 +18,10 @@ from ..contact.strength import unchecked_strength_reason
 from ..contact.verdict import Verdict
 from ..core import arrays
 from ..core.arrays import Numbers
+from ..core.kinds import MILLIMETRES
 from ..core.quantities import QUANTITIES
 from ..core.storage.pieces import fingerprint
+from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of, lost_lengths
 from .axes import MaterialAxis, SampleAxis, TableAxis
@@ -113,6 +115,18 @@ def held_in(result: xarray.Dataset) -> dict[str, float]:
     """Return the lengths of the joint in mm that a study or a sensitivity holds while others vary."""
     held: dict[str, float] = json.loads(result.attrs.get(HELD, "{}"))
     return held
+
+
+def held_text(held: Mapping[str, float]) -> Sentence:
+    """List lengths in mm that are held while others vary, with titles and units."""
+    named = {"interference" if name == "clearance" and value < 0 else name: abs(value) for name, value in held.items()}
+    template = ", ".join(f"{QUANTITIES[name].title} {{}}" for name in named)
+    return Sentence(template, *(Amount(length, MILLIMETRES) for length in named.values()))
+
+
+def held_lines(held: Mapping[str, float]) -> list[Sentence]:
+    """Return a line with the lengths in mm that are held; none if there are none."""
+    return [Sentence("held: {}", held_text(held))] if held else []
 
 
 def invalid_reasons(study: xarray.Dataset) -> dict[tuple[int, int], str]:

@@ -14,6 +14,7 @@ from ..contact import Model
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
+from ..core.unit_systems import Amount, Sentence
 from ..problem import Joint
 from .derivatives import DerivativeFunction, finite_differences
 from .design import Design, grid, sample
@@ -144,7 +145,7 @@ def optimise(
     >>> hip = bs.joints["hess-forsbach"]
     >>> best = optimise(bs.HessForsbach(), hip, ranges, load={"force": 3000.0}, limits=shell)
     >>> round(best.value, 2), best.active
-    (10.34, ('outer_radius ≤ 26',))
+    (10.34, ('outer_radius ≤ 26 mm',))
     """
     needs("study", "xarray")
     check_names(vary, PARAMETERS, "among what varies")
@@ -284,7 +285,7 @@ class _Problem:
         point, ranges = self.parameters(fractions), self.search.ranges
         value, gradient = self.value_and_gradient(fractions)
         ends = [
-            f"{name} = {low if fraction < 0.5 else high:g}"
+            Sentence("{} = {}", name, Amount(low if fraction < 0.5 else high, PARAMETERS[name].shown, 6))
             for fraction, (name, (low, high)) in zip(fractions, ranges.items(), strict=True)
             if min(fraction, 1 - fraction) < _ACTIVE_FRACTION
         ]

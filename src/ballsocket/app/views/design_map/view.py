@@ -10,9 +10,9 @@ from ....core.checks import check_names
 from ....core.quantities import JOINT, QUANTITIES
 from ....files.joint_file import JointFile
 from ....reports.figure_files import figure_bytes
-from ....reports.pages import table
+from ....reports.pages import answer_table
 from ....reports.study_plots import design_map
-from ....reports.study_tables import map_rows
+from ....studies.map_answer import map_table
 from ....studies.task import BOUNDS, EDGE_DISTANCE
 from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
@@ -204,9 +204,9 @@ class DesignMap(View):
         results = mapped(screen)
         limits = list(limits_of(screen))
         return Document(
-            picture=lambda form: figure_bytes(design_map(results, limits), form),
+            picture=lambda form: figure_bytes(design_map(results, limits, units=screen.reading.units), form),
             rows=lambda: _rows(results, screen.reading),
-            sections=lambda: {"map": ("Design map", table(*map_rows(results, limits)))},
+            sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
         )
 
 

@@ -22,7 +22,7 @@ from ....problem import Joint
 from ....problem.dimensions import give
 from ....studies.design import Span, grid
 from ....studies.limits import Limit, allowed, count_verdicts, undecided_reason
-from ....studies.metadata import held_in
+from ....studies.metadata import held_in, held_text
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
 from ....studies.task import with_bounds
@@ -134,7 +134,7 @@ def map_summary(results: Any, screen: Screen) -> str:
         title = QUANTITIES[screen.quantity].title
         words.append(f"Minimum of the {title}{within}: <b>{smallest}</b> at {escape(position)}.")
     if held := held_in(results):
-        words.append(f"Held: {', '.join(_with_title(name, value, reading) for name, value in held.items())}.")
+        words.append(f"Held: {reading.units.sentence(held_text(held))}.")
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):

@@ -1,0 +1,119 @@
+"""Description of a sensitivity: shares of the variance with their intervals, and elasticities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..core.answers import Answer, Cell, Column, Row, Table
+from ..core.arrays import to_list
+from ..core.unit_systems import Sentence
+from .extremes import amount_of
+from .metadata import held_in, held_lines
+
+if TYPE_CHECKING:
+    import xarray
+
+_HEADS = {
+    "shapley": "Shapley effect",
+    "first_order": "first order",
+    "total_order": "total order",
+    "elasticity": "% per %",
+    "second_order": "second order",
+}
+"""Heads of tables for the variables of a sensitivity."""
+
+_TABLES = {1: ("sensitivity", "Sensitivity", "number"), 2: ("pairs", "Pairs of parameters", "pair")}
+"""Key, title and head of the table of single parameters, and of pairs."""
+
+_DATA_ORDER = ("first_order", "total_order", "shapley", "second_order", "elasticity")
+
+
+def describe_sensitivity(indices: xarray.Dataset) -> Answer:
+    """Describe the scatter of each result, and the parts of the parameters and of their pairs in it."""
+    means = (
+        Sentence("{}: {} ± {}", name, *(amount_of(name, float(part[key])) for key in ("mean", "deviation")))
+        for name in indices.quantity.values.tolist()
+        for part in [indices.sel(quantity=name)]
+    )
+    entries = list(_entries(indices))
+    correlation = indices.attrs.get("correlation")
+    return Answer(
+        title=f"sensitivity, model {indices.attrs['model']}",
+        lines=[*means, *held_lines(held_in(indices))],
+        tables=[
+            share_table(key, title, ("quantity", head), chosen)
+            for count, (key, title, head) in _TABLES.items()
+            if (chosen := [entry for entry in entries if len(entry.parameters) == count])
+        ],
+        notes=[f"rank correlations: {correlation}"] if correlation else [],
+    )
+
+
+class IndexEntry(NamedTuple):
+    """Indices of one parameter or of a pair, with the ends of their intervals by names in `_low` and `_high`."""
+
+    quantity: str
+    parameters: list[str]
+    numbers: dict[str, Any]
+
+
+def _entries(indices: xarray.Dataset) -> Iterator[IndexEntry]:
+    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+        yield from (IndexEntry(quantity, [name], numbers) for name, numbers in content["numbers"].items())
+        yield from (IndexEntry(quantity, pair["parameters"], pair) for pair in content.get("pairs", ()))
+
+
+def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[IndexEntry]) -> Table:
+    """List indices with their intervals, if known; a narrow terminal has the interval of the main index only."""
+    known, several = entries[0].numbers, len({entry.quantity for entry in entries}) > 1
+    names = [name for name in _HEADS if name in known]
+    columns = [Column.of_words(word) for word in heads[not several :]]
+    rows: list[list[Cell]] = [[*[entry.quantity] * several, " x ".join(entry.parameters)] for entry in entries]
+    main = next(name for name in ("shapley", "total_order", "second_order") if name in known)
+    for name in names:
+        columns.append(Column.of_number(name, _HEADS[name], digits=3 if name == "elasticity" else 2))
+        if f"{name}_low" in known:
+            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=int(name != main)))
+        for cells, (_, _, numbers) in zip(rows, entries, strict=True):
+            low, high = (numbers.get(f"{name}_{end}") for end in ("low", "high"))
+            cells.append(numbers[name])
+            if f"{name}_low" in known:
+                cells.append(None if low is None or high is None else (low, high))
+    return Table(key, title, columns, [Row(cells) for cells in rows])
+
+
+def index_table(indices: xarray.Dataset) -> Table:
+    """List all indices with their intervals, one in a row, as data for CSV."""
+    words, ends = ("quantity", "index", "parameter", "other_parameter"), ("value", "low", "high")
+    rows = [
+        Row([quantity, name, *(*parameters, "")[:2], *(numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))])
+        for quantity, parameters, numbers in _entries(indices)
+        for name in _DATA_ORDER
+        if name in numbers
+    ]
+    return Table("indices", "Indices", [*map(Column.of_words, words), *map(Column.of_number, ends)], rows)
+
+
+def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
+    """Summarise the shares of the variance with their intervals, and elasticities, by quantity and parameter."""
+    parameters = indices.parameter.values.tolist()
+    single, paired = ([str(name) for name in indices.data_vars if indices[name].ndim == count] for count in (2, 3))
+    content: dict[str, Any]
+    quantities: dict[str, Any] = {}
+    for quantity in indices.quantity.values.tolist():
+        part = indices.sel(quantity=quantity)
+        quantities[quantity] = content = {name: float(part[name]) for name in ("mean", "deviation")}
+        content["numbers"] = {name: _numbers(part[single].sel(parameter=name)) for name in parameters}
+        if paired:
+            content["pairs"] = [
+                {"parameters": [one, other], **_numbers(part[paired].sel(parameter=one, other_parameter=other))}
+                for one, other in combinations(parameters, 2)
+            ]
+    options = {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
+    return {"held": held_in(indices), "samples": indices.attrs["samples"], "quantities": quantities, **options}
+
+
+def _numbers(part: xarray.Dataset) -> dict[str, Any]:
+    return {str(name): to_list(value.values) for name, value in part.data_vars.items()}
