@@ -12,7 +12,7 @@ from pathlib import Path
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import columns_in, columns_of, number_text
-from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
+from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict, strength_lines
 from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -378,7 +378,7 @@ def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> st
         ]
         valid = ("valid", *("yes" if contact.valid else "no" for contact in contacts), "")
         tables.append((("", *names[start : start + _MAX_MODELS], "unit"), [*rows, valid]))
-    notes = [units.sentence(note) for note in (*remarks, *comparison.notes())]
+    notes = [units.sentence(note) for note in (*strength_lines(comparison.contacts), *remarks, *comparison.notes())]
     return render_part(_TEMPLATE, "answers", tables, notes)
 
 
