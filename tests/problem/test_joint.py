@@ -90,13 +90,8 @@ def test_a_changed_joint_keeps_its_other_numbers():
 def test_joints_of_arrays_are_equal_if_all_their_numbers_are():
     hip = bs.joints["hip-36"]
     one, same, other, longer = (hip.replace(clearance=np.array(c)) for c in ([0.1, 0.2], [0.1, 0.2], [0.1, 0.3], [0.1]))
-    assert (one == same, one == other, one == longer, one == hip, one in [hip, same]) == (
-        True,
-        False,
-        False,
-        False,
-        True,
-    )
+    equal = [one == joint for joint in (same, other, longer, hip)]
+    assert (equal, one in [hip, same]) == ([True, False, False, False], True)
     with pytest.raises(TypeError, match="unhashable"):
         hash(one)
 
