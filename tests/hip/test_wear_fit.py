@@ -158,6 +158,15 @@ STATION_FORMS = [  # text, encoding, choice of columns, number of lines that are
     ("Million cycles,A [g],B [g]\n0,0,0\n0.5,0.00125,0.0015\n1,0.0025,--\n", "utf-8-sig", {}, 1),
     ("Lastwechsel;A [µg];B [µg];T [°C]\n500.000;1.250,0;1.500;37\n1.000.000;2.500;;37\n", "cp1252", {"skip": ["T"]}, 0),
     (LONG, "utf-16", {}, 1),
+    *(
+        (f"{head};A{mg};B{mg}\n{below}0,5;1,25;1,5\n1;2,5;\n", "utf-8", {}, 0)
+        for mg, below, heads in (
+            (" [mg]", "", ("Zyklen [Mio.]", "Zyklen in Millionen", "cycles [10^6]", "cycles x 10⁶", "10^6 cycles")),
+            (" [mg]", "×10^6;;\n", ("Zyklen",)),
+            ("", "Mio.;mg;mg\n", ("Zyklen",)),
+        )
+        for head in heads
+    ),
     (LONG.replace("\t", ";").replace(".", ",").replace("Specimen", "Prüfling"), "cp1252", {}, 1),
     (
         "T,mass [mg],cycles,liner\n37,1.25,500000,A\n37,1.5,5e5,B\n37,2.5,1000000,A\n",

@@ -10,7 +10,7 @@ import pint
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.answers import PAGE, named_records, records
+from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.comparison_answer import HipRun, describe_hips
@@ -19,9 +19,11 @@ from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
 from ballsocket.lubrication.film_answer import describe_films
+from ballsocket.problem.cup import Cup
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
 from ballsocket.studies.calibration_answer import describe_calibration
+from ballsocket.studies.derivatives import local_uncertainty
 from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.map_answer import describe_map
@@ -30,6 +32,7 @@ from ballsocket.studies.optimum_answer import describe_front, describe_optimum
 from ballsocket.studies.pareto_front import pareto
 from ballsocket.studies.sensitivity_answer import describe_sensitivity
 from ballsocket.studies.study_answer import describe_study
+from ballsocket.studies.uncertainty_answer import uncertainty_tables
 from ballsocket.studies.variance_shares import sensitivity
 
 from ..hip.hips import QUICK, hip
@@ -82,6 +85,10 @@ def best():
     return optimise(bs.HessForsbach(), joint, ranges, load=load, limits=LIMITS, minimise="indentation")
 
 
+def surroundings():
+    return local_uncertainty(bs.joints["hip-28"], Cup(), {"force": 3000.0}, SPREAD)
+
+
 def shares(**options):
     settings = {"quantities": ["max_pressure", "area"], "count": 32, "load": {"force": 3000.0}, **options}
     return sensitivity(bs.HessForsbach(), bs.joints["hip-28"], SPREAD, **settings)
@@ -94,6 +101,7 @@ ANSWERS |= {
     "front": lambda: describe_front(pareto(plain_study(**SPACE), limits=LIMITS)),
     "optimum": lambda: describe_optimum(best()),
     "sensitivity": lambda: describe_sensitivity(shares(second_order=True)),
+    "tolerances": lambda: Answer(title="tolerances", tables=uncertainty_tables(surroundings())),
     "correlated sensitivity": lambda: describe_sensitivity(shares(correlation={("clearance", "liner_young"): 0.5})),
 }
 

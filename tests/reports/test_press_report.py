@@ -19,7 +19,7 @@ from ballsocket.core.unit_systems import Units
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.check_table import checks_at, checks_html, checks_of, verdict_of, wear_check
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede
+from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_sections
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.studies import tolerance
 from ballsocket.studies.derivatives import local_uncertainty
@@ -63,6 +63,9 @@ def test_one_verdict_is_about_all_checks():
     assert f"<span class='holds'>Kept: reach of the contact is {share} of the arc from pole to rim" in wide
     assert re.search(r"class='fails'>Exceeded: reach of the contact is [\d.]+ times the arc from pole to rim", narrow)
     assert "holds" not in narrow
+    results = press_sections(bs.compare(HIP, models=TWO, force=3000.0))["answers"][1]
+    estimate = f"{100 * contact.utilisation:.0f} %"
+    assert re.search(rf"exact kept, \d+ %; hess-forsbach kept, an estimated {estimate} \(\d+ to \d+ %\)", results)
 
 
 def test_heads_that_differ_stand_with_their_design(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ Every comparison with a limit in this package is made here::
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, nextafter
 from math import isfinite as is_finite_number
@@ -216,6 +216,17 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     if worst is None or not contact.joint.liner.strengths:
         return _undecided(unchecked_strength_reason(contact.joint))
     return StrengthVerdict(verdict=worst.verdict, words=f"{worst.verdict.word}: {worst}", use=worst)
+
+
+def strength_lines(contacts: Mapping[str, Contact]) -> Iterator[str]:
+    """Yield the verdicts on single contacts by name on each strength that decides, one line for each strength."""
+    verdicts: dict[str, list[str]] = {}
+    for name, contact in contacts.items():
+        strength = assess_strength(contact)
+        if strength.use is not None:
+            words = f"{name} {strength.verdict.word}, {ratio_text(strength.use.ratio).removesuffix(' of')}"
+            verdicts.setdefault(strength.use.title, []).append(words)
+    yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())
 
 
 def _undecided(reason: str) -> StrengthVerdict:

@@ -32,7 +32,7 @@ from .cells import (
     read_excel,
     split_text,
 )
-from .head_names import UNCERTAINTY, known_head, plain_name
+from .head_names import UNCERTAINTY, count_factor, known_head, plain_name
 from .schema import HeadMap, Table, Texts, meaning
 from .units import Units, parse, parse_units
 
@@ -59,7 +59,7 @@ _BRACKETED = re.compile(r"[\s_/,;:'-]*+[\[(]\s*+([^\])]*+)[\])]?\s*+")
 _LABEL = re.compile(r"[\s_#-]*+\w[\s\w.#-]*+[\[(][^\])]*+[\])]\s*+")
 """Number or word before a unit in brackets, by which a head differs from others: "Force 2 [N]"."""
 
-_UNIT_CELL = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°µμ][A-Za-z%°µμ²³·*/^0-9 -]{0,14}[\])]?\s*+")
+_UNIT_CELL = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°µμ][A-Za-z%°µμ²³·*/^0-9. -]{0,14}[\])]?\s*+")
 
 
 class HeadKeys(Table, frozen=True, kw_only=True):
@@ -545,7 +545,11 @@ def _are_units(cells: Sequence[Cell], texts: Sequence[str]) -> bool:
     """Return True for a row of units; below heads with a unit in brackets, other text is none."""
     units = [str(cell) for cell in cells if count_words([cell])]
     has_units = any(mark in text for text in texts for mark in "[(")
-    is_unit = (lambda text: _parse_unit(_unit(f"_{text}"))) if has_units else _UNIT_CELL.fullmatch
+
+    def is_unit(text: str) -> bool:
+        unit = _unit(f"_{text}")
+        return bool(count_factor(unit) or (_parse_unit(unit) if has_units else _UNIT_CELL.fullmatch(text)))
+
     return bool(units) and len(cells) <= len(texts) and all(map(is_unit, units))
 
 

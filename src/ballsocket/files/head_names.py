@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
 
 _LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
+
+_COUNTS = {
+    1.0: " 1",
+    1e3: "10^3 1e3 kc thousand tausend tsd",
+    1e6: "10^6 1e6 mc million millions millionen mio",
+}
+"""Units of counts by their factors; further signs are removed."""
 
 _OTHER_NAMES = {
     "time": "zeit pruefzeit test_time elapsed_time",
@@ -29,7 +37,8 @@ _OTHER_NAMES = {
     "clearance": "radial_clearance",
     "diametral_clearance": "diameter_clearance durchmesserspiel",
     "cycles": "zyklen zyklenzahl lastwechsel number_of_cycles cycle_count",
-    "million_cycles": "mc mio_zyklen mio_lastwechsel",
+    "million_cycles": "mc mcycles millions_of_cycles 10_6_cycles 10⁶_cycles mio_zyklen mio_lastwechsel "
+    "millionen_zyklen millionen_lastwechsel 10_6_zyklen 10⁶_zyklen 10_6_lastwechsel 10⁶_lastwechsel",
     "volume": "volumen wear_volume verschleissvolumen",
     "mass": "masse mass_loss masseverlust weight_loss gewichtsverlust",
     "station": "specimen probe pruefling",
@@ -49,6 +58,13 @@ def known_head(plain: str, names: Collection[str]) -> str:
     base = plain.removesuffix(UNCERTAINTY)
     name = plain if plain in names else HEAD_NAMES.get(base, "") + plain[len(base) :]
     return name if name in names else ""
+
+
+def count_factor(unit: str) -> float | None:
+    """Return the factor of a unit of counts, such as 1e6 for "Mio.", "million cycles", "x 10^6"; None if unknown."""
+    text = unit.lower().replace("**", "^").replace("⁶", "^6").replace("³", "^3")
+    plain = re.sub(r"[\s.]|^[x×]|(cycles|zyklen|lastwechsel)$", "", text)
+    return next((factor for factor, units in _COUNTS.items() if plain in units.split(" ")), None)
 
 
 def plain_name(text: str) -> str:

@@ -64,7 +64,7 @@ _TYPICAL: Mapping[str, Typical] = MappingProxyType({
     "socket_radius": Typical((5, 30), 0.1, "16.1 mm", (1e-3, 1e4), "from a grain to a bridge bearing"),
     "clearance": Typical((0, 0.5), 0.005, "0.1 mm", (0, 1e3), "a ball with a larger clearance is not conformal"),
     "diametral_clearance": Typical((0, 1), 0.01, "0.2 mm", (0, 2e3), "a ball with a larger clearance is not conformal"),
-    "interference": Typical((0, 0.1), 0.005, "0.02 mm"),
+    "interference": Typical((0, 0.1), 0.005, "0.02 mm", (0, 1e3), "a tenth of the radius of a bridge bearing"),
     "liner_thickness": Typical((0.5, 20), 0.1, "6 mm", (1e-4, 1e4),
                                "from a coating to a block; tick the solid socket for more", (3, 4, 5, 6, 7, 8, 10)),
     "outer_radius": Typical((10, 40), 0.1, "24 mm", (1e-3, 3e4), "a ball, its liner and its backing",

@@ -91,10 +91,9 @@ def _contact_line(bands: Bands) -> str:
 def _influence_table(bands: Bands) -> Table:
     """List the first and total Sobol indices of each result with their intervals, the largest total first."""
     indices, names = bands.indices or {}, list(bands.variability.distributions)
+    shares = indices.items()
     entries = [
-        IndexEntry(
-            result, [names[i].replace("_", " ")], {name: float(index[number, i]) for name, index in indices.items()}
-        )
+        IndexEntry(result, [names[i].replace("_", " ")], {key: float(values[number, i]) for key, values in shares})
         for number, result in enumerate(INFLUENCED_RESULTS)
         for i in numpy.argsort(-numpy.nan_to_num(indices["total_order"][number], nan=-inf))
     ]

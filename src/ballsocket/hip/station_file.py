@@ -13,16 +13,10 @@ import numpy
 from ..core.checks import check_text, shown
 from ..files.cells import Cell, count_words
 from ..files.columns import CellTable, Head, HeadChoice, read_cells
+from ..files.head_names import count_factor
 
 _STATION = "station"
 _CYCLES = {"cycles": 1.0, "million_cycles": 1e6}  # numbers of cycles by the head of their column
-
-_CYCLE_UNITS = {
-    "": 1.0,
-    "1": 1.0,
-    "cycles": 1.0,
-    **dict.fromkeys(("million", "million cycles", "mc", "mio", "mio."), 1e6),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,6 +109,7 @@ def _cycle_factor(counts: Sequence[Head]) -> float:
     head, *others = counts
     if others:
         raise ValueError(f"the cycles are in two columns, {shown(head.text)} and {shown(others[0].text)}: skip one")
-    if head.unit.lower() not in _CYCLE_UNITS:
-        raise ValueError(f"the unit of {shown(head.text)} is not known; allowed are cycles and Mc (million cycles)")
-    return _CYCLES[head.name] * _CYCLE_UNITS[head.unit.lower()]
+    factor = count_factor(head.unit)
+    if factor is None:
+        raise ValueError(f"the unit {head.unit} of {shown(head.text)} is not known; allowed are cycles, Mc and 10^6")
+    return _CYCLES[head.name] * factor

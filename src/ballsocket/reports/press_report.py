@@ -12,8 +12,8 @@ from pathlib import Path
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import columns_in, columns_of, number_text
-from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
-from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
+from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict, strength_lines
+from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
@@ -25,9 +25,19 @@ from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
+from ..studies.uncertainty_answer import uncertainty_tables
 from . import press_plots
 from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
-from .pages import HEAD_TEXTS, letterhead, logo_address, render_page, render_part, svg_address, trusted_html
+from .pages import (
+    HEAD_TEXTS,
+    answer_table,
+    letterhead,
+    logo_address,
+    render_page,
+    render_part,
+    svg_address,
+    trusted_html,
+)
 from .section_plots import joint_section
 
 _TEMPLATE = "press.html"
@@ -368,7 +378,7 @@ def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> st
         ]
         valid = ("valid", *("yes" if contact.valid else "no" for contact in contacts), "")
         tables.append((("", *names[start : start + _MAX_MODELS], "unit"), [*rows, valid]))
-    notes = [units.sentence(note) for note in (*remarks, *comparison.notes())]
+    notes = [units.sentence(note) for note in (*strength_lines(comparison.contacts), *remarks, *comparison.notes())]
     return render_part(_TEMPLATE, "answers", tables, notes)
 
 
@@ -381,22 +391,5 @@ def _figures(comparison: Comparison, leading: Contact, units: Units) -> str:
 
 def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
     if surroundings is None:
-        return render_part(_TEMPLATE, "tolerances", None, ())
-    names = list(next(iter(surroundings.changes.values())))
-    rows = [
-        (CONTACT[name].title, *(f"{changes[name]:+.2f}" for name in names))
-        for name, changes in surroundings.changes.items()
-    ]
-    heads = ("change in % if 1 % is added to the", *(PARAMETERS[name].title for name in names))
-    quantities = {**CONTACT, **DERIVED}
-    ends = [
-        (
-            quantities[name].title,
-            *(units.short_length(end) if name in DERIVED else units.text_of(CONTACT[name], end) for end in band),
-        )
-        for name, band in surroundings.band.items()
-    ]
-    method = f"From {surroundings.presses} presses by {surroundings.model}: a quadratic of each tolerance."
-    return render_part(
-        _TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends, method if surroundings.presses else ""
-    )
+        return "<p>Not computed: it needs a load above 0, and for a load off the cup's axis a tolerance.</p>"
+    return "".join(answer_table(table, units) for table in uncertainty_tables(surroundings))

@@ -15,10 +15,10 @@ from rich.table import Column as RichColumn
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from ..comparison import Comparison, relative_deviation, successful_contacts
+from ..comparison import Comparison, relative_deviation
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column, columns_of, number_text
-from ..contact.verdict import Verdict, assess_strength, ratio_text
+from ..contact.verdict import Verdict, strength_lines
 from ..core.answers import PAGE, Answer, Grid, Table, grid
 from ..core.quantities import CONTACT, HEADLINE
 from ..core.unit_systems import Units
@@ -49,7 +49,7 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
     print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
-    for line in _strength_lines(ordered):
+    for line in strength_lines(ordered.contacts):
         print_folded(terminal, line, "")
     symbols = ", ".join(f"{column.symbol} {column.title}" for column in shown)
     deviating = any(ordered.deviation(name) is not None for name in ordered)
@@ -61,17 +61,6 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
         lines.append(f"not shown, the terminal is too narrow: {text}")
     for line in (*lines, *remarks, *ordered.notes()):
         print_folded(terminal, line, "dim")
-
-
-def _strength_lines(comparison: Comparison) -> Iterator[str]:
-    """Yield the verdicts of the models on each strength that decides, one line for each strength."""
-    verdicts: dict[str, list[str]] = {}
-    for name, contact in successful_contacts(comparison).items():
-        strength = assess_strength(contact)
-        if strength.use is not None:
-            words = f"{name} {strength.verdict.word}, {ratio_text(strength.use.ratio).removesuffix(' of')}"
-            verdicts.setdefault(strength.use.title, []).append(words)
-    yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())
 
 
 def print_curve(contact: Contact) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -23,18 +24,11 @@ if TYPE_CHECKING:
     import xarray
 
 
-class End(NamedTuple):
-    """Least or largest value of a result, and the index of its point."""
-
-    value: float
-    place: int
-
-
 @dataclass
 class StudyReport:
     """Least, largest and sampled values of a study, collected in parts: a study may exceed the memory."""
 
-    ends: dict[str, tuple[End, End]]
+    ends: dict[str, dict[str, tuple[float, int]]]  # value and index of the point, by result and "least" or "largest"
     sampled: dict[str, list[numpy.ndarray]]
     invalid: Counter[tuple[int, int]]
     verdicts: dict[Verdict, int]
@@ -64,9 +58,8 @@ class StudyReport:
         """Return least and largest value of each result with coordinates, and its median; None without an answer."""
         return {
             name: {
-                "least": {"value": self.ends[name][0].value, "at": coordinates(study, self.ends[name][0].place)},
+                **{end: {"value": value, "at": coordinates(study, n)} for end, (value, n) in self.ends[name].items()},
                 "median": float(numpy.nanmedian(numpy.concatenate(samples))),
-                "largest": {"value": self.ends[name][1].value, "at": coordinates(study, self.ends[name][1].place)},
             }
             if name in self.ends
             else dict.fromkeys(_ENDS)
@@ -86,10 +79,11 @@ class StudyReport:
         """Add the values of one part of a result."""
         self.sampled[name].append(values[::stride].copy())
         if not numpy.isnan(values).all():
-            places = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
-            found = [End(float(values[place]), first + place) for place in places]
-            low, high = self.ends.get(name, found)
-            self.ends[name] = min(low, found[0]), max(high, found[1], key=lambda end: end.value)
+            places = {"least": int(numpy.nanargmin(values)), "largest": int(numpy.nanargmax(values))}
+            found = {end: (float(values[place]), first + place) for end, place in places.items()}
+            known = self.ends.setdefault(name, found)
+            known["least"] = min(known["least"], found["least"])
+            known["largest"] = max(known["largest"], found["largest"], key=itemgetter(0))
 
 
 _ENDS = ("least", "median", "largest")
@@ -146,9 +140,9 @@ def _point_text(study: xarray.Dataset, end: Mapping[str, Any] | None) -> Sentenc
     """List the varying parameters at an end with symbols and units."""
     if end is None:
         return None
-    names = varying_parameters(study)
-    heads = (QUANTITIES[name].symbol or name if name in QUANTITIES else name for name in names)
-    return Sentence(", ".join(f"{head} {{}}" for head in heads), *(amount_of(name, end["at"][name]) for name in names))
+    at = {name: end["at"][name] for name in varying_parameters(study)}
+    heads = (QUANTITIES[name].symbol or name if name in QUANTITIES else name for name in at)
+    return Sentence(", ".join(f"{head} {{}}" for head in heads), *map(amount_of, at, at.values()))
 
 
 def amount_of(name: str, value: Any) -> Any:

@@ -78,18 +78,10 @@ class Optimum:
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the optimum for JSON."""
         return {
-            "minimise": self.minimise,
-            "value": self.value,
-            "point": self.point,
-            "materials": self.materials,
-            "held": self.held,
+            **vars(self),
             "active": list(self.active),
-            "slopes": self.slopes,
             "joint": self.joint.summary(),
-            "valid": self.valid,
-            "searched": self.searched,
             "verdict": Verdict.KEPT.word,
-            "undecided": self.undecided,
         }
 
 

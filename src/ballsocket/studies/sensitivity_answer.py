@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..core.answers import Answer, Cell, Column, Row, Table
@@ -26,8 +27,6 @@ _HEADS = {
 
 _TABLES = {1: ("sensitivity", "Sensitivity", "number"), 2: ("pairs", "Pairs of parameters", "pair")}
 """Key, title and head of the table of single parameters, and of pairs."""
-
-_DATA_ORDER = ("first_order", "total_order", "shapley", "second_order", "elasticity")
 
 
 def describe_sensitivity(indices: xarray.Dataset) -> Answer:
@@ -73,15 +72,19 @@ def share_table(key: str, title: str, heads: tuple[str, str], entries: Sequence[
     rows: list[list[Cell]] = [[*[entry.quantity] * several, " x ".join(entry.parameters)] for entry in entries]
     main = next(name for name in ("shapley", "total_order", "second_order") if name in known)
     for name in names:
-        columns.append(Column.of_number(name, _HEADS[name], digits=3 if name == "elasticity" else 2))
+        columns.append(Column.of_number(name, _HEADS[name], digits=3))
         if f"{name}_low" in known:
-            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=2, rank=int(name != main)))
+            columns.append(Column.of_number(f"{name}_interval", "95 %", digits=3, rank=int(name != main)))
         for cells, (_, _, numbers) in zip(rows, entries, strict=True):
-            low, high = (numbers.get(f"{name}_{end}") for end in ("low", "high"))
-            cells.append(numbers[name])
+            cells.append(rounded(numbers[name]))
             if f"{name}_low" in known:
-                cells.append(None if low is None or high is None else (low, high))
+                cells.append(tuple(rounded(numbers[f"{name}_{end}"]) for end in ("low", "high")))
     return Table(key, title, columns, [Row(cells) for cells in rows])
+
+
+def rounded(share: float | None) -> float:
+    """Round a share of the variance or an elasticity, of which smaller parts are noise; NaN for none."""
+    return nan if share is None else round(share, 2) + 0.0
 
 
 def index_table(indices: xarray.Dataset) -> Table:
@@ -90,7 +93,7 @@ def index_table(indices: xarray.Dataset) -> Table:
     rows = [
         Row([quantity, name, *(*parameters, "")[:2], *(numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))])
         for quantity, parameters, numbers in _entries(indices)
-        for name in _DATA_ORDER
+        for name in _HEADS
         if name in numbers
     ]
     return Table("indices", "Indices", [*map(Column.of_words, words), *map(Column.of_number, ends)], rows)

@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind
-from ...core.quantities import QUANTITIES
+from ...core.quantities import FIT, QUANTITIES
 from ...core.unit_systems import Units
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
@@ -45,7 +45,9 @@ MAP_MODELS = (*QUICK, *(name for name, model in catalogue.items() if 1e-4 <= mod
 
 PICKED = ("any", "catalogue")  # sizes that a click on a map takes
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")  # quantities of the design map
-AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)  # parameters of the design map
+AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE and name not in FIT)
+"""Parameters of the design map, whose models solve no preloaded joints."""
+
 MAX_LINK_LENGTH = 8000
 MAX_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")

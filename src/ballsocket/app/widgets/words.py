@@ -195,7 +195,7 @@ def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:
     if isinstance(contact, OffAxisContact):
         return f"Estimated error of the largest pressure in the real cup: {percent(contact.error['max_pressure'])}"
     if exact is None or exact.model.name == contact.model.name:
-        known = [float(error) for error in contact.error.values()]
+        known = [float(contact.error.get(column.attribute, 0.0)) for column in COLUMNS]
     else:
         known = [float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in COLUMNS]
     apart = max((abs(share) for share in known if share == share), default=0.0)

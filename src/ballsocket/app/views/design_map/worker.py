@@ -28,7 +28,6 @@ from ....studies.run import default_model, joint_of_arrays, study
 from ....studies.task import with_bounds
 from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
 from ...widgets.numbers import of_parameter
-from ...widgets.reading import Reading
 
 _POINTS = 61
 _SOLVED_POINTS = 17  # values along an axis where every joint is solved: a second in all
@@ -128,7 +127,8 @@ def map_summary(results: Any, screen: Screen) -> str:
         shares = ", ".join(f"{100 * count / fine.size:.3g} % {word}" for word, count in counts.items() if count)
         words.append(f"Limits on this map: {shares}.")
     if point is not None:
-        position = " and ".join(_with_title(name, value, reading) for name, value in point.items())
+        axes = map(QUANTITIES.__getitem__, point)
+        position = " and ".join(f"{axis.title} {reading.with_unit(axis, point[axis.name])}" for axis in axes)
         smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
         within = " within the limits" if screen.limits else ""
         title = QUANTITIES[screen.quantity].title
@@ -141,10 +141,6 @@ def map_summary(results: Any, screen: Screen) -> str:
         reason = escape(undecided_reason(results, limits_of(screen)))
         words.append(f"Faded: a limit is exceeded. Half faded: undecided, {reason}. Grey: no result.")
     return f"<p class='quiet'>{' '.join(words)}</p>"
-
-
-def _with_title(name: str, value: float, reading: Reading) -> str:
-    return f"{QUANTITIES[name].title} {reading.with_unit(QUANTITIES[name], value)}"
 
 
 def default_axis(name: str, middle: float) -> MapAxis:
