@@ -116,7 +116,7 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
             axes.set_xlabel(across, fontsize=9)
             axes.set_ylabel(upwards, fontsize=9)
             axes.spines[["top", "right"]].set_visible(False)
-            axes.tick_params(labelsize=8)
+            axes.tick_params(labelsize=8, labelleft=column == 0)
     source = (
         f"dashed: 95 % by profile likelihood, quantile {result.information.quantile:.3g}\n"
         "shaded: 50 and 95 % of a normal distribution that is as wide"
