@@ -85,7 +85,7 @@ def test_a_band_that_ends_at_an_end_of_a_range_is_reported():
     assert (fit["liner_young"].low, fit["liner_young"].high) == (600.0, 1000.0)
     assert fit["liner_young"].limited_by == ("liner_young",)
     assert fit["clearance"].limited_by == ("liner_young",)
-    assert "the band of liner_young ends at 600 and 1000, the end of its range" in fit.notes
+    assert "the band of liner_young ends at 600 MPa and 1000 MPa, the end of its range" in fit.notes
     assert "the band of clearance ends where the range of liner_young ends" in fit.notes
 
 

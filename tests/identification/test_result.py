@@ -107,7 +107,7 @@ def test_the_corner_figure_draws_the_printed_bands():
 def test_the_best_value_at_the_end_of_a_range_is_noted():
     for free, end in (((0.11, 0.4), "0.11"), ((0.02, 0.09), "0.09")):
         result = identified(measured(uncertainty=2e-3), free={"clearance": free})
-        note = f"the best clearance is {end}, the end of its range: widen the range, or check the data"
+        note = f"the best clearance is {end} mm, the end of its range: widen the range, or check the data"
         assert note in result.notes
     machine = Machine(compliance=(0.0, 1e-5))  # which ends at a physical limit
     result = identified(measured(machine=machine, values=0.99 * CONTACT.indentation), free={})

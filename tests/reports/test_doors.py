@@ -5,6 +5,7 @@ from functools import cache
 from html import unescape
 from io import StringIO
 
+import numpy as np
 import pint
 import pytest
 
@@ -14,10 +15,14 @@ from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.comparison_answer import HipRun, describe_hips
 from ballsocket.hip.history_answer import describe_history
+from ballsocket.identification import Measured
+from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
+from ballsocket.lubrication.film_answer import describe_films
 from ballsocket.problem.cup import Cup
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
+from ballsocket.studies.calibration_answer import describe_calibration
 from ballsocket.studies.derivatives import local_uncertainty
 from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.limits import Limit
@@ -45,6 +50,7 @@ SYMBOLS = {
     "mil": "thou",
 }
 SYMBOLS |= {"million": "1", "": "1", "%": "1", "N m": "N*m", "lbf in": "lbf*in", "mm³/(N m)": "mm**3/(N*m)"}
+SYMBOLS |= {"mm MPa": "mm*MPa", "in psi": "in*psi"}
 COUNTS = {"million": 1e-6, "%": 100.0}
 
 
@@ -97,6 +103,30 @@ ANSWERS |= {
     "sensitivity": lambda: describe_sensitivity(shares(second_order=True)),
     "tolerances": lambda: Answer(title="tolerances", tables=uncertainty_tables(surroundings())),
     "correlated sensitivity": lambda: describe_sensitivity(shares(correlation={("clearance", "liner_young"): 0.5})),
+}
+
+
+def identified(*quantities):
+    """Identify clearance and modulus from exact readings of the closed form."""
+    model, joint, force = bs.HessForsbach(), bs.joints["hip-28"], np.array([500.0, 1000.0, 2000.0, 3000.0])
+    contact = model.press(joint, force=force)
+    data = [
+        Measured(quantity=name, values=values, uncertainty=0.02 * values, force=force)
+        for name in quantities
+        for values in [getattr(contact, name)]
+    ]
+    return bs.identify(model, joint, data, {"clearance": (0.05, 0.2), "liner_young": (500.0, 2000.0)})
+
+
+def film(method):
+    return bs.film(bs.HessForsbach().press(bs.joints["hip-28"], force=2000.0), method=method)
+
+
+ANSWERS |= {
+    "films": lambda: describe_films([film("inlet"), film("wave")]),
+    "identification": lambda: describe_identification(identified("indentation", "area")),
+    "product of unknowns": lambda: describe_identification(identified("area")),
+    "calibration": lambda: describe_calibration(bs.calibrate(bs.joints["hip-28"])),
 }
 
 

@@ -18,10 +18,12 @@ from ..files.tables import quantities_of, written_in
 from ..files.units import as_given
 from ..lubrication.film import METHODS
 from ..lubrication.film import film as compute_film
+from ..lubrication.film_answer import describe_films
 from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import with_gap
 from ..question import PressQuestion
-from ..reports.film_results import film_figure, print_films
+from ..reports.film_results import film_figure
+from ..reports.terminal import print_answer
 from ..version import __version__
 from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model
@@ -119,7 +121,7 @@ def film(
     ]
     output.print(
         lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
-        lambda: print_films(films, output.units),
+        lambda: print_answer(describe_films(films), output.units),
     )
     output.draw(lambda: film_figure(films[0]))
     failed = [film for film in films if film.status.failed]

@@ -11,21 +11,25 @@ import typer
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..core.unit_systems import Units
 from ..files.joint_file import named_joint
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..identification import as_constant, as_corrected_vessel, as_polynomial
 from ..identification import calibrate as fit_modulus
 from ..identification.file import read_identify
+from ..identification.result_answer import describe_identification
 from ..paper.cases import refit_table_3
 from ..reports import identify_results
-from ..reports.accuracy_results import print_calibration, print_table_3
+from ..reports.accuracy_results import print_table_3
 from ..reports.figure_files import check_format, save
-from ..reports.identify_results import print_identified
+from ..reports.style import in_units
+from ..reports.terminal import print_answer
 from ..studies.calibration import FORCES, Form
+from ..studies.calibration_answer import describe_calibration
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson
+from .options import AsJson, UnitSystem
 from .root import app, echo_path, fail
 
 _FORMATS = "(.png, .svg, .pdf)"
@@ -51,6 +55,7 @@ def identify(
     experiment: Annotated[
         Path | None, typer.Option(help=f"Write a figure of the most informative next measurement {_FORMATS}.")
     ] = None,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
 ) -> None:
     """Identify a joint or its wear coefficient from data.
@@ -67,7 +72,7 @@ def identify(
         for option, value in {"--samples": samples, "--corner": corner, "--experiment": experiment}.items():
             if value is not None:
                 raise ValueError(f"{option} needs measurements of a contact, and {file.name} has measured wear")
-        _fit_wear(file, figure, as_json)
+        _fit_wear(file, figure, units, as_json)
         return
     result = read_identify(file).identify_unknowns()
     posterior = None if samples is None else result.posterior(samples)
@@ -82,13 +87,13 @@ def identify(
             }
         )
     else:
-        print_identified(result, posterior)
+        print_answer(describe_identification(result, posterior), units)
     if figure is not None:
-        save(identify_results.fit_figure(result), figure)
+        save(in_units(identify_results.fit_figure(result), units), figure)
     if corner is not None:
-        save(identify_results.corner_figure(result, posterior), corner)
+        save(in_units(identify_results.corner_figure(result, posterior), units), corner)
     if experiment is not None:
-        save(identify_results.experiment_figure(result.next), experiment)
+        save(in_units(identify_results.experiment_figure(result.next), units), experiment)
     if not result.best.converged:
         fail("the search did not converge (see the notes)")
 
@@ -104,12 +109,11 @@ def _has_measured_wear(file: Path) -> bool:
     return "cycle" in content or "activity" in content or has_wear
 
 
-def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
+def _fit_wear(file: Path, figure: Path | None, units: Units, as_json: bool) -> None:
     from ..hip.config import read_wear_test
     from ..hip.wear_fit import fit_wear_coefficient
     from ..hip.wear_fit_answer import describe_wear_fit
     from ..reports.hip_comparison import wear_fit_figure
-    from ..reports.terminal import print_answer
 
     hip_file = read_wear_test(file)
     fit = fit_wear_coefficient(hip_file.use, hip_file.data)
@@ -117,9 +121,9 @@ def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
         valid = all(check.valid for check in fit.simulation.unworn_checks)
         echo_json({"version": __version__, "joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()})
     else:
-        print_answer(describe_wear_fit(fit))
+        print_answer(describe_wear_fit(fit), units)
     if figure is not None:
-        save(wear_fit_figure(fit, hip_file.cycles), figure)
+        save(in_units(wear_fit_figure(fit, hip_file.cycles), units), figure)
 
 
 @app.command()
@@ -136,6 +140,7 @@ def calibrate(
     form: Annotated[
         str, typer.Option(help="Formula of the modulus: constant, polynomial (Eq. 18) or corrected-vessel.")
     ] = "constant",
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
 ) -> None:
     """Fit a foundation modulus to the exact solution.
@@ -149,7 +154,7 @@ def calibrate(
         if as_json:
             echo_json({"version": __version__, "table_3": [column.summary() for column in columns]})
         else:
-            print_table_3(columns)
+            print_table_3(columns, units)
         return
     form = known_name("form", form, _FORMS)
     fitted_joint = named_joint(joint).joint
@@ -161,7 +166,7 @@ def calibrate(
     if as_json:
         echo_json({"version": __version__, "joint": fitted_joint.summary(), **fit.summary()})
     else:
-        print_calibration(fit)
+        print_answer(describe_calibration(fit), units)
 
 
 @app.command(hidden=True)  # for developers of the tables

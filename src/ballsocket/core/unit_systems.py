@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isinf
+from math import isinf, prod
 from types import MappingProxyType
 from typing import Any
 
@@ -148,8 +148,17 @@ class Units(StrEnum):
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
-        if self is Units.SI or unit in _WRITTEN_UNITS or "/" not in unit:
-            return _WRITTEN_UNITS.get(unit, Unit(unit)) if self is Units.IMPERIAL else Unit(unit)
+        if self is Units.SI or unit in _WRITTEN_UNITS:
+            return Unit(unit) if self is Units.SI else _WRITTEN_UNITS[unit]
+        if " " in unit and "(" not in unit:
+            parts = list(map(self.of_text, unit.split(" ")))
+            return Unit(" ".join(part.text for part in parts), prod(part.factor for part in parts))
+        base, _, power = unit.rpartition("^")
+        if base:
+            written = self.of_text(base)
+            return Unit(f"{written.text}^{power}", written.factor ** float(power))
+        if "/" not in unit:
+            return Unit(unit)
         over, under = map(self.of_text, unit.rsplit("/", 1))
         return Unit(f"{over.text}/{under.text}", over.factor / under.factor)
 

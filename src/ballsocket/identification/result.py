@@ -11,6 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.display import finite_or_none, load_plot
+from ..core.unit_systems import Amount, Sentence
 from .experiment import Experiment, experiment
 from .fit import FittedModel
 from .measured import MEASURED
@@ -158,9 +159,10 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
             continue
         unknown = result.transform.unknowns[result.transform.names.index(name)]
         pairs = ((estimate.low, unknown.low), (estimate.high, unknown.high))
-        ends = [f"{end:g}" for end, range_end in pairs if end == range_end]
+        ends = [Amount(end, unknown.quantity.shown) for end, range_end in pairs if end == range_end]
         if ends:
-            yield f"the band of {name} ends at {_join_names(ends)}, the end of its range"
+            gaps = _join_names(["{}"] * len(ends))
+            yield Sentence(f"the band of {name} ends at {gaps}, the end of its range", *ends)
         else:
             yield f"the band of {name} ends where {result.model.name} has no result for all the data"
     for name, estimate in result.estimates.items():
@@ -187,7 +189,8 @@ def _search_notes(result: IdentificationResult) -> Iterator[str]:
         for side, end in ((-1, unknown.low), (1, unknown.high)):
             at_end = abs(theta[index] - unknown.to_scale(end) / unknown.prior_deviation) < _END_TOLERANCE
             if at_end and not unknown.is_physical(side, theta[index]):
-                yield f"the best {unknown.name} is {end:g}, the end of its range: widen the range, or check the data"
+                template = "the best {} is {}, the end of its range: widen the range, or check the data"
+                yield Sentence(template, unknown.name, Amount(end, unknown.quantity.shown))
 
 
 def _fit_notes(result: IdentificationResult) -> Iterator[str]:
@@ -210,11 +213,11 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
         )
     for measured, uncertainty in zip(result.data, result.uncertainties, strict=True):
         if measured.has_unknown_noise:
-            unit, title = measured.described.shown, measured.name or measured.quantity
-            estimate = f"{unit.factor * float(uncertainty[0]):.3g} {unit.text}".rstrip()
-            yield (
-                f"the uncertainty of {title} was not stated: it is estimated from the scatter, {estimate} (k = 1); "
-                "bands are by Student's quantile"
+            yield Sentence(
+                "the uncertainty of {} was not stated: it is estimated from the scatter, {} (k = 1); "
+                "bands are by Student's quantile",
+                measured.name or measured.quantity,
+                Amount(float(uncertainty[0]), measured.described.shown, 3),
             )
     if result.misfit.widening > _MIN_NOTED_WIDENING:
         yield f"bands are {result.misfit.widening:.3g} times as wide as the stated uncertainties make them"
@@ -273,10 +276,11 @@ def _machine_notes(result: IdentificationResult) -> Iterator[str]:
         ratio, name = max((result.shift_ratio(error, name), name) for name in numbers)
         if ratio > _MAX_SHIFT_RATIO:
             unit = result.transform.unknowns[result.transform.names.index(name)].quantity.shown
-            shift = f"{unit.factor * error.shifts[name]:+.3g} {unit.text}".strip()
-            yield (
-                f"{error.title} would move {name} by {shift}, {ratio:.1f} times half its band: "
-                f"measure it, or make {error.part} an unknown of the machine"
+            yield Sentence(
+                f"{{}} would move {name} by {{}}, {ratio:.1f} times half its band: "
+                f"measure it, or make {error.part} an unknown of the machine",
+                error.title,
+                Amount(error.shifts[name], unit, 3),
             )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.unit_systems import Amount, Sentence
 from .fit import FittedModel
 from .machine import Machine
 from .measured import Measured
@@ -45,9 +46,8 @@ class Sensitivity:
     def title(self) -> str:
         """Description of the machine error in words, such as "a zero offset of 1 µm"."""
         error = MACHINE_ERRORS[self.part]
-        shown = error.quantity.shown
         of_machine = f" in {self.machine}" if self.machine else ""
-        return f"{error.phrase.format(f'{shown.factor * self.size:g} {shown.text}')}{of_machine}"
+        return Sentence("{}{}", Sentence(error.phrase, Amount(self.size, error.quantity.shown)), of_machine)
 
     def summary(self) -> dict[str, Any]:
         """Return machine error and shifts as a dictionary for JSON, in mm, N, MPa and rad.

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.text import Text
 
-from ..contact.describe import number_text
 from ..core.quantities import CONTACT, QUANTITIES
+from ..core.unit_systems import Units
 from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
-from ..studies.calibration import Calibration
 from .style import single_axes
 from .terminal import Terminal, print_columns, print_folded, text_table
 
@@ -115,29 +114,9 @@ _HEAT_ENDS = (0.1, 300.0)  # %
 _DARK = 0.72  # of the colours
 
 
-def print_calibration(fit: Calibration) -> None:
-    """Print a fitted modulus with its residual and the error of the closed form that uses it."""
-    terminal = Terminal()
-    print_folded(terminal, str(fit.joint), "bold")
-    low, high = float(fit.force.min()), float(fit.force.max())
-    constants = ", ".join(f"{number:.6g}" for number in fit.modulus.constants)
-    rows = [
-        (f"{fit.modulus.name}", constants),
-        ("K = p0/d of the reference", number_text(fit.wanted, 5, "-") + " MPa/mm"),
-        (f"spread over {low:g} to {high:g} N", f"{100 * fit.spread:.2f} %"),
-        ("largest residual of the fit", f"{100 * float(numpy.max(abs(fit.residual))):.2f} %"),
-        *(
-            (f"closed form, worst error in {name.replace('_', ' ')}", f"{100 * error:.2f} %")
-            for name, error in fit.error.items()
-        ),
-    ]
-    for name, text in rows:
-        terminal.print(f"  {name:<46} {text}")
-
-
-def print_table_3(columns: Sequence[TableColumn]) -> None:
+def print_table_3(columns: Sequence[TableColumn], units: Units = Units.SI) -> None:
     """Print Table 3 of the paper beside the same fit to the exact solution."""
-    terminal = Terminal()
+    terminal = Terminal(units)
     table = text_table(["", *(f"ν {column.poisson:g}" for column in columns)], left=("",))
     for i, name in enumerate(("C1", "C2", "C3")):
         table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))

@@ -1,8 +1,7 @@
-"""Lubricating films as a figure and as a table in a terminal."""
+"""Lubricating films as figures."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import degrees, inf, pi, sin
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +9,11 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.display import plain_number
-from ..core.unit_systems import Units
 from ..hip.film import Film
 from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
 from .cup_map import on_page
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, new_figure
-from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -122,33 +119,6 @@ def _draw_section(axes: Axes, film: FilmResult) -> None:
     handles = [*axes.get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
     axes.legend(handles=handles, **LEGEND)
     axes.grid(alpha=0.3)
-
-
-def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
-    """Print films of several models as a table, with their notes."""
-    terminal = Terminal(units)
-    print_joint(terminal, films[0].contact.joint)
-    first = films[0]
-    rate, viscosity = float(numpy.linalg.norm(first.spin)), 1e3 * first.lubricant.viscosity
-    print_folded(terminal, f"film at {rate:g} rad/s, {first.speed:.3g} mm/s, viscosity {viscosity:g} mPa s", "bold")
-    heads = ("model", "method", "central [nm]", "minimum [nm]", "λ", "error [%]", "valid")
-    print_columns(terminal, text_table(heads, map(_cells, films), left=heads[:2], gap=1))
-    print_folded(terminal, "λ minimum film over the combined roughness of both surfaces", "dim")
-    for film in films:
-        for note in film.notes:
-            print_folded(terminal, f"{film.contact.model.name}: {note}", "dim")
-
-
-def _cells(film: FilmResult) -> list[str]:
-    return [
-        film.contact.model.name,
-        film.method,
-        f"{_NANOMETRES * film.central:.4g}",
-        f"{_NANOMETRES * film.minimum:.4g}",
-        f"{film.ratio:.3g}",
-        f"{100 * film.error:.2g}",
-        "yes" if film.valid else "no",
-    ]
 
 
 def cycle_film_figure(film: Film) -> Figure:

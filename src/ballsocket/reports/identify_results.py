@@ -1,21 +1,18 @@
-"""Results of an identification as figures and as tables in a terminal."""
+"""Results of an identification as figures."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from rich.table import Table
 
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..identification.experiment import Experiment
 from ..identification.information import QUANTILE_95
 from ..identification.measured import MEASURED, Measured
-from ..identification.posterior import CONVERGED, Posterior
+from ..identification.posterior import Posterior
 from ..identification.result import IdentificationResult
-from ..identification.sensitivity import Sensitivity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure, single_axes
-from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,7 +116,7 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
             axes.set_xlabel(across, fontsize=9)
             axes.set_ylabel(upwards, fontsize=9)
             axes.spines[["top", "right"]].set_visible(False)
-            axes.tick_params(labelsize=8)
+            axes.tick_params(labelsize=8, labelleft=column == 0)
     source = (
         f"dashed: 95 % by profile likelihood, quantile {result.information.quantile:.3g}\n"
         "shaded: 50 and 95 % of a normal distribution that is as wide"
@@ -181,113 +178,3 @@ def experiment_figure(experiment: Experiment) -> Figure:
     finish(axes, LOADS["force"].label(), "expected gain [bits]")
     axes.legend(**LEGEND)
     return figure
-
-
-_ROWS = 5
-
-
-def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
-    """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
-    terminal, information = Terminal(), result.information
-    print_folded(terminal, f"{result.model.name} fitted to {_data_text(result)}", "bold")
-    print_columns(terminal, _table(result, posterior))
-    rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
-    print_folded(terminal, f"information of {rank}; {_scatter_text(result)}", "")
-    if posterior is not None:
-        print_folded(terminal, _sampling_text(posterior), "")
-    if result.sensitivity:
-        print_columns(terminal, _sensitivity_table(result))
-    print_columns(terminal, _next_table(result))
-    for note in result.notes:
-        if note not in [data.remark for data in result.data]:
-            print_folded(terminal, note, "dim")
-
-
-def _data_text(result: IdentificationResult) -> str:
-    sets = ", ".join(f"{len(data)} x {data.quantity}" for data in result.data)
-    remarks = dict.fromkeys(data.remark for data in result.data if data.remark)
-    return "; ".join([f"{len(result.misfit.value)} values ({sets})", *remarks])
-
-
-def _scatter_text(result: IdentificationResult) -> str:
-    if result.freedom <= 0:
-        return "as many values as unknowns: the quality of the fit cannot be tested"
-    if all(data.has_unknown_noise for data in result.data):
-        return "uncertainty of the data estimated from their scatter"
-    widening = result.misfit.widening
-    widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
-    return f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
-
-
-def _sampling_text(posterior: Posterior) -> str:
-    worst, fewest = max(posterior.r_hat.values()), min(posterior.effective.values())
-    verdict = "converged" if posterior.converged else f"not converged, which is up to {CONVERGED}"
-    return (
-        f"{len(posterior.samples)} samples, as good as {fewest:.0f} independent ones; "
-        f"acceptance {posterior.acceptance:.2f}, R-hat {worst:.4f}: {verdict}"
-    )
-
-
-def _table(result: IdentificationResult, posterior: Posterior | None) -> Table:
-    table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if posterior else ()))
-    for unknown, estimate in zip(result.transform.unknowns, result.estimates.values(), strict=True):
-        unit = unknown.quantity.shown
-        best = _number_text(unit.factor, estimate.value) if estimate.identifiable else "not identifiable"
-        band = _band_text(unit.factor, estimate.low, estimate.high)
-        sampled = () if posterior is None else (_band_text(unit.factor, *posterior.band(estimate.name)),)
-        table.add_row(estimate.name, best, band, unit.text, *sampled)
-    for product in result.information.products:
-        table.add_row(
-            product.name, _number_text(1.0, product.value), _band_text(1.0, product.low, product.high), product.unit
-        )
-    return table
-
-
-def _plain_table(*heads: str) -> Table:
-    """Make an empty table; the first column and units are at the left."""
-    return text_table(heads, left=(heads[0], "unit"), folded=heads[1:])
-
-
-def _band_text(factor: float, low: float, high: float) -> str:
-    return f"{_number_text(factor, low)} to {_number_text(factor, high)}"
-
-
-def _number_text(factor: float, number: float) -> str:
-    return f"{factor * number:.4g}"
-
-
-def _sensitivity_table(result: IdentificationResult) -> Table:
-    unknowns = result.transform.unknowns
-    heads = [f"Δ{unknown.quantity.symbol}, {unknown.quantity.shown.text}".removesuffix(", ") for unknown in unknowns]
-    table = _plain_table("if the machine had", *heads)
-    for error in result.sensitivity:
-        shifts = [_shift_text(result, error, index) for index in range(len(unknowns))]
-        table.add_row(error.title, *shifts)
-    return table
-
-
-def _shift_text(result: IdentificationResult, error: Sensitivity, index: int) -> str:
-    unknown = result.transform.unknowns[index]
-    ratio = result.shift_ratio(error, unknown.name)
-    if not result.estimates[unknown.name].identifiable:
-        return "-"
-    return f"{unknown.quantity.shown.factor * error.shifts[unknown.name]:+.3g} ({ratio:.1f}x)" if ratio > 5e-3 else "0"
-
-
-def _next_table(result: IdentificationResult) -> Table:
-    unknowns = result.transform.unknowns
-    table = _plain_table(
-        "measure next", "at", "to within", "bits", *(f"{unknown.quantity.symbol} left" for unknown in unknowns)
-    )
-    for gain in result.next.best_by_quantity[:_ROWS]:
-        candidate, quantity = gain.candidate, MEASURED[gain.candidate.quantity]
-        within = f"{_short_text(candidate.uncertainty * quantity.shown.factor)} {quantity.shown.text}"
-        load = "-" if candidate.force is None else f"{candidate.force:.4g} N"
-        ratios = [f"{100 * gain.uncertainty_ratio[unknown.name]:.0f} %" for unknown in unknowns]
-        table.add_row(quantity.title, load, within, f"{gain.bits:.2f}", *ratios)
-    return table
-
-
-def _short_text(number: float) -> str:
-    """Write a number with two digits, without an exponent if it is short."""
-    return f"{float(f'{number:.2g}'):g}"
