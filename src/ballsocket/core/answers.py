@@ -99,33 +99,15 @@ class Answer:
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """Comparison of one demand on a joint with its capacity; plain data, which a process can return.
+    """Comparison of one demand on a joint with its capacity; plain data, which a process can return."""
 
-    Attributes
-    ----------
-    title : str
-        Demand in words, such as "pressure on the liner".
-    quantity : str
-        Name of the quantity of demand and capacity in `QUANTITIES`.
-    demand : Bounded
-        Value with its error bar in internal units: mm, MPa, rad.
-    capacity : float or None
-        Largest acceptable value; None if it is unknown.
-    limit : str
-        Capacity in words, such as "allowable pressure".
-    source : str
-        Origin of the capacity, or the input that is missing.
-    trusted : bool
-        True if the demand lies in the range of its model.
-    """
-
-    title: str
-    quantity: str
-    demand: Bounded
-    capacity: float | None
-    limit: str
-    source: str
-    trusted: bool = True
+    title: str  # demand in words, such as "pressure on the liner"
+    quantity: str  # name of the quantity of demand and capacity in `QUANTITIES`
+    demand: Bounded  # with its error bar, in internal units: mm, MPa, rad
+    capacity: float | None  # largest acceptable value; None if it is unknown
+    limit: str  # capacity in words, such as "allowable pressure"
+    source: str  # origin of the capacity, or the input that is missing
+    trusted: bool = True  # the demand lies in the range of its model
 
     @property
     def ratio(self) -> Bounded | None:
