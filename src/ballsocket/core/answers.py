@@ -32,34 +32,16 @@ Cell = float | str | bool | Amount | tuple[float, ...] | None
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """Column of a table.
+    """Column of a table."""
 
-    Attributes
-    ----------
-    key : str
-        Key in JSON.
-    name : str
-        Name in CSV and data frames, with the unit at its end.
-    head, title : str
-        Head in tables, and its meaning in words.
-    unit : Unit or None
-        Metric unit for readers, also of a plain number; None for a column of words.
-    written : Unit
-        Unit in data.
-    digits : int
-        Number of significant digits for readers.
-    rank : int
-        Columns of the highest rank leave a narrow terminal first; 0 stays, `QUIET` is in data only.
-    """
-
-    key: str
-    name: str
+    key: str  # in JSON
+    name: str  # in CSV and data frames, with the unit at its end
     head: str
-    title: str = ""
-    unit: Unit | None = None
-    written: Unit = PLAIN
-    digits: int = 4
-    rank: int = 0
+    title: str = ""  # meaning of the head in words
+    unit: Unit | None = None  # metric unit for readers, also of a plain number; None for a column of words
+    written: Unit = PLAIN  # unit in data
+    digits: int = 4  # significant, for readers
+    rank: int = 0  # the highest ranks leave a narrow terminal first; 0 stays, `QUIET` is in data only
 
     @classmethod
     def of(cls, quantity: Quantity, *, head: str = "", digits: int = 4, rank: int = 0) -> Column:
@@ -106,55 +88,26 @@ class Table(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """Description of a result.
-
-    Attributes
-    ----------
-    title : str
-    lines : sequence of str
-        Sentences before the tables.
-    tables : sequence of Table
-    checks : sequence of Check
-    notes : sequence of str
-        Sentences on assumptions and limits.
-    """
+    """Description of a result."""
 
     title: str
-    lines: Sequence[str] = ()
+    lines: Sequence[str] = ()  # sentences before the tables
     tables: Sequence[Table] = ()
     checks: Sequence[Check] = ()
-    notes: Sequence[str] = ()
+    notes: Sequence[str] = ()  # sentences on assumptions and limits
 
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """Comparison of one demand on a joint with its capacity; plain data, which a process can return.
+    """Comparison of one demand on a joint with its capacity; plain data, which a process can return."""
 
-    Attributes
-    ----------
-    title : str
-        Demand in words, such as "pressure on the liner".
-    quantity : str
-        Name of the quantity of demand and capacity in `QUANTITIES`.
-    demand : Bounded
-        Value with its error bar in internal units: mm, MPa, rad.
-    capacity : float or None
-        Largest acceptable value; None if it is unknown.
-    limit : str
-        Capacity in words, such as "allowable pressure".
-    source : str
-        Origin of the capacity, or the input that is missing.
-    trusted : bool
-        True if the demand lies in the range of its model.
-    """
-
-    title: str
-    quantity: str
-    demand: Bounded
-    capacity: float | None
-    limit: str
-    source: str
-    trusted: bool = True
+    title: str  # demand in words, such as "pressure on the liner"
+    quantity: str  # name of the quantity of demand and capacity in `QUANTITIES`
+    demand: Bounded  # with its error bar, in internal units: mm, MPa, rad
+    capacity: float | None  # largest acceptable value; None if it is unknown
+    limit: str  # capacity in words, such as "allowable pressure"
+    source: str  # origin of the capacity, or the input that is missing
+    trusted: bool = True  # the demand lies in the range of its model
 
     @property
     def ratio(self) -> Bounded | None:

@@ -182,21 +182,11 @@ class Units(StrEnum):
 
 @dataclass(frozen=True)
 class Amount:
-    """Number in a sentence or a cell.
+    """Number in a sentence or a cell."""
 
-    Attributes
-    ----------
-    value : float
-        Number in the internal unit.
-    unit : Unit
-        Metric unit in which it is written.
-    digits : int
-        Number of significant digits.
-    """
-
-    value: float
-    unit: Unit = PLAIN
-    digits: int = 4
+    value: float  # in the internal unit
+    unit: Unit = PLAIN  # metric unit in which it is written
+    digits: int = 4  # significant
 
 
 class Sentence(str):

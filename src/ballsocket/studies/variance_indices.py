@@ -231,21 +231,10 @@ def _with_intervals(
     Resamples are drawn in chunks, so that the memory grows only linearly with the number of points. The jackknife of
     means is computed directly.
 
-    Parameters
-    ----------
-    terms : array of shape (n_terms, n_quantities, n_points)
-    statistic : callable
-        Function from means (..., n_quantities, n_terms) to values (..., n_quantities, n_values).
-    confidence : float or None
-    seed : int
+    The terms have the shape (n_terms, n_quantities, n_points); the statistic maps means (..., n_quantities, n_terms)
+    to values (..., n_quantities, n_values). The result has the statistic under "", and the ends under "_low" and
+    "_high", each (n_quantities, n_values).
 
-    Returns
-    -------
-    dict of str to array of shape (n_quantities, n_values)
-        The statistic under "", and the ends under "_low" and "_high".
-
-    References
-    ----------
     Efron & Tibshirani 1993, An Introduction to the Bootstrap, section 14.3.
     """
     from scipy.special import ndtr, ndtri
