@@ -168,12 +168,6 @@ class Units(StrEnum):
         written = self.of_text(unit)
         return (f"{head}{bracket}{written.text}]", written.factor) if bracket else (label, 1.0)
 
-    def cell(self, text: str, unit: str) -> str:
-        """Convert the numbers of a cell below a metric unit; a cell with other text stays."""
-        converted = self.sentence(f"{text.rstrip('*')} {unit}")
-        changed = converted.removesuffix(self.of_text(unit).text).rstrip()
-        return text if converted == f"{text.rstrip('*')} {unit}" else changed + "*" * text.endswith("*")
-
     def joint(self, joint: Any) -> str:
         """Describe a joint in one line; its name stays as it is."""
         head = f"{joint.name}: " if joint.name else ""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Sequence
 from copy import copy
 from dataclasses import replace
 from math import degrees, pi
-from typing import Any
 
 import numpy
 from rich.console import Console
@@ -108,7 +107,7 @@ def print_table(terminal: Terminal, table: Table) -> None:
         for row, verdict in zip(written.rows, written.verdicts, strict=True):
             texts.add_row(*(Text(text, style=_STYLES[verdict]) for text in row))
         lead = 1 + next((i for i, column in enumerate(written.columns[1:]) if column.unit is not None), 0)
-        _print_blocks(terminal, texts, lead)
+        print_columns(terminal, texts, lead)
     for line in table.lines:
         print_folded(terminal, line, "")
 
@@ -169,38 +168,11 @@ def _units_of(terminal: Console) -> Units:
     return terminal.units if isinstance(terminal, Terminal) else Units.SI
 
 
-def _converted(table: RichTable, units: Units) -> RichTable:
-    """Return a table in a system of units; units are in brackets in the heads, or in the first row."""
-    if units is Units.SI:
-        return table
-    converted = copy(table)
-    converted.columns = [replace(column, _cells=list(_converted_cells(column, units))) for column in table.columns]
-    for column in converted.columns:
-        column.header = Text(units.axis(str(column.header))[0])  # rich takes "[psi]" in a plain text for a style
-    return converted
+def print_columns(terminal: Console, table: RichTable, lead: int = 1) -> None:
+    """Print a table without a cut number: columns that do not fit follow below, beside the first `lead` ones again.
 
-
-def _converted_cells(column: RichColumn, units: Units) -> Iterator[Any]:
-    """Yield the cells of a column in a system of units."""
-    cells = list(column.cells)
-    unit = str(column.header).rpartition("[")[2].removesuffix("]")
-    if cells and units.of_text(str(cells[0])).text != str(cells[0]):
-        unit = str(cells.pop(0))
-        yield units.of_text(unit).text
-    for cell in cells:
-        text = units.cell(str(cell), unit)
-        yield Text(text, style=cell.style) if isinstance(cell, Text) else text
-
-
-def print_columns(terminal: Console, table: RichTable) -> None:
-    """Print a table without a cut number: columns that do not fit follow below, beside the first column again.
-
-    Columns without `no_wrap` are folded between words first. The table is converted to the units of the console.
+    Columns without `no_wrap` are folded between words first.
     """
-    _print_blocks(terminal, _converted(table, _units_of(terminal)))
-
-
-def _print_blocks(terminal: Console, table: RichTable, lead: int = 1) -> None:
     limits = [_width_limits(terminal, column) for column in table.columns]
     gap = table.padding[1] + table.padding[3]
     for indices in _column_blocks([least for least, _ in limits], gap, terminal.width, lead):
