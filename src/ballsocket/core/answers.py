@@ -4,7 +4,7 @@ A result lists its numbers once, in internal units, in a module beside it. Units
 
     columns = Column.of(WEAR["volume"]), Column.of(CONTACT["max_pressure"])
     table = Table("history", "Wear", columns, [Row((report.volume, report.max_pressure)) for report in reports])
-    Answer("Wear of a hip", [table], notes=history.notes)
+    Answer(title="Wear of a hip", tables=[table], notes=history.notes)
 
 `ballsocket.reports.terminal` and `ballsocket.reports.pages` print it; `records` and `to_frame` are its data.
 """
@@ -93,7 +93,6 @@ class Answer:
     title: str
     lines: Sequence[str] = ()  # sentences before the tables
     tables: Sequence[Table] = ()
-    checks: Sequence[Check] = ()
     notes: Sequence[str] = ()  # sentences on assumptions and limits
 
 
