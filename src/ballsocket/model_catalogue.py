@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 
 from .contact import Model, ModelInfo
 from .contact.model import RimLimited
-from .core.checks import known_name, nearest, shown
-from .core.display import html_list
+from .core.checks import NamedItems, known_name
 from .problem.gaps import GAP_KINDS
 
 _MODELS = {
@@ -58,12 +57,10 @@ class Models(MutableMapping[str, SomeInfo]):
     """Models by name; the module of a model is imported when the model is first used."""
 
     def __init__(self, entries: Mapping[str, str]) -> None:
-        self._entries: dict[str, Any] = dict(entries)
+        self._entries: NamedItems[Any] = NamedItems("model", entries)
 
     def __getitem__(self, name: str) -> SomeInfo:
-        if name not in self._entries:
-            raise KeyError(f"model {shown(name)} is not known{nearest(name, self)}")
-        entry: Any = self._entries[name]
+        entry = self._entries[name]
         return _load_model(entry) if isinstance(entry, str) else entry
 
     def __setitem__(self, name: str, model: SomeInfo) -> None:
@@ -82,10 +79,10 @@ class Models(MutableMapping[str, SomeInfo]):
         return len(self._entries)
 
     def __repr__(self) -> str:
-        return f"<{len(self)} models: {', '.join(self)}>"
+        return repr(self._entries)
 
     def _repr_html_(self) -> str:
-        return html_list(f"{len(self)} models", [(name, model.title) for name, model in self.items()])
+        return NamedItems("model", self)._repr_html_()
 
 
 catalogue: Models[Model] = Models(_MODELS)
