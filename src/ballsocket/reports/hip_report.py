@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -73,26 +74,27 @@ def hip_report(
         sections |= answer_sections(described, units)
         answer = replace(answer, notes=[*answer.notes, f"bands: {described.title} the values", *described.notes])
     if len(history.use.frame.loaded):
-        for section, (title, figure, caption) in _figures(history, bands).items():
-            sections[section] = (title, picture(figure_bytes(in_units(figure, units)), title, caption))
+        for section, (title, draw, caption) in _figures(history, bands).items():
+            sections[section] = (title, picture(figure_bytes(in_units(draw(history), units)), title, caption))
     title = f"Wear of a hip: {name}" if name else "Wear of a hip"
     lede = trusted_html(answer_lede(answer, units))
     return render_page("joint_report.html", title, sections, lede=lede, **letterhead(details))
 
 
-def _figures(history: History, bands: Bands | None) -> dict[str, tuple[str, Figure, str]]:
-    """Draw the figures of a hip that is loaded: title, figure and caption by the id of the section."""
-    figures = {section: (title, draw(history), caption) for section, (title, draw, caption) in _FIGURES.items()}
+def _figures(history: History, bands: Bands | None) -> dict[str, tuple[str, Callable[[History], Figure], str]]:
+    """Return title, figure and caption of the sections of a hip that is loaded, by their ids."""
+    figures = dict(_FIGURES)
     if history.use.ball_wear is not None:
-        figures["ball"] = ("Wear of the ball", hip_plots.ball_map(history), "Seen from above, in the ball's own frame.")
-    if history.film is not None:
-        curves = hip_plots.film_figure(history.use, history.film)
-        figures["film_course"] = ("Film over the cycle", curves, f"{WAVE_NOTE}. {CONFORMITY_NOTE}.")
+        figures["ball"] = ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")
+    if (film := history.film) is not None:
+        caption = f"{WAVE_NOTE}. {CONFORMITY_NOTE}."
+        figures["film_course"] = ("Film over the cycle", lambda run: hip_plots.film_figure(run.use, film), caption)
     if bands is not None:
-        figures["penetration"] = ("Penetration", hip_plots.penetration_curve(history, bands), _band_caption(bands))
+        curve = partial(hip_plots.penetration_curve, bands=bands)
+        figures["penetration"] = ("Penetration", curve, _band_caption(bands))
         if bands.indices is not None:
-            indices = hip_plots.share_figure(bands)
-            figures["matters"] = ("Sensitivity", indices, "Sobol's indices with 95 % intervals.")
+            caption = "Sobol's indices with 95 % intervals."
+            figures["matters"] = ("Sensitivity", lambda _: hip_plots.share_figure(bands), caption)
     return figures
 
 
