@@ -114,9 +114,7 @@ class Units(StrEnum):
 
     def text_of(self, quantity: Quantity, number: float) -> str:
         """Write a number, stated in the internal unit, with the unit of this system."""
-        unit = _legible(self.unit_of(quantity), number)
-        text = plain_number(number * unit.factor)
-        return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
+        return _written(number, self.unit_of(quantity))
 
     def sentence(self, text: str) -> str:
         """Write a sentence in this system: the amounts of a `Sentence`, else every number with a unit in the text.
@@ -142,14 +140,14 @@ class Units(StrEnum):
 
     def amount(self, amount: Amount) -> str:
         """Write an amount with its unit."""
-        unit = _legible(self.written(amount.unit), amount.value)
-        text = plain_number(amount.value * unit.factor, amount.digits)
-        return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
+        return _written(amount.value, self.written(amount.unit), amount.digits)
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
-        if self is Units.SI or unit in _WRITTEN_UNITS:
-            return Unit(unit) if self is Units.SI else _WRITTEN_UNITS[unit]
+        if self is Units.SI:
+            return Unit(unit)
+        if unit in _WRITTEN_UNITS:
+            return _WRITTEN_UNITS[unit]
         if " " in unit and "(" not in unit:
             parts = list(map(self.of_text, unit.split(" ")))
             return Unit(" ".join(part.text for part in parts), prod(part.factor for part in parts))
@@ -170,8 +168,7 @@ class Units(StrEnum):
 
     def joint(self, joint: Any) -> str:
         """Describe a joint in one line; its name stays as it is."""
-        head = f"{joint.name}: " if joint.name else ""
-        return head + self.sentence(str(joint).removeprefix(head))
+        return self.sentence(joint_sentence(joint))
 
 
 @dataclass(frozen=True)
@@ -207,6 +204,19 @@ class Sentence(str):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Sentence, (self.template, *self.parts)
+
+
+def joint_sentence(joint: Any) -> Sentence:
+    """Describe a joint in one sentence, in which its name stays as it is."""
+    head = f"{joint.name}: " if joint.name else ""
+    return Sentence("{}{}", head, Sentence(str(joint).removeprefix(head)))
+
+
+def _written(number: float, unit: Unit, digits: int = 4) -> str:
+    """Write a number, stated in the internal unit, with a unit."""
+    legible = _legible(unit, number)
+    text = plain_number(number * legible.factor, digits)
+    return f"{text}{'' if legible.text in ('', '°') else ' '}{legible.text}"
 
 
 def _legible(unit: Unit, number: float) -> Unit:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.kinds import PERCENT
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, joint_sentence
 from .bands import Bands
 from .history import History
 
@@ -27,7 +27,7 @@ class HipRun:
 
 def describe_hips(runs: Sequence[HipRun]) -> Answer:
     """Describe several hips: one below the other at each report."""
-    joints = (Sentence("{}: {}; {}", run.name, Sentence(str(run.history.use.joint)), _cycle(run)) for run in runs)
+    joints = (Sentence("{}: {}; {}", run.name, joint_sentence(run.history.use.joint), _cycle(run)) for run in runs)
     return Answer(title="hips side by side", lines=list(joints), tables=[_table(runs)], notes=list(_notes(runs)))
 
 

@@ -23,7 +23,7 @@ from ..core.kinds import (
     Unit,
 )
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, joint_sentence
 from ..lubrication.friction import Stribeck
 from .contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from .film import Film
@@ -36,7 +36,7 @@ def describe_history(history: History, name: str = "") -> Answer:
     wear = history.table()._replace(lines=list(_wear_lines(history)))
     contacts = [contact_table(history)] if use.unworn_checks else []
     return Answer(
-        title=Sentence("{}{}; {}", f"{name}: " if name else "", Sentence(str(use.joint)), use.cycle.name),
+        title=Sentence("{}{}; {}", f"{name}: " if name else "", joint_sentence(use.joint), use.cycle.name),
         lines=list(_first_cycle(history)),
         tables=[wear, *contacts, *([] if film is None else [film_table(film)])],
         notes=[note for note in history.notes if note != use.cycle.remark],

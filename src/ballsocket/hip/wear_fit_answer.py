@@ -7,7 +7,7 @@ from math import isfinite
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.display import plain_number
 from ..core.kinds import Unit
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, joint_sentence
 from .wear_fit import WearFit
 
 
@@ -16,7 +16,7 @@ def describe_wear_fit(fit: WearFit) -> Answer:
     use = fit.simulation
     title = "{}; {}: coefficient of the wear law {}"
     return Answer(
-        title=Sentence(title, Sentence(str(use.joint)), use.cycle.name, repr(fit.law_name)),
+        title=Sentence(title, joint_sentence(use.joint), use.cycle.name, repr(fit.law_name)),
         tables=[_coefficients(fit), *([_readings(fit)] if fit.readings else []), _measured(fit)],
         notes=fit.notes,
     )

@@ -6,7 +6,7 @@ import numpy
 
 from ..core.answers import Answer, Column, Row, Table
 from ..core.kinds import NEWTONS, PERCENT, PLAIN, Kind
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, joint_sentence
 from .calibration import Calibration
 
 
@@ -26,6 +26,6 @@ def describe_calibration(fit: Calibration) -> Answer:
     amounts += [(title, Amount(share, PERCENT, 3)) for title, share in shares.items()]
     columns = [Column.of_words("number"), Column.of_number("value")]
     return Answer(
-        title=Sentence(str(fit.joint)),
+        title=joint_sentence(fit.joint),
         tables=[Table("calibration", "Calibration", columns, [Row(cells) for cells in amounts])],
     )
