@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import partial
-from math import pi
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -16,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
-from ..problem.cup import Cup, Interface
+from ..problem.cup import UP, Cup, Direction, Interface
 from .assembly import (
     SolverResult,
     as_arrays,
@@ -207,8 +206,11 @@ class Model(ModelInfo):
         OutsideDomainError
             A load at an angle to the axis of the cup, of a model with a rim for axial loads only.
         """
-        tilted = cup.tilted(min(cup.load_tilt(**aim), pi / 2)) if aim else cup
-        return self if tilted == Cup() else RimLimited(model=self, cup=tilted)
+        if aim:
+            cup, direction = cup.under_load(cup.load_tilt(**aim))
+        else:
+            direction = UP
+        return self if cup == Cup() and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.
@@ -284,10 +286,12 @@ class RimLimited(ModelWrapper):
     model : Model
         Model without a rim.
     cup : Cup
-        Cup that is loaded upwards in its frame.
+    direction : tuple of float
+        Direction of the force on the cup, in the body.
     """
 
     cup: Cup
+    direction: Direction = UP
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -296,7 +300,10 @@ class RimLimited(ModelWrapper):
         The rim must be one liner thickness or more away.
         """
         rim_range = Range(
-            quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
+            quantity=partial(_relative_rim_distance, self.cup, self.direction),
+            symbol="distance to the rim over L",
+            low=1.0,
+            why=_RIM,
         )
         sliding_liner = NeverValid(
             why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
@@ -311,7 +318,7 @@ class RimLimited(ModelWrapper):
 _RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"
 
 
-def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
+def _relative_rim_distance(cup: Cup, direction: Direction, contact: Contact) -> Array:
     """Compute the distance from contact edge to rim, divided by the liner thickness.
 
     R2 replaces a larger thickness.
@@ -321,4 +328,4 @@ def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
     """
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
-    return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
+    return cup.edge_distance(R2, contact.half_angle, direction) / where(L < R2, L, R2)
