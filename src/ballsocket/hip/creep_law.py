@@ -61,10 +61,7 @@ class CreepLaw(Law):
     def linear_response(self, strain: Numbers, seconds: float) -> tuple[Numbers, float]:
         """Compute the total creep strain after a time in s as a linear function of the pressure.
 
-        Returns
-        -------
-        tuple
-            Strain without pressure (points,), and the added strain per MPa.
+        These are the strain without pressure (points,), and the added strain per MPa.
         """
         compliance, growth = self._compliance_and_growth(seconds)
         return ((1 - growth)[:, None] * strain).sum(axis=0), float(growth @ compliance)

@@ -222,12 +222,7 @@ class Film(Record):
         }
 
     def plot(self) -> Any:
-        """Plot the film over the cycle, and maps of it over the bore.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Plot the film over the cycle, and maps of it over the bore; return the matplotlib figure."""
         return load_plot("cycle_film")(self)
 
 

@@ -267,14 +267,7 @@ class HipSetup(OneLine):
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
     def wearing_exposure(self, exposure: CycleExposure, cells: Numbers | None = None) -> CycleExposure:
-        """Restrict an exposure to the instants and cells that wear, by the limit of the film ratio.
-
-        Parameters
-        ----------
-        exposure : CycleExposure
-        cells : array (points,), optional
-            Numbers of the cells of the exposure; all by default.
-        """
+        """Restrict the exposure of some cells (all by default) to instants and cells that wear, by the film ratio."""
         if self.film_limit is None:
             return exposure
         return exposure.select_contact(self._wearing_cells if cells is None else self._wearing_cells[:, cells])

@@ -136,18 +136,11 @@ class RimDistance(Record):
 
 
 def mask_edge_loading(worn: RimDistance, unworn: RimDistance, max_pressure: float) -> Numbers:
-    """Find the contacts of a worn bore that are edge loading: (loaded,).
+    """Find the contacts of a worn bore that are edge loading, not wear: (loaded,).
 
     A worn bore that fits the ball touches it up to the rim in every instant. Edge loading is a contact at the rim for
     one of two reasons. The load points so close to the rim that the contact of the unworn bore reaches it too. Or the
-    largest pressure of the cycle is at the rim.
-
-    Parameters
-    ----------
-    worn, unworn : RimDistance
-        Contacts of the worn and of the unworn bore under the same loads.
-    max_pressure : float
-        Largest pressure in MPa of the worn bore in the cycle.
+    largest pressure of the cycle, in MPa, is at the rim.
     """
     at_rim = worn.distance <= 0
     largest_at_rim = (worn.pressure > 0) & (worn.pressure >= max_pressure)
@@ -157,20 +150,9 @@ def mask_edge_loading(worn: RimDistance, unworn: RimDistance, max_pressure: floa
 def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> RimDistance:
     """Compute the distance in mm of each contact from the rim, from a field that is 0 at contact edges.
 
-    Parameters
-    ----------
-    grid : Grid
-        Cells of the bore.
-    radius : float
-        Radius of the bore in mm.
-    field : array (loaded, cells)
-        Values that are positive in the contact and negative outside. The edge is the zero of linear interpolation
-        between two cells.
-    pressure : array (loaded, cells)
-        Pressure in MPa.
-    inset : float
-        Distance of the edge inside that zero, as a share of a ring's width. If it is positive, pressure in the last
-        ring means a contact that reaches the rim.
+    The field (loaded, cells) is positive in the contact; the edge is the zero of linear interpolation between two
+    cells. `inset` is the distance of the edge inside that zero, as a share of a ring's width. If it is positive,
+    pressure in the last ring means a contact that reaches the rim.
     """
     level = field.reshape(len(field), grid.rings, grid.meridians)
     polar_nodes = grid.polar - inset * numpy.diff(grid.edges)
@@ -293,15 +275,7 @@ class SpringLoadedBall:
         return leaves
 
     def solve_separation(self, forces: Numbers, steps: Numbers) -> Microseparation:
-        """Solve for the position of the ball on the rim under each force (n, 3) in N.
-
-        Parameters
-        ----------
-        forces : array (n, 3)
-            Forces in N, with those of the spring on an undisplaced ball.
-        steps : array (n,)
-            Indices of the steps in the cycle.
-        """
+        """Solve for the ball on the rim under each force (n, 3) in N, which includes the undisplaced spring."""
         mismatch = abs(self.spring.mismatch)
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
         for _ in range(_BISECTIONS):

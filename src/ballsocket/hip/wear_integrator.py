@@ -32,43 +32,19 @@ _MARGIN = 0.3  # initial margin of the active cells, relative to the largest ove
 
 @dataclass(kw_only=True, eq=False)
 class WearIntegrator:
-    """Integrator of wear and creep: state of a run, advanced in blocks of cycles.
-
-    Attributes
-    ----------
-    setup : HipSetup
-    cycles : float
-        Number of cycles so far.
-    depth : array (cells,)
-        Worn depth of the socket in mm.
-    ball : array (ball's cells,)
-        Worn depth of the ball in mm; empty for a ball without wear.
-    work : float
-        ∫∫ p v dA dt so far, in N mm.
-    length : float
-        Length of the next block in cycles.
-    steps : int
-        Number of blocks so far.
-    converged : bool
-        True if every contact balanced its load.
-    volume_error : float
-        Estimated error of the worn volume by the blocks, in mm³.
-    margin : float
-        Margin of the active cells around the contacts, relative to the largest overlap.
-    equilibrium : CycleEquilibrium
-        Last solved contacts.
-    """
+    """Integrator of wear and creep: state of a run, advanced in blocks of cycles."""
 
     setup: HipSetup
-    cycles: float = 0.0
-    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    cycles: float = 0.0  # number of cycles so far
+    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))  # (cells,), worn depth of the socket in mm
+    # (ball's cells,), worn depth of the ball in mm; empty for a ball without wear
     ball: Numbers = field(default_factory=lambda: numpy.zeros(0))
-    work: float = 0.0
-    length: float = inf
-    steps: int = 0
-    converged: bool = True
-    volume_error: float = 0.0
-    margin: float = _MARGIN
+    work: float = 0.0  # ∫∫ p v dA dt so far, in N mm
+    length: float = inf  # length of the next block in cycles
+    steps: int = 0  # number of blocks so far
+    converged: bool = True  # True if every contact balanced its load
+    volume_error: float = 0.0  # estimated error of the worn volume by the blocks, in mm³
+    margin: float = _MARGIN  # margin of the active cells around the contacts, relative to the largest overlap
 
     def __post_init__(self) -> None:
         """Initialize the state of the integrator for an unworn bore."""

@@ -131,13 +131,7 @@ class WearLaw(Law):
         return None
 
     def with_coefficient(self, value: float) -> WearLaw:
-        """Return this law with another value of its wear coefficient.
-
-        Raises
-        ------
-        ValueError
-            The law has no coefficient.
-        """
+        """Return this law with another value of its wear coefficient; ValueError for a law without one."""
         changed: WearLaw = replace(self, **{_require_coefficient_field(self).name: value})  # type: ignore[type-var]
         return changed
 
