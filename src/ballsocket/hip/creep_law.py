@@ -97,9 +97,9 @@ def constrained_share(poisson: float) -> float:
     return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson)
 
 
-def creep_notes(creep: CreepLaw | None, poisson: float) -> tuple[str, ...]:
-    """List notes on a creep law and the confinement of the liner; empty without a creep law."""
-    return () if creep is None else (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
+def creep_notes(creep: CreepLaw, poisson: float) -> tuple[str, ...]:
+    """List notes on a creep law and the confinement of the liner."""
+    return (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
 
 
 def confinement_note(creep: CreepLaw, poisson: float) -> str:

@@ -136,17 +136,14 @@ class Law(ABC):
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:
         """List the fields of the law with their units and limits."""
+        numbers = [
+            (number.name, number.default is MISSING, number.metadata["law"])
+            for number in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
+            if "law" in number.metadata
+        ]
         return tuple(
-            LawField(
-                name=dataclass_field.name,
-                required=dataclass_field.default is MISSING,
-                **{
-                    **dataclass_field.metadata["law"],
-                    "key": dataclass_field.metadata["law"]["key"] or dataclass_field.name,
-                },
-            )
-            for dataclass_field in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
-            if "law" in dataclass_field.metadata
+            LawField(name=name, required=required, **{**metadata, "key": metadata["key"] or name})
+            for name, required, metadata in numbers
         )
 
     @property

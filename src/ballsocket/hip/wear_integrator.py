@@ -175,7 +175,9 @@ class WearIntegrator:
             block = integrate_step(
                 self._compute_change_per_cycle, self._state_vector, self._rate, length, stage_count(length, decay_rate)
             )
-            if self._contact_left_active_cells(block):
+            depth = self.depth + self.creep_depth
+            depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
+            if self._reaches_inactive_cells(depth, 0.0):
                 self.margin *= 2
                 self._update_active_cells()
                 continue
@@ -191,7 +193,8 @@ class WearIntegrator:
         self.cycles = count if length == remaining else self.cycles + length
         if self.setup.creep is not None:
             self._advance_creep_strain(self.setup.creep, length * self.setup.seconds)
-        if self._contact_near_inactive_cells or self.setup.creep is not None:
+        depth = self.depth + self.creep_depth
+        if self.setup.creep is not None or self._reaches_inactive_cells(depth, self.margin / 2):
             self._update_active_cells()
 
     def _store_state_vector(self, state_vector: Numbers) -> None:
@@ -232,19 +235,9 @@ class WearIntegrator:
         mean_error = float(numpy.sqrt(depth_error @ depth_error / max(len(depth_error), 1)))
         return mean_error / allowed_error if allowed_error > 0 else 0.0
 
-    def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
-        """Check if a contact at the end of a block reaches inactive cells."""
-        depth = self.creep_depth
-        depth += self.depth
-        depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
-        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, 0.0)
-        mask[self._active.cells] = False
-        return bool(mask.any())
-
-    @property
-    def _contact_near_inactive_cells(self) -> bool:
-        depth = self.depth + self.creep_depth
-        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
+    def _reaches_inactive_cells(self, depth: Numbers, margin: float) -> bool:
+        """Check if a contact on a bore of a depth (cells,) in mm reaches inactive cells, or comes near to them."""
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, margin)
         mask[self._active.cells] = False
         return bool(mask.any())
 
