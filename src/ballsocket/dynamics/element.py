@@ -47,7 +47,6 @@ _PARTS: dict[str, Any] = {
 }
 """Types of the parts of a force element by their names."""
 
-_CURVE_QUANTITIES = ("half_angle", "max_pressure")
 _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
@@ -265,8 +264,8 @@ class ForceElement(OneLine):
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
         """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
-        half_angle, pressure = (fit_quantity_curve(self.model, self.joint, name) for name in _CURVE_QUANTITIES)
-        return half_angle, pressure
+        model, joint = self.model, self.joint
+        return fit_quantity_curve(model, joint, "half_angle"), fit_quantity_curve(model, joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""
