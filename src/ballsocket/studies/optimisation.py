@@ -1,4 +1,4 @@
-"""Optimal joint: smallest contact quantity over ranges of parameters, within limits."""
+"""Best joints within limits: the smallest contact quantity over ranges of parameters, and Pareto fronts of two."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -23,6 +23,9 @@ from .limits import Limit, allowed, count_verdicts, limited_quantities, refusal_
 from .parameters import MATERIAL_PARTS, PARAMETERS, hold, vary_joint
 from .run import study
 from .task import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
 
 _SEARCH_SECONDS = 3.0  # time in s that the search for starts may take
 _MIN_SAMPLES, _MAX_SAMPLES = 64, 4096  # range of the number of samples of the search
@@ -300,3 +303,42 @@ class _Problem:
 def _size(limit: Limit) -> float:
     """Return the largest finite end of a limit, at least 0.001."""
     return max(abs(end) for end in (limit.low, limit.high, 1e-3) if numpy.isfinite(end))
+
+
+def pareto(
+    study: xarray.Dataset, minimise: tuple[str, str] = ("area", "max_pressure"), limits: Iterable[Limit] = ()
+) -> xarray.Dataset:
+    """Select the allowed points of a study for which no other allowed point is better in both quantities.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        Result of `study`.
+    minimise : tuple of two str
+        Quantities of the study. By default a small contact area for little wear, and a low peak pressure for strength.
+    limits : iterable of Limit
+        Limits that each point must meet.
+
+    Returns
+    -------
+    xarray.Dataset
+        Points along the dimension `point`, in the order of the first quantity.
+
+    Raises
+    ------
+    ValueError
+        A quantity that the study does not have; no allowed point.
+    """
+    check_names(minimise, [str(name) for name in study.data_vars], "among the quantities of the study")
+    limits = tuple(limits)
+    good = allowed(study, limits)
+    points = study.stack(point=list(study.sizes), create_index=False)
+    mask = good.stack(point=list(good.dims), create_index=False).values if good.dims else numpy.array([bool(good)])
+    if not mask.any():
+        raise ValueError(refusal_reason(study, limits, "no point is allowed", "at any point"))
+    points = points.isel(point=numpy.flatnonzero(mask))
+    first, second = (points[name].values for name in minimise)
+    order = numpy.lexsort((second, first))
+    lowest = numpy.minimum.accumulate(second[order])
+    better = numpy.append(True, second[order][1:] < lowest[:-1])
+    return points.isel(point=order[better])
