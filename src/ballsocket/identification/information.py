@@ -100,14 +100,7 @@ class Product:
 
     def summary(self) -> dict[str, Any]:
         """Return the product as a dictionary for JSON."""
-        return {
-            "name": self.name,
-            "exponents": self.exponents,
-            "unit": self.unit,
-            "value": self.value,
-            "low": self.low,
-            "high": self.high,
-        }
+        return {"name": self.name, **vars(self)}
 
 
 @dataclass(frozen=True, eq=False)
