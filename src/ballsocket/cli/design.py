@@ -24,13 +24,12 @@ from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit, limited_quantities
-from ..studies.map_answer import describe_map, map_summary
 from ..studies.optimisation import optimise as find_optimum
-from ..studies.optimum_answer import describe_front, describe_optimum, front_summary
+from ..studies.optimisation import pareto
 from ..studies.parameters import LOADS
-from ..studies.pareto_front import pareto
 from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity_answer import describe_sensitivity, index_table, sensitivity_summary
+from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
