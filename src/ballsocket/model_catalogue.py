@@ -103,10 +103,7 @@ reference = catalogue["exact"]
 def named_model(name: Any) -> Model:
     """Return a model by its name.
 
-    Raises
-    ------
-    ValueError
-        A name that is not known; the message suggests the nearest one.
+    Raises ValueError: a name that is not known; the message suggests the nearest one.
     """
     return named_models[known_name("model", name, named_models)]
 
@@ -117,10 +114,7 @@ SomeModel = TypeVar("SomeModel", bound=Model)
 def with_gap(model: SomeModel, name: str | None) -> SomeModel:
     """Return a model with the gap of a name, "linear" or "circular"; None leaves the model as it is.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, or a model that has one gap only.
+    Raises ValueError: an unknown name, or a model that has one gap only.
     """
     if name is None:
         return model

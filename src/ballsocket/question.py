@@ -151,11 +151,8 @@ def every_model(file: JointFile) -> dict[str, Model]:
 def answer(question: PressQuestion) -> PressAnswer:
     """Press a joint by the requested models and by the exact solution.
 
-    Raises
-    ------
-    ValueError
-        None of the requested models has a result for such a joint; no load; a pull-out force without the model
-        `sphere`, or without an arc of cover.
+    Raises ValueError: none of the requested models has a result for such a joint; no load; a pull-out force without the
+    model `sphere`, or without an arc of cover.
     """
     file, assumptions = complete(question.file)
     models = question.chosen

@@ -70,10 +70,7 @@ class ForceElementInputs(Table, frozen=True, kw_only=True):
 
         A joint with an interference has a tabulated element of the model sphere.
 
-        Raises
-        ------
-        ValueError
-            The model has no force law, or a value is not allowed.
+        Raises ValueError: the model has no force law, or a value is not allowed.
         """
         friction = None if self.friction is None else Friction(coefficient=float(self.friction))
         if file.joint.clearance < 0:

@@ -132,10 +132,7 @@ def film(
 def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: RingTable) -> list[Contact]:
     """Press the joint by the requested models.
 
-    Raises
-    ------
-    typer.Exit
-        A model has no result.
+    Raises typer.Exit: a model has no result.
     """
     load = needed_load(file)
     question = PressQuestion(

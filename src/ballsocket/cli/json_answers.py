@@ -32,10 +32,7 @@ Arguments = Sequence[str]
 def echo_json(answer: Answer) -> None:
     """Print one JSON object with provenance and next steps; a missing number is null.
 
-    Raises
-    ------
-    ArithmeticError
-        A number is infinite.
+    Raises ArithmeticError: a number is infinite.
     """
     try:
         text = json.dumps(add_provenance(answer, sys.argv[1:]), indent=2, allow_nan=False)

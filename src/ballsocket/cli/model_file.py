@@ -46,11 +46,8 @@ def is_model_file(text: str) -> bool:
 def requested_model(text: str) -> Model:
     """Return the model of an option `--model`: a name, or FILE.py:NAME.
 
-    Raises
-    ------
-    ValueError
-        An unknown name; a model file that does not exist, fails, or has no such model; a model file in a process that
-        serves others.
+    Raises ValueError: an unknown name; a model file that does not exist, fails, or has no such model; a model file in a
+    process that serves others.
     """
     return load_model(text) if is_model_file(text) else named_model(text)
 
@@ -61,10 +58,7 @@ def load_model(text: str) -> Model:
     The name belongs to a model, to a class or function that makes one without arguments, to a foundation modulus, or
     to a function that computes the modulus K in MPa/mm of a joint.
 
-    Raises
-    ------
-    ValueError
-        See `requested_model`.
+    Raises ValueError: see `requested_model`.
     """
     if is_restricted():
         raise ValueError(f"model {shown(text)} is not allowed: only the command line of a user runs a model file")

@@ -96,10 +96,7 @@ def measure(model: Model, size: int = 20_000, seed: int = 1) -> MeasuredValidity
     size, seed : int
         Size and seed of the population.
 
-    Raises
-    ------
-    ValueError
-        A model without a promise, or without a valid contact in the population.
+    Raises ValueError: a model without a promise, or without a valid contact in the population.
     """
     promise = model.promise
     if promise is None:

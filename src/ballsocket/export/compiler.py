@@ -67,10 +67,7 @@ def compiler() -> list[str]:
 
     CC is the path of a program, which may contain blanks, or a program with arguments.
 
-    Raises
-    ------
-    NoCompiler
-        No compiler is installed.
+    Raises NoCompiler: no compiler is installed.
     """
     if (stated_program := shutil.which(os.environ.get("CC", ""))) is not None:
         return [stated_program]

@@ -57,10 +57,7 @@ OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"
 def decode_text(raw: bytes) -> str:
     """Decode text in UTF-8 or UTF-16, with or without a byte order mark, or in cp1252, the code page of Windows.
 
-    Raises
-    ------
-    ValueError
-        Bytes that are no text.
+    Raises ValueError: bytes that are no text.
     """
     wide = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}.get(raw[:2])
     if wide is None and b"\0" in raw[:2]:
@@ -78,10 +75,7 @@ def decode_text(raw: bytes) -> str:
 def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
     """Yield each possible separator of cells and the cells of all lines; comments (#) have none.
 
-    Raises
-    ------
-    ValueError
-        A quote that does not close, with all separators.
+    Raises ValueError: a quote that does not close, with all separators.
     """
     errors, n_tables = [], 0
     for separator in _SEPARATORS:
@@ -106,12 +100,8 @@ def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
 def read_excel(raw: bytes) -> dict[str, list[NumberedRow]]:
     """Return the rows of each sheet with a number in an Excel file (.xlsx), or of all sheets without any.
 
-    Raises
-    ------
-    ValueError
-        Another content, or one that is too large.
-    ImportError
-        The extra `xlsx` is not installed.
+    Raises ValueError: another content, or one that is too large.
+    Raises ImportError: the extra `xlsx` is not installed.
     """
     from zipfile import BadZipFile, ZipFile
 
@@ -155,10 +145,7 @@ def decimal_mark(cells: Iterable[tuple[int, Cell]], separator: str) -> str:
 
     Numbers between commas have a decimal point unless one of them contains a comma.
 
-    Raises
-    ------
-    ValueError
-        Numbers with both marks, or only such with one mark that may also stand between thousands.
+    Raises ValueError: numbers with both marks, or only such with one mark that may also stand between thousands.
     """
     settled: dict[str, tuple[int, str]] = {}
     ambiguous: tuple[int, str] | None = None

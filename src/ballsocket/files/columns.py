@@ -111,10 +111,7 @@ class Head:
     def factor(self, kind: Kind) -> float:
         """Return the factor from the unit of the column to mm, N, MPa or rad.
 
-        Raises
-        ------
-        ValueError
-            A missing unit, or the unit of another quantity.
+        Raises ValueError: a missing unit, or the unit of another quantity.
         """
         if kind is Kind.NUMBER:
             return parse(self.text, f"1 {'' if self.unit in ('-', '1') else self.unit}".strip(), kind)
@@ -246,10 +243,7 @@ class CellTable:
     def numbers(self, heads: Sequence[Head]) -> NumberTable:
         """Convert columns to numbers.
 
-        Raises
-        ------
-        ValueError
-            Numbers whose decimal mark is ambiguous, or more than fit into the memory.
+        Raises ValueError: numbers whose decimal mark is ambiguous, or more than fit into the memory.
         """
         check_memory(
             f"{plain_number(len(self.rows), 3)} rows of {self.title}", _COPIES * 8 * len(self.rows) * len(heads)
@@ -313,14 +307,10 @@ def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Co
 
     The names in `texts` are those of columns of text, whose heads have no unit.
 
-    Raises
-    ------
-    ValueError
-        A file that is too large or no table, a known column that appears twice, or two tables with the same columns.
-    ImportError
-        An optional extra is not installed.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a file that is too large or no table, a known column that appears twice, or two tables with the
+    same columns.
+    Raises ImportError: an optional extra is not installed.
+    Raises OSError: the file cannot be read.
     """
     try:
         return _parse_table(path.name, _read_bytes(path), _HeadReader(names, choice, texts))

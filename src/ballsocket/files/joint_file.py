@@ -270,10 +270,8 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     The name of a material replaces all its numbers. A length, a load or a direction replaces the one that excludes it;
     `Joint.replace` holds the other lengths that the file gives, and names those that change.
 
-    Raises
-    ------
-    ValueError
-        As of `read_joint`; keys of the tables that exclude each other; a length that would change another one.
+    Raises ValueError: as of `read_joint`; keys of the tables that exclude each other; a length that would change
+    another one.
     """
     tables, joint = read_table(content, JointFileTable), file.joint
     lengths, load = tables.joint or LengthsTable(), tables.load or LoadTable()
@@ -349,10 +347,7 @@ def _shell(
 
     Without a thickness of the shell, an outer dimension and the thickness of the liner determine it.
 
-    Raises
-    ------
-    ValueError
-        A thickness that is missing, or an outer dimension that leaves no shell.
+    Raises ValueError: a thickness that is missing, or an outer dimension that leaves no shell.
     """
     material = _material("shell", table)
     remaining = dict(numbers)
@@ -402,12 +397,8 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
 
     `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error, and the nearest allowed name.
-    OSError
-        A joint file cannot be read.
+    Raises ValueError: one sentence: the error, and the nearest allowed name.
+    Raises OSError: a joint file cannot be read.
     """
     if tables.joint is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
@@ -423,10 +414,7 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
 def named_joint(name: str, folder: Path = Path()) -> JointFile:
     """Return the joint of a file in a folder, or the preset of that name.
 
-    Raises
-    ------
-    ValueError
-        No such file or preset.
+    Raises ValueError: no such file or preset.
     """
     if not name:
         raise ValueError("the joint's name is empty")

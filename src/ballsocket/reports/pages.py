@@ -53,12 +53,8 @@ _LOGO_FORMATS = {".png": "png", ".svg": "svg+xml"}
 def check_page_path(path: Path) -> None:
     """Check that a page can be written to a path.
 
-    Raises
-    ------
-    ValueError
-        Another ending than .html or .pdf, or a folder that does not exist.
-    ImportError
-        A .pdf, and the writer of PDF is not installed.
+    Raises ValueError: another ending than .html or .pdf, or a folder that does not exist.
+    Raises ImportError: a .pdf, and the writer of PDF is not installed.
     """
     check_ending("report", path, *PAGE_FORMATS)
     if path.suffix.lower() == ".pdf":
@@ -68,12 +64,8 @@ def check_page_path(path: Path) -> None:
 def write_page(page: str, path: Path, paper: str = "A4") -> None:
     """Write a page as HTML, or printed as PDF on sheets of "A4" or "letter", according to the ending of `path`.
 
-    Raises
-    ------
-    ValueError, ImportError
-        As `check_page_path`.
-    OSError
-        The path cannot be written to.
+    Raises ValueError, ImportError: as `check_page_path`.
+    Raises OSError: the path cannot be written to.
     """
     check_page_path(path)
     with write_atomically(path) as draft:
@@ -95,10 +87,7 @@ def pdf_of(page: str, paper: str = "A4") -> bytes:
 def _weasyprint() -> Any:
     """Import the writer of PDF.
 
-    Raises
-    ------
-    ImportError
-        It is not installed, or a library of the system that it needs.
+    Raises ImportError: it is not installed, or a library of the system that it needs.
     """
     needs("pdf", "weasyprint")
     try:
@@ -113,12 +102,8 @@ def _weasyprint() -> Any:
 def logo_address(path: Path) -> str:
     """Return a picture in a file as an address inside the page.
 
-    Raises
-    ------
-    ValueError
-        Another format than PNG and SVG, or a file that is too large.
-    OSError
-        The file cannot be read.
+    Raises ValueError: another format than PNG and SVG, or a file that is too large.
+    Raises OSError: the file cannot be read.
     """
     form = _LOGO_FORMATS.get(path.suffix.lower())
     if form is None:
@@ -139,10 +124,7 @@ HEAD_TEXTS = ("customer", "project", "author")
 def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any]:
     """Return the head of a report as values of its template; the date is by default today.
 
-    Raises
-    ------
-    ValueError, OSError
-        As `logo_address`.
+    Raises ValueError, OSError: as `logo_address`.
     """
     rows = [(name, getattr(details, name)) for name in HEAD_TEXTS if getattr(details, name)]
     return {

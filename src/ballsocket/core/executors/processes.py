@@ -81,10 +81,7 @@ class Processes:
     retries : int
         Number of times that the worker process of one piece may die before an error is raised.
 
-    Raises
-    ------
-    ValueError
-        Fewer than one worker, or more than `MAX_WORKERS`.
+    Raises ValueError: fewer than one worker, or more than `MAX_WORKERS`.
     """
 
     workers: int | None = None
