@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections import UserDict
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
@@ -53,33 +54,15 @@ def _load_model(entry: str) -> Any:
 SomeInfo = TypeVar("SomeInfo", bound=ModelInfo)
 
 
-class Models(MutableMapping[str, SomeInfo]):
+class Models(UserDict[str, SomeInfo]):
     """Models by name; the module of a model is imported when the model is first used."""
 
     def __init__(self, entries: Mapping[str, str]) -> None:
-        self._entries: NamedItems[Any] = NamedItems("model", entries)
+        self.data: NamedItems[Any] = NamedItems("model", entries)
 
     def __getitem__(self, name: str) -> SomeInfo:
-        entry = self._entries[name]
+        entry = self.data[name]
         return _load_model(entry) if isinstance(entry, str) else entry
-
-    def __setitem__(self, name: str, model: SomeInfo) -> None:
-        self._entries[name] = model
-
-    def __delitem__(self, name: str) -> None:
-        del self._entries[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._entries
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
-
-    def __len__(self) -> int:
-        return len(self._entries)
-
-    def __repr__(self) -> str:
-        return repr(self._entries)
 
     def _repr_html_(self) -> str:
         return NamedItems("model", self)._repr_html_()
