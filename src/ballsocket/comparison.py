@@ -302,17 +302,8 @@ def press_short_curve(contact: Contact, model: Model) -> Contact:
 def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
     """Compute the force curve of each model, up to 1.15 times the largest indentation of some contacts.
 
-    Parameters
-    ----------
-    contacts : mapping of str to Contact
-        Contacts of one point each, by the name of the model.
-    models : mapping of str to Model
-        Models by the same names.
-
-    Returns
-    -------
-    dict of str to Contact
-        Contacts of a 1-D array of indentations. Slow models have 12, up to 1.15 times their own half angle.
+    Contacts of one point each, and models, have the same names. The curves are contacts of a 1-D array of indentations;
+    slow models have 12, up to 1.15 times their own half angle.
     """
     max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 

@@ -44,12 +44,9 @@ def echo_json(answer: Answer) -> None:
 def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
     """Add `valid`, `error`, `notes`, `sources` and `next` to an answer that lacks them.
 
-    Returns
-    -------
-    dict
-        `valid` is true where the requested results are in the range of their models, and null where no result was
-        checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
-        `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
+    `valid` is true where the requested results are in the range of their models, and null where no result was checked.
+    `error` has estimated relative errors, by model where there are several, and null where none are known. `notes` are
+    sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
     if "next" in answer:  # of several joints
         return dict(answer)

@@ -110,12 +110,7 @@ _END_TOLERANCE = 1e-6
 def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
     """Fit a `CurveLaw` to computed forces; increase the number of pieces until ln F has converged (F in N).
 
-    Parameters
-    ----------
-    force : function
-        Loads in N of indentations in mm, NaN where there is none.
-    shallowest, deepest : float
-        Ends of the curve in mm. It ends earlier if the loads do.
+    The function returns loads in N of indentations in mm, NaN where there is none; the curve ends where the loads end.
 
     Raises TypeError: a load at the shallowest indentation that is not above 0.
     """

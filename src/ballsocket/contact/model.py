@@ -256,15 +256,7 @@ _Delegation: Any = type(
 
 @dataclass(frozen=True, kw_only=True)
 class ModelWrapper(_Delegation, Model):
-    """Base class of models that wrap another model.
-
-    Delegates every attribute it does not override to the wrapped model.
-
-    Parameters
-    ----------
-    model : Model
-        The wrapped model.
-    """
+    """Base class of models that wrap another model: every attribute that it does not override is the wrapped one."""
 
     model: Model
 
@@ -279,12 +271,7 @@ class ModelWrapper(_Delegation, Model):
 class RimLimited(ModelWrapper):
     """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
 
-    Parameters
-    ----------
-    model : Model
-        Model without a rim.
-    cup : Cup
-        Cup that is loaded upwards in its frame.
+    The cup is loaded upwards in its frame.
     """
 
     cup: Cup

@@ -62,12 +62,8 @@ def _padded_table() -> Numbers:
 def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
     """Interpolate the ratio of largest von Mises stress to largest pressure; cubic between the nodes of the table.
 
-    Beyond the table the nearest ν and ε hold; a thinner liner has the ratio at the same contact radius over thickness.
-
-    Parameters
-    ----------
-    half_angle, poisson, thickness_ratio : float or array
-        ε in rad, Poisson's ratio of the liner, R2/L.
+    It depends on the half angle ε in rad, Poisson's ratio of the liner, and R2/L. Beyond the table the nearest ν and ε
+    hold; a thinner liner has the ratio at the same contact radius over thickness.
     """
     thicker = where(thickness_ratio > MAX_THICKNESS_RATIO, MAX_THICKNESS_RATIO / safe_divisor(thickness_ratio), 1.0)
     ratio = thickness_ratio * thicker

@@ -170,14 +170,8 @@ def map_jax_blocks(
 ) -> tuple[Array, ...]:
     """Apply a function to rows inside `jax.jit`, block by block in one loop, so that one block is compiled.
 
-    Parameters
-    ----------
-    function : callable
-        Function of as many rows, arrays (1,) or (n,), that returns arrays (..., n).
-    rows : sequence of array
-        Arrays (1,) or (contacts,); the last one has the shape (contacts,).
-    stored_numbers : int
-        Number of values that the function stores for each contact.
+    The function takes as many rows, arrays (1,) or (n,), and returns arrays (..., n). Of the given rows, (1,) or
+    (contacts,), the last one has the shape (contacts,). The function stores `stored_numbers` values for each contact.
     """
     import jax
 

@@ -187,14 +187,7 @@ class _UnloadedContact(NamedTuple):
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Check which joints lie in the domain of a model or modulus: return a mask, true for these joints.
 
-    The mask is true for an empty array of joints.
-
-    Parameters
-    ----------
-    domain : tuple of Range
-    joint : Joint
-    name : str
-        Name of the model or modulus for the message.
+    The mask is true for an empty array of joints. The message has the `name` of the model or modulus.
 
     Raises OutsideDomainError: no point is inside one of the ranges.
     """

@@ -312,12 +312,8 @@ def question_ranges(question: Question, rows: Sequence[Row]) -> Ranges:
 def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted: bool) -> dict[str, Any]:
     """Judge the applicability of a comparator to a question; return one dictionary for JSON.
 
-    Parameters
-    ----------
-    reaches, needed : mapping of str to pair of float
-        Ranges of the comparator and of the question, in the numbers of `SIMILARITY`.
-    tilted : bool
-        True for a question with a tilted load; every comparator has a load along the axis.
+    The ranges of comparator and question are in the numbers of `SIMILARITY`. The load of a question may be tilted;
+    every comparator has a load along the axis.
     """
     positions = {name: _position(needed[name], reaches[name]) for name in reaches}
     gaps = [

@@ -87,14 +87,9 @@ def models_with_promise(models: Iterable[Model] = tuple(catalogue.values())) -> 
 
 
 def measure(model: Model, size: int = 20_000, seed: int = 1) -> MeasuredValidity:
-    """Measure the errors of a model within its range, at the forces of the reference solution.
+    """Measure the errors of a model with a promise within its range, at the forces of the reference solution.
 
-    Parameters
-    ----------
-    model : Model
-        Model with a promise.
-    size, seed : int
-        Size and seed of the population.
+    `size` and `seed` are those of the population.
 
     Raises ValueError: a model without a promise, or without a valid contact in the population.
     """

@@ -148,10 +148,7 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
 def largest_deviation(methods: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     """Compute the largest relative deviation of the methods from the first, by quantity.
 
-    Parameters
-    ----------
-    methods : sequence of mapping
-        Summaries of `CalculationMethod`. Only valid methods with the load direction of the first are compared.
+    Of the summaries of `CalculationMethod`, only valid ones with the load direction of the first are compared.
     """
     first, *candidates = methods
     compared = [method for method in candidates if method["valid"] and method["aligned"] == first["aligned"]]

@@ -86,14 +86,9 @@ def compiler() -> list[str]:
 
 
 def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
-    """Compile C sources of a folder into a shared library, and return its platform.
+    """Compile C sources of a folder into a shared library, and return the platform in its header.
 
-    The environment variables CC and CFLAGS apply.
-
-    Returns
-    -------
-    Platform
-        Platform in the header of the library; a cross-compiler builds for another platform than this machine.
+    The environment variables CC and CFLAGS apply; a cross-compiler builds for another platform than this machine.
 
     Raises NoCompiler: a missing compiler, a failed one (with its first error message), or an unknown output format.
     """

@@ -134,22 +134,10 @@ def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any
 
 
 def render_page(template: str, title: str, sections: Sections, **context: Any) -> str:
-    """Render a page with links to its sections.
+    """Render a page with links to its sections, and return its HTML.
 
-    Parameters
-    ----------
-    template : str
-        Name of a template that extends `page.html`.
-    title : str
-    sections : mapping of str to tuple
-        Title and HTML of each section by its id. A section without HTML is the block of that id in the template.
-    **context : Any
-        Values that the blocks of the template use.
-
-    Returns
-    -------
-    str
-        HTML of the complete page.
+    The template extends `page.html`. A section has a title and HTML by its id; without HTML it is the block of that id
+    in the template. The blocks of the template use the values of `context`.
     """
     parts = {
         name: {"title": head, "html": None if html is None else trusted_html(html)}

@@ -230,13 +230,7 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
     """Read an array from the cache folder; compute and store it if it is missing.
 
     Processes share the cache. A damaged file is replaced. If the folder is not writable, the array is only computed.
-
-    Parameters
-    ----------
-    key : object
-        All inputs of the array. Their `repr` identifies the file.
-    compute : function
-        Computes the array.
+    The `repr` of the key, which has all inputs of the array, identifies the file.
     """
     path = _cached_path(key)
     with suppress(OSError, ValueError, KeyError):  # missing or damaged
