@@ -16,8 +16,7 @@ from ..core.quantities import LOADS
 from ..core.validity import Status, is_missing
 from ..problem import Joint
 from ..problem.presets import joints
-from .contact import Contact, Laws
-from .outcome import ModelInfo
+from .contact import Contact, Laws, PressModel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,7 +99,7 @@ _BY_SEVERITY = (
 
 
 def make_contact(
-    model: ModelInfo,
+    model: PressModel,
     contact_type: type[Contact],
     joint: Joint,
     kind: str,
@@ -134,7 +133,7 @@ def make_contact(
 
 
 def make_scalar_contact(
-    model: ModelInfo, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
+    model: PressModel, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
 ) -> Contact:
     """Build a `Contact` of Python numbers from a solver's result; set the numbers of a failed result to NaN.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
@@ -18,8 +19,9 @@ from ..core.kinds import Unit
 from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
+from ..problem import Joint
 from . import describe, strength
-from .outcome import Outcome
+from .outcome import ModelInfo, Outcome
 from .stress_ratio import von_mises_ratio
 
 if TYPE_CHECKING:
@@ -49,6 +51,17 @@ class Laws(Protocol):
     @property
     def pressure_integral(self) -> Array: ...
     def pressure(self, angle: Array) -> Array: ...
+
+
+class PressModel(ModelInfo):
+    """Base class of models whose result is a `Contact`."""
+
+    @abstractmethod
+    def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
+        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
+
+        These become infinite or NaN where Python floats raise ArithmeticError.
+        """
 
 
 def _quantity_property(name: str) -> Any:
@@ -83,7 +96,7 @@ class Contact(Outcome):
         Axial load F in N; approach d of the centres from first touch in mm.
     status : Status or array of int
         Success, or the reason of the failure, of each point.
-    model : ModelInfo
+    model : PressModel
         The model that computed the contact.
     joint : Joint
         The joint that was pressed.
@@ -91,6 +104,7 @@ class Contact(Outcome):
         Closed forms bound to joint and indentation, or a solution, which give the other quantities.
     """
 
+    model: PressModel
     laws: Laws
     force: Array
     indentation: Array

@@ -50,7 +50,7 @@ class Kind(StrEnum):
     unit: str
     example: str
 
-    def __new__(cls, name: str, unit: str, example: str) -> Self:
+    def __new__(cls, name: str, unit: str = "", example: str = "") -> Self:
         kind = str.__new__(cls, name)
         kind._value_, kind.unit, kind.example = name, unit, example
         return kind

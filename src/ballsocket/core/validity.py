@@ -23,7 +23,7 @@ class Status(IntEnum):
 
     sentence: str
 
-    def __new__(cls, code: int, sentence: str) -> Self:
+    def __new__(cls, code: int, sentence: str = "") -> Self:
         status = int.__new__(cls, code)
         status._value_, status.sentence = code, sentence
         return status
