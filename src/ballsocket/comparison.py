@@ -266,20 +266,14 @@ def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]
 THIN_LINER_RATIO = 12.0
 """R2/L above which a curve of a numerical model takes seconds."""
 
-_NUMERICAL_SECONDS = 1e-3
-"""Time of one press in s above which a model counts as numerical."""
-
-_MESH_SECONDS = 0.1
-"""Time of one press in s above which a model counts as one that makes meshes."""
-
-_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2
-"""Indentations of a curve of a fast model, relative to the largest."""
+_NUMERICAL_SECONDS = 1e-3  # time of one press in s above which a model counts as numerical
+_MESH_SECONDS = 0.1  # time of one press in s above which a model counts as one that makes meshes
+_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2  # indentations of a curve of a fast model, relative to the largest
 
 _MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
 """Indentations of a curve of a model that makes meshes, relative to the largest; few, since each range needs a mesh."""
 
-_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)
-"""Half angles of a short curve, relative to the largest."""
+_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)  # half angles of a short curve, relative to the largest
 
 MAX_HALF_ANGLE = radians(84.9)
 """Largest half angle of a short curve in rad."""

@@ -84,8 +84,7 @@ class FilmInputs(Table, frozen=True, kw_only=True):
         return rate * across / numpy.linalg.norm(across)
 
 
-_NEARLY_PARALLEL = 0.99
-"""Cosine of the angle between load and x above which the rotation is about y."""
+_NEARLY_PARALLEL = 0.99  # cosine of the angle between load and x above which the rotation is about y
 
 
 @app.command()

@@ -31,8 +31,7 @@ _TRIAL_STEP, _TRIAL_TOLERANCE = 1e-3, 0.01
 """Relative step of the derivatives of the trial press, and their allowed relative error."""
 
 
-_LOADED: dict[str, Path] = {}
-"""Model files that this process has imported, by module name."""
+_LOADED: dict[str, Path] = {}  # model files that this process has imported, by module name
 
 _FOLDERS: set[Path] = set()
 """Their folders, which are part of `sys.path` for worker processes and for other modules of the user."""

@@ -433,14 +433,12 @@ class Contact(Outcome):
 ELASTIC = strength.ElasticLimit()
 """Range of the utilisation in which the result of a material with a strength is valid."""
 
-_EDGE_ARC = 1e-5
-"""Distance from the edge at which the rise of the pressure is read, relative to the half angle."""
+_EDGE_ARC = 1e-5  # distance from the edge at which the rise of the pressure is read, relative to the half angle
 
 _EDGE_TOLERANCE = 0.1
 """Allowed difference of the pressure ratio at double distance from 2 (springs) or from the root of 2 (elastic)."""
 
-_UNIT_TOLERANCE = 1e-10
-"""Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""
+_UNIT_TOLERANCE = 1e-10  # tolerance of the square of (x² + y² + z² - 1) of a unit vector
 
 
 def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:

@@ -94,17 +94,10 @@ def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
     return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
 
 
-_DEGREE = 9
-"""Degree of the polynomial of a piece."""
-
-_PIECE_COUNTS = (24, 48, 96)
-"""Numbers of pieces that are tried in turn."""
-
-_SERIES_TOLERANCE = 1e-11
-"""Largest last term of ln F of a curve with enough pieces."""
-
-_END_TOLERANCE = 1e-6
-"""Relative tolerance of the deepest indentation that has a load."""
+_DEGREE = 9  # degree of the polynomial of a piece
+_PIECE_COUNTS = (24, 48, 96)  # numbers of pieces that are tried in turn
+_SERIES_TOLERANCE = 1e-11  # largest last term of ln F of a curve with enough pieces
+_END_TOLERANCE = 1e-6  # relative tolerance of the deepest indentation that has a load
 
 
 def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:

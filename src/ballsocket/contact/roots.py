@@ -191,11 +191,8 @@ def _jax_while_loop(
 _PROFILE_POSITIONS = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
 """Polar angles of a profile over the half angle; a peak of less than 1e-6 between the first two counts as the pole."""
 
-_REFINEMENTS = 4
-"""Number of refinements of the interval that holds the largest pressure."""
-
-_INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)
-"""Positions in an interval of a refinement."""
+_REFINEMENTS = 4  # number of refinements of the interval that holds the largest pressure
+_INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)  # positions in an interval of a refinement
 
 
 def find_peak_pressure(

@@ -31,8 +31,7 @@ TABLE_ERROR = 0.005
 _RIM_ERRORS, _RIM_REACH = (0.04, 0.35), 0.9
 """Errors below and above at the rim, for ν of 0.5, and the arc over the thickness that leaves 37 % of them."""
 
-_CUT_ERROR = 0.5
-"""Relative error below the axial stress where the contact reaches the rim."""
+_CUT_ERROR = 0.5  # relative error below the axial stress where the contact reaches the rim
 
 _AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15, 0.3
 """Errors beyond the table: over -ν below 0, for ν above 0.4993, R2/L above 20.5, and, not measured, ε above 85°."""
@@ -40,8 +39,7 @@ _AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15
 _BALL_ERRORS = (0.02, 0.05, 0.01)
 """Errors by an elastic ball: over E/E_ball (R2/L)^1.5/sqrt(1 - 2ν), at most over R2/L; over E/E_ball up to 1."""
 
-_BACKING_ERROR = 0.5
-"""Error by an elastic backing over the ratio E/E_backing of a backing that counts as rigid."""
+_BACKING_ERROR = 0.5  # error by an elastic backing over the ratio E/E_backing of a backing that counts as rigid
 
 _SAFE_STRAIN = 5e-4
 """Largest elastic strain of a ball without a yield stress; above it a note appears (annealed aluminium)."""

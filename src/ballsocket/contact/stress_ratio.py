@@ -32,8 +32,7 @@ NODES = (25, 25, 33)
 MAX_AXIAL_POISSON = 0.44
 """Largest ν for which the stress on the axis decides at all half angles and R2/L of the table."""
 
-_AROUND = range(4)
-"""Nodes of a cubic polynomial: one before the cell, its two ends, and one behind it."""
+_AROUND = range(4)  # nodes of a cubic polynomial: one before the cell, its two ends, and one behind it
 
 
 def poisson_at(coordinate: Numbers) -> Numbers:

@@ -28,8 +28,7 @@ EDGE_DISTANCE = "edge_distance"
 _BALL_STRESS_ERROR = 0.02
 """Relative error of the largest von Mises stress in the ball, see `strength.ball_stress_ratio`."""
 
-_AREA_ERRORS = 2.0
-"""Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
+_AREA_ERRORS = 2.0  # relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε
 
 
 def error_bar(contact: Contact, name: str) -> Bounded:

@@ -23,11 +23,8 @@ Array = Any
 Numbers = numpy.ndarray
 """A NumPy array, in code that accepts no other library: solvers, studies and files."""
 
-_DOUBLE_EPSILON = float(numpy.finfo(float).eps)
-"""Relative rounding error of double precision."""
-
-_NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)
-"""Types whose array library is NumPy."""
+_DOUBLE_EPSILON = float(numpy.finfo(float).eps)  # relative rounding error of double precision
+_NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)  # types whose array library is NumPy
 
 
 def is_plain_number(value: Any) -> bool:

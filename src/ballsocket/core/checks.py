@@ -17,17 +17,10 @@ from .display import html_list
 
 Value = TypeVar("Value")
 
-_MAX_TEXT_LENGTH = 1000
-"""Largest number of characters of a text."""
-
-_MAX_LIST_LENGTH = 200
-"""Largest number of characters of a list of names in a message."""
-
-_MAX_SHOWN_LENGTH = 60
-"""Largest number of characters of a value in a message."""
-
-_PREVIEW_LENGTH = 40
-"""Number of characters of a longer value in a message."""
+_MAX_TEXT_LENGTH = 1000  # largest number of characters of a text
+_MAX_LIST_LENGTH = 200  # largest number of characters of a list of names in a message
+_MAX_SHOWN_LENGTH = 60  # largest number of characters of a value in a message
+_PREVIEW_LENGTH = 40  # number of characters of a longer value in a message
 
 
 def require(name: str, value: Array, valid: Array, allowed: str) -> None:
@@ -293,8 +286,7 @@ def check_filled(name: str, text: str, meaning: str = "") -> str:
     return str(text)
 
 
-_MAX_INTEGER = (1 << 53) - 1
-"""Largest whole number up to which a float represents every whole number exactly."""
+_MAX_INTEGER = (1 << 53) - 1  # largest whole number up to which a float represents every whole number exactly
 
 
 def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INTEGER) -> int:

@@ -53,8 +53,7 @@ def ascii_text(text: str) -> str:
     return "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
 
 
-_LARGEST_PLAIN = 1e9
-"""Value from which numbers have an exponent."""
+_LARGEST_PLAIN = 1e9  # value from which numbers have an exponent
 
 
 def finite_or_none(value: float) -> float | None:

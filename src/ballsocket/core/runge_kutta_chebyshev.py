@@ -20,8 +20,7 @@ Rate = Callable[[Numbers], Numbers]
 """Function from values to their rate of change per unit of length."""
 
 _DAMPING = 2 / 13
-_STABILITY = 1.54
-"""Stability constant β: a step h with s stages is stable up to h ρ = ((s - 1)² - 1)/β."""
+_STABILITY = 1.54  # stability constant β: a step h with s stages is stable up to h ρ = ((s - 1)² - 1)/β
 
 _MAX_STAGES = 60
 

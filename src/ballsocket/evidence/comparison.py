@@ -30,8 +30,7 @@ _OBSERVED_TOLERANCE = 1e-3
 
 _OBSERVED = re.compile(r"code_verification\[(\d+)\]\.observed")
 
-_STATED = ("version", "made_on", "made_with")
-"""Entries that a computation cannot confirm."""
+_STATED = ("version", "made_on", "made_with")  # entries that a computation cannot confirm
 
 _DERIVED = ("credibility", "requirements", "adequacy")
 """Entries that follow from the others. They have rounded numbers, and so they are derived from the pack's own."""

@@ -211,8 +211,7 @@ def _outputs_level(record: Record) -> ReachedLevel:
     return ReachedLevel("b" if compared else "a", supported, missing)
 
 
-_COMPARED = ("max_pressure", "half_angle", "area", "indentation")
-"""Quantities that comparators publish."""
+_COMPARED = ("max_pressure", "half_angle", "area", "indentation")  # quantities that comparators publish
 
 
 def _quantities_level(record: Record) -> ReachedLevel:

@@ -259,8 +259,7 @@ def _table_texts(job: ExportJob) -> Texts:
     }
 
 
-_TABLE_ROWS = 201
-"""Number of indentations in a table of the law."""
+_TABLE_ROWS = 201  # number of indentations in a table of the law
 
 _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_angle_deg", "max_pressure_MPa")
 

@@ -11,16 +11,12 @@ from typing import Any
 
 from ..core.checks import needs
 
-_MAX_SHEET_BYTES = 200_000_000
-"""Largest size in bytes of the content of an Excel file."""
+_MAX_SHEET_BYTES = 200_000_000  # largest size in bytes of the content of an Excel file
 
 _SEPARATORS = ";\t, "
 _MARKS = (".", ",")
-_BLANKS = " '\u2019\u00a0\u2009\u202f"
-"""Blanks and apostrophes between thousands."""
-
-_WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))
-"""Words of numbers that are not finite, in small letters."""
+_BLANKS = " '\u2019\u00a0\u2009\u202f"  # blanks and apostrophes between thousands
+_WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))  # words of numbers that are not finite, in small letters
 
 _NO_NUMBER = frozenset(("", "-", "--", "---", "[-]", "(-)", "n/a", "na", "#n/a", "null", "none"))
 """Cells for a missing number, in small letters."""

@@ -36,11 +36,8 @@ from .head_names import UNCERTAINTY, count_factor, known_head, plain_name
 from .schema import HeadMap, Table, Texts, meaning
 from .units import Units, parse, parse_units
 
-_MAX_BYTES = 10_000_000
-"""Largest size in bytes of a table that is not Parquet."""
-
-_COPIES = 3
-"""Copies of the numbers that are in memory at once: as read, as converted, as labels of a result."""
+_MAX_BYTES = 10_000_000  # largest size in bytes of a table that is not Parquet
+_COPIES = 3  # copies of the numbers that are in memory at once: as read, as converted, as labels of a result
 
 _MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
 """Largest number of characters of a known column head, and of words in its name."""
@@ -48,8 +45,7 @@ _MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
 _MAX_HEAD_ROWS, _MAX_TABLES = 4, 100
 """Lines above the numbers in which the column heads are searched, and tables of a file whose heads are compared."""
 
-_MAX_NAMES, _MAX_LISTED = 3, 20
-"""Largest numbers of known names and of heads in a message."""
+_MAX_NAMES, _MAX_LISTED = 3, 20  # largest numbers of known names and of heads in a message
 
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length

@@ -104,11 +104,8 @@ _REMARKS = {
 _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 """Inputs whose default is not that of the file, which is read to radiographic angles in the body."""
 
-_PREFIXES = {"ball": "ball_", "shell": "shell_"}
-"""Beginnings of the names of options by table."""
-
-_RIVALS = (tuple(LOADS), ("tilt", "direction"))
-"""Keys of which a load has one."""
+_PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
+_RIVALS = (tuple(LOADS), ("tilt", "direction"))  # keys of which a load has one
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,7 @@ from .units import as_given, parse
 DEFAULT_CUP = Cup()
 """Hemisphere that opens downwards."""
 
-_MAX_LAYERS = 20
-"""Largest number of layers behind the liner."""
+_MAX_LAYERS = 20  # largest number of layers behind the liner
 
 
 class LengthsTable(Table, frozen=True, kw_only=True):
@@ -388,8 +387,7 @@ def _material(name: str, table: MaterialTable, present: Material | None = None) 
         return replace(preset, **numbers) if preset else Material(**numbers)
 
 
-_PARTS = ("liner", "ball", "shell", "backing", "cup")
-"""Tables that describe a joint together with [joint]."""
+_PARTS = ("liner", "ball", "shell", "backing", "cup")  # tables that describe a joint together with [joint]
 
 
 def joint_in(tables: JointTables, folder: Path) -> JointFile:

@@ -307,8 +307,7 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit],
     return table
 
 
-_MARKS = ("", "?", "*")
-"""Marks of the verdicts on the limits."""
+_MARKS = ("", "?", "*")  # marks of the verdicts on the limits
 
 
 def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str, digits: int) -> Text:
