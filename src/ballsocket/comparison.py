@@ -263,8 +263,7 @@ def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]
     return {name: contact for name, contact in comparison.items() if not contact.status.failed}
 
 
-THIN_LINER_RATIO = 12.0
-"""R2/L above which a curve of a numerical model takes seconds."""
+THIN_LINER_RATIO = 12.0  # R2/L above which a curve of a numerical model takes seconds
 
 _NUMERICAL_SECONDS = 1e-3  # time of one press in s above which a model counts as numerical
 _MESH_SECONDS = 0.1  # time of one press in s above which a model counts as one that makes meshes
@@ -275,8 +274,7 @@ _MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
 
 _SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)  # half angles of a short curve, relative to the largest
 
-MAX_HALF_ANGLE = radians(84.9)
-"""Largest half angle of a short curve in rad."""
+MAX_HALF_ANGLE = radians(84.9)  # largest half angle of a short curve in rad
 
 
 def is_curve_slow(model: Model, joint: Joint) -> bool:

@@ -32,11 +32,8 @@ _MODELS = {
 }
 """Module and class of each model that presses in milliseconds or less, by its name."""
 
-JUDGE = "fem"
-"""Name of the finite-element model; slow, therefore not in the catalogue."""
-
-OFF_AXIS = "sphere"
-"""Name of the elastic solution for loads in any direction; slow, therefore not in the catalogue."""
+JUDGE = "fem"  # name of the finite-element model; slow, therefore not in the catalogue
+OFF_AXIS = "sphere"  # name of the elastic solution for loads in any direction; slow, therefore not in the catalogue
 
 _SLOW_MODELS = {
     JUDGE: "elasticity.finite_elements.model:FiniteElement",

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from .elasticity.off_axis.model import Sphere
     from .elasticity.off_axis.preload import PullOut
 
-DEFAULT_MODEL = "hess-forsbach"
-"""Name of the model that solves a load along the axis of the cup without a request."""
+DEFAULT_MODEL = "hess-forsbach"  # name of the model that solves a load along the axis of the cup without a request
 
 
 @dataclass(frozen=True, kw_only=True)

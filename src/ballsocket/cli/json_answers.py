@@ -22,11 +22,8 @@ from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS
 from ..problem.presets import joints, materials
 
-Answer = Mapping[str, Any]
-"""JSON answer of a command."""
-
-Arguments = Sequence[str]
-"""Name of a command, and its arguments."""
+Answer = Mapping[str, Any]  # JSON answer of a command
+Arguments = Sequence[str]  # name of a command, and its arguments
 
 
 def echo_json(answer: Answer) -> None:

@@ -22,8 +22,7 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
 from .overloads import VECTOR_FUNCTIONS, as_row, compile_loop, inline_formula, pick_element, vector_formula
 
-LANES = 128
-"""Number of contacts in an inner loop; their values stay in the cache."""
+LANES = 128  # number of contacts in an inner loop; their values stay in the cache
 
 
 def copy_inputs(inputs: Any, first: int, lanes: int, rows: Numbers) -> None:

@@ -430,8 +430,7 @@ class Contact(Outcome):
         return describe.to_html(self)
 
 
-ELASTIC = strength.ElasticLimit()
-"""Range of the utilisation in which the result of a material with a strength is valid."""
+ELASTIC = strength.ElasticLimit()  # range of the utilisation in which the result of a material with a strength is valid
 
 _EDGE_ARC = 1e-5  # distance from the edge at which the rise of the pressure is read, relative to the half angle
 

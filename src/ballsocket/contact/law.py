@@ -13,8 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.lazy import cached_property
 
-PolynomialPieces = Sequence[Sequence[float]]
-"""Coefficients of each piece of a curve, the highest power first."""
+PolynomialPieces = Sequence[Sequence[float]]  # coefficients of each piece of a curve, the highest power first
 
 
 class ForceLaw(Protocol):

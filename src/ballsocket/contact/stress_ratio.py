@@ -20,17 +20,13 @@ from ..core.arrays import log as ln
 from ..problem import elementwise_maximum
 from .coordinates import LIMIT, RATIO_SHIFT, angle_root
 
-POISSON = (0.0, 0.4993)
-"""Range of Poisson's ratio in the table."""
-
-MAX_THICKNESS_RATIO = 20.5
-"""Largest R2/L in the table; the smallest is 0, a massive socket."""
+POISSON = (0.0, 0.4993)  # range of Poisson's ratio in the table
+MAX_THICKNESS_RATIO = 20.5  # largest R2/L in the table; the smallest is 0, a massive socket
 
 NODES = (25, 25, 33)
 """Numbers of nodes of ν, R2/L and the half angle ε, equally spaced in their coordinates from 0 to 1."""
 
-MAX_AXIAL_POISSON = 0.44
-"""Largest ν for which the stress on the axis decides at all half angles and R2/L of the table."""
+MAX_AXIAL_POISSON = 0.44  # largest ν for which the stress on the axis decides at all half angles and R2/L of the table
 
 _AROUND = range(4)  # nodes of a cubic polynomial: one before the cell, its two ends, and one behind it
 

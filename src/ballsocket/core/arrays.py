@@ -17,11 +17,8 @@ from typing import Any
 import array_api_compat
 import numpy
 
-Array = Any
-"""A Python number or an array of any library that follows the array API standard."""
-
-Numbers = numpy.ndarray
-"""A NumPy array, in code that accepts no other library: solvers, studies and files."""
+Array = Any  # a Python number or an array of any library that follows the array API standard
+Numbers = numpy.ndarray  # a NumPy array, in code that accepts no other library: solvers, studies and files
 
 _DOUBLE_EPSILON = float(numpy.finfo(float).eps)  # relative rounding error of double precision
 _NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)  # types whose array library is NumPy

@@ -93,8 +93,7 @@ def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     return f"<b>{escape(title)}</b><table>{body}</table>"
 
 
-Plot = Callable[..., Any]
-"""A function that returns a matplotlib figure."""
+Plot = Callable[..., Any]  # a function that returns a matplotlib figure
 
 _LOADERS: dict[str, Callable[[], Plot]] = {}
 

@@ -31,8 +31,7 @@ class Unit:
         return f" [{self.text}]" if self.text else ""
 
 
-PLAIN = Unit("")
-"""Unit of a plain number."""
+PLAIN = Unit("")  # unit of a plain number
 
 PERCENT = Unit("%", 100.0)
 MILLIMETRES, NANOMETRES = Unit("mm"), Unit("nm", 1e6)

@@ -16,8 +16,7 @@ from .arrays import Array, all_true
 from .checks import check_numeric, degrees_hint, first_invalid, require
 from .kinds import MILLIONS, Kind, Unit
 
-Limits = dict[str, Any]
-"""Arguments `allows` and `allowed` of a `Quantity`."""
+Limits = dict[str, Any]  # arguments `allows` and `allowed` of a `Quantity`
 
 
 # named functions: other processes receive quantities

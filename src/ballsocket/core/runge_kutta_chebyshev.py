@@ -16,8 +16,7 @@ import numpy
 
 from .arrays import Numbers
 
-Rate = Callable[[Numbers], Numbers]
-"""Function from values to their rate of change per unit of length."""
+Rate = Callable[[Numbers], Numbers]  # function from values to their rate of change per unit of length
 
 _DAMPING = 2 / 13
 _STABILITY = 1.54  # stability constant β: a step h with s stages is stable up to h ρ = ((s - 1)² - 1)/β

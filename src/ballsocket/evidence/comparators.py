@@ -21,8 +21,7 @@ from ..studies.parameters import LOADS, press_arguments
 from .matrix import Row
 from .question import ALMOST_ALL, Question
 
-MEASURED = "measured"
-"""Kind of a comparator with measurements."""
+MEASURED = "measured"  # kind of a comparator with measurements
 
 APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY = "applies", "applies in part", "does not apply"
 """Verdicts on the applicability of a comparator."""
@@ -30,8 +29,7 @@ APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY = "applies", "applies in part", "does n
 WITHIN, IN_PART, OUTSIDE = "within", "in part", "outside"
 """Positions of the range of a question in the range of a comparator."""
 
-Ranges = Mapping[str, Sequence[float]]
-"""Smallest and largest value of each similarity number."""
+Ranges = Mapping[str, Sequence[float]]  # smallest and largest value of each similarity number
 
 
 SIMILARITY: Mapping[str, Callable[[Joint, Array], Array]] = MappingProxyType(

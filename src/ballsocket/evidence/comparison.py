@@ -22,8 +22,7 @@ from .folder import QUESTION, RECORD, SIGNATURES, SUMS, digest, names_of
 from .pack import STATED, Listener, gather_evidence
 from .question import read_question
 
-RELATIVE_TOLERANCE = 1e-9
-"""Largest relative difference between the numbers of two machines."""
+RELATIVE_TOLERANCE = 1e-9  # largest relative difference between the numbers of two machines
 
 _OBSERVED_TOLERANCE = 1e-3
 """Largest difference of an observed error, as a share of the allowed error: observed errors depend on rounding."""

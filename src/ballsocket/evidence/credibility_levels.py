@@ -12,8 +12,7 @@ from .code_checks import ORDER_OF_ELEMENTS, OWN_TOLERANCE
 from .comparators import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, MEASURED, WITHIN
 from .matrix import NAMES, input_title, limit_text
 
-Record = Mapping[str, Any]
-"""Record of a pack, as in its JSON file."""
+Record = Mapping[str, Any]  # record of a pack, as in its JSON file
 
 
 @dataclass(frozen=True)

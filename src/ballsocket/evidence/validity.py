@@ -23,8 +23,7 @@ from ..problem import Joint, Material
 SHARE, EXCESS = 0.99, 1.3
 """Required share of valid points within the promise, and largest allowed error over the promise."""
 
-TRUTH = Tabulated()
-"""Reference solution, with an error of 2e-4; fast enough for large populations."""
+TRUTH = Tabulated()  # reference solution, with an error of 2e-4; fast enough for large populations
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,8 +35,7 @@ from ..studies.variance_shares import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
 
-ALONG = " (along the axis)"
-"""Suffix of the name of a method that aligns the load with the axis."""
+ALONG = " (along the axis)"  # suffix of the name of a method that aligns the load with the axis
 
 _COMPARED = ("max_pressure", "half_angle", "area", "indentation", "force")
 _BANDED = ("max_pressure", "half_angle", "area", "indentation")

@@ -26,8 +26,7 @@ _NOT_CENTRAL = (
     "export c, drake, modelica or mujoco, or table for splines along two axes, or use `ballsocket fmu`"
 )
 
-Texts = Mapping[str, str]
-"""Contents of files by their names."""
+Texts = Mapping[str, str]  # contents of files by their names
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -39,15 +39,11 @@ _DECIMALS = {mark: str.maketrans(mark, ".", _BLANKS + other) for mark, other in 
 
 _BLANKS_AT_BRACKETS = re.compile(r"(?<=[^\s\])])\s++(?=[\[(])|(?<=[\[(])\s++|(?<!\s)\s++(?=[\])])|(?<=%)\s++(?=\w)")
 
-Cell = str | float
-"""Content of a cell: text, or a number of an Excel file."""
-
-NumberedRow = tuple[int, Sequence[Cell]]
-"""Number of a line, and its cells."""
+Cell = str | float  # content of a cell: text, or a number of an Excel file
+NumberedRow = tuple[int, Sequence[Cell]]  # number of a line, and its cells
 
 
-OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"
-"""First bytes of Excel files: .xls, which is not read, and .xlsx."""
+OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"  # first bytes of Excel files: .xls, which is not read, and .xlsx
 
 
 def decode_text(raw: bytes) -> str:

@@ -86,8 +86,7 @@ class HeadChoice:
     skip: Sequence[str] = ()
 
 
-ALL_COLUMNS = HeadChoice()
-"""Choice of all columns of a file, under their names there."""
+ALL_COLUMNS = HeadChoice()  # choice of all columns of a file, under their names there
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,7 @@ class Typical(NamedTuple):
     sizes: tuple[float, ...] = ()  # of manufacturers
 
 
-PARTS = ("joint", "liner", "ball", "shell")
-"""Tables of lengths and materials in a joint file."""
+PARTS = ("joint", "liner", "ball", "shell")  # tables of lengths and materials in a joint file
 
 ORIENTATION = tuple(f"cup.{key}" for key in ("inclination", "anteversion", "side", "orientation", "pelvic_tilt"))
 """Keys of a joint file for the orientation of the cup in the body."""

@@ -24,8 +24,7 @@ from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
-DEFAULT_CUP = Cup()
-"""Hemisphere that opens downwards."""
+DEFAULT_CUP = Cup()  # hemisphere that opens downwards
 
 _MAX_LAYERS = 20  # largest number of layers behind the liner
 
@@ -160,8 +159,7 @@ class JointFileTable(JointTables, frozen=True, kw_only=True):
     report: ReportDetails | None = None
 
 
-NO_DETAILS = ReportDetails()
-"""Head of a report without names and logo."""
+NO_DETAILS = ReportDetails()  # head of a report without names and logo
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ from ..core.input_files import open_input
 
 Result = TypeVar("Result")
 
-MAX_FILE_SIZE = 100_000
-"""Largest size of a file in bytes."""
+MAX_FILE_SIZE = 100_000  # largest size of a file in bytes
 
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.){0,80}+"|'[^'\n]{0,80}+')[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?<![\w-])(?:{_PART}\.[ \t]*+){{16}}")

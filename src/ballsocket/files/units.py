@@ -16,11 +16,8 @@ from typing import Any
 from ..core.checks import shown
 from ..core.kinds import Kind
 
-LONGEST = 100
-"""Characters of a quantity."""
-
-Units = Mapping[str, float]
-"""Product of units: exponents by the names of pint."""
+LONGEST = 100  # characters of a quantity
+Units = Mapping[str, float]  # product of units: exponents by the names of pint
 
 _LARGEST_EXPONENT = 9
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Record = Mapping[str, Any]
-"""Content of the JSON file of an evidence pack, or a part of it."""
+Record = Mapping[str, Any]  # content of the JSON file of an evidence pack, or a part of it
 
 _LEAST_ERROR = 1e-5  # relative error below which no error bar is written: it is below the digits of the number
 

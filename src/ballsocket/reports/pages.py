@@ -43,8 +43,7 @@ def _environment() -> Environment:
     )
 
 
-PAGE_FORMATS = (".html", ".pdf")
-"""Endings of the files that `write_page` writes."""
+PAGE_FORMATS = (".html", ".pdf")  # endings of the files that `write_page` writes
 
 _MAX_LOGO_SIZE = 1_000_000
 _LOGO_FORMATS = {".png": "png", ".svg": "svg+xml"}
@@ -117,8 +116,7 @@ def logo_address(path: Path) -> str:
     return data_address(data, form)
 
 
-HEAD_TEXTS = ("customer", "project", "author")
-"""Texts of the head of a report."""
+HEAD_TEXTS = ("customer", "project", "author")  # texts of the head of a report
 
 
 def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any]:

@@ -25,8 +25,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-MAX_WORKERS = 1000
-"""Largest number of worker processes."""
+MAX_WORKERS = 1000  # largest number of worker processes
 
 Work = Callable[[int], Any]
 """Function that computes the piece with a given number. It must be picklable: no lambda, no local function."""

@@ -99,11 +99,8 @@ def _compute_and_store(work: Work, store: PieceStore, number: int) -> Any:
     return store.save(number, work(number))
 
 
-Piece = Callable[[], Any]
-"""Function that computes a result for a JSON file."""
-
-Results = dict[str, list[Any]]
-"""Results of the pieces, by part."""
+Piece = Callable[[], Any]  # function that computes a result for a JSON file
+Results = dict[str, list[Any]]  # results of the pieces, by part
 
 _SERIAL = Serial()
 
