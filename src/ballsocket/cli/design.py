@@ -64,10 +64,7 @@ class PressOptions:
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
 
-        Raises
-        ------
-        ValueError
-            The requested model has no result for any of these joints.
+        Raises ValueError: the requested model has no result for any of these joints.
         """
         if self.model is None:
             model = default_model(file.joint, ends) if self.gap is None else reference
@@ -300,10 +297,7 @@ def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     """Return pairs of name and value as a dictionary.
 
-    Raises
-    ------
-    ValueError
-        A name occurs twice.
+    Raises ValueError: a name occurs twice.
     """
     values: dict[str, Any] = {}
     for name, value in pairs:
