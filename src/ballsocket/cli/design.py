@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import pi
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -290,8 +289,8 @@ def _default_points(model: Model) -> int:
 
 def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
     """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
-    cup = file.cup.tilted(min(file.tilt, pi / 2))
-    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
+    cup, direction = file.cup.under_load(file.tilt)
+    return [replace(parse_limit(phrase), cup=cup, direction=direction) for phrase in phrases or []]
 
 
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
