@@ -5,7 +5,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,6 +20,7 @@ from ballsocket.files.joint_file import JointFile
 
 from ..extent import some
 from ..places import EXAMPLES
+from ..processes import stopped_program
 from .command import answer, run
 
 EXAMPLE = str(EXAMPLES / "hip.toml")
@@ -80,16 +80,11 @@ def test_an_infinite_result_is_a_failure_in_one_line(capsys):
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
-    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 400_000}\n"
+    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 40}\n"
     (tmp_path / "s.toml").write_text(study, encoding="utf-8")
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    process = subprocess.Popen([*PROGRAM, "study", "s.toml", "--out", "s.csv"], cwd=tmp_path, **pipes)
-    deadline = time.monotonic() + 60
-    while not list(tmp_path.glob(".s.csv.*/s.csv")) and time.monotonic() < deadline:  # it is writing the numbers
-        time.sleep(0.001)
-    process.terminate()
-    process.communicate(timeout=60)
-    assert process.returncode == 143
+    program = stopped_program(2, "s.csv", "SIGTERM")  # its folder is there, and the file is being opened
+    done = subprocess.run([sys.executable, "-c", program, "study", "s.toml", "--out", "s.csv"], cwd=tmp_path)
+    assert done.returncode == 143
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
