@@ -39,8 +39,7 @@ class Typical(NamedTuple):
     sizes: tuple[float, ...] = ()  # of manufacturers
 
 
-PARTS = ("joint", "liner", "ball", "shell")
-"""Tables of lengths and materials in a joint file."""
+PARTS = ("joint", "liner", "ball", "shell")  # tables of lengths and materials in a joint file
 
 ORIENTATION = tuple(f"cup.{key}" for key in ("inclination", "anteversion", "side", "orientation", "pelvic_tilt"))
 """Keys of a joint file for the orientation of the cup in the body."""
@@ -104,8 +103,7 @@ _REMARKS = {
 _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 """Inputs whose default is not that of the file, which is read to radiographic angles in the body."""
 
-_PREFIXES = {"ball": "ball_", "shell": "shell_"}
-"""Beginnings of the names of options by table."""
+_PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
 
 _RIVALS = (
     *([name for name in LENGTHS if canonical(name) == length] for length in dict.fromkeys(map(canonical, LENGTHS))),
