@@ -12,13 +12,16 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
+from ballsocket.files.joint_file import JointFile
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
 from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
 from ballsocket.lubrication.film_answer import describe_films
+from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
+from ballsocket.question import PressQuestion, answer
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
 from ballsocket.studies.calibration import describe_calibration
@@ -122,6 +125,29 @@ ANSWERS |= {
     "identification": lambda: describe_identification(identified("indentation", "area")),
     "product of unknowns": lambda: describe_identification(identified("area")),
     "calibration": lambda: describe_calibration(bs.calibrate(bs.joints["hip-28"])),
+}
+
+
+def press(**options):
+    return bs.compare(bs.joints["hip-28"], force=3000.0, **options)
+
+
+@cache
+def loosened():
+    joint = bs.Joint(ball_radius=13.5, interference=0.01, liner_thickness=3.0, liner=bs.POM)
+        b'joint = {head_diameter = "27 mm", interference = "0.01 mm", liner_thickness = "3 mm"}\n[liner]\nmaterial = "pom"',
+        "a",
+    )
+    return answer(PressQuestion(file=JointFile(joint=joint), sphere=bs.Sphere(ring_width=0.1)))
+
+
+ANSWERS |= {
+    "press": lambda: describe_press(press(models=["exact", "hess-forsbach", "hertz"])),
+    "press without a result": lambda: describe_press(
+        bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models=["exact", "bonded-layer"])
+    ),
+    "preloaded press": lambda: describe_press(loosened().comparison, press_remarks(loosened())),
+    "curve": lambda: describe_curve(bs.Hertz().press(bs.joints["hip-28"], force=np.array([0.0, 300.0, 3000.0]))),
 }
 
 
