@@ -19,6 +19,8 @@ from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
 from ballsocket.lubrication.film_answer import describe_films
+from ballsocket.planning import fit_liner, make_plan, measure_wear, read_mesh, read_points
+from ballsocket.planning.plan_answer import describe_plan
 from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
 from ballsocket.question import PressQuestion, answer
@@ -35,6 +37,7 @@ from ballsocket.studies.variance_shares import sensitivity
 
 from ..hip.hips import QUICK, hip
 from ..hip.test_uncertainty import bands
+from ..places import EXAMPLES
 
 WIDE = 2000
 METRIC = re.compile(r"\d (?:mm|mm³|µm|nm|MPa|kN|N|N m)(?![\w/(])")
@@ -135,10 +138,7 @@ def press(**options):
 @cache
 def loosened():
     joint = bs.Joint(ball_radius=13.5, interference=0.01, liner_thickness=3.0, liner=bs.POM)
-        b'joint = {head_diameter = "27 mm", interference = "0.01 mm", liner_thickness = "3 mm"}\n[liner]\nmaterial = "pom"',
-        "a",
-    )
-    return answer(PressQuestion(file=JointFile(joint=joint), sphere=bs.Sphere(ring_width=0.1)))
+    return answer(PressQuestion(file=JointFile(joint=joint, load={}), sphere=bs.Sphere(ring_width=0.1)))
 
 
 ANSWERS |= {
@@ -149,6 +149,14 @@ ANSWERS |= {
     "preloaded press": lambda: describe_press(loosened().comparison, press_remarks(loosened())),
     "curve": lambda: describe_curve(bs.Hertz().press(bs.joints["hip-28"], force=np.array([0.0, 300.0, 3000.0]))),
 }
+
+
+ANSWERS["planning data"] = lambda: describe_plan(
+    make_plan(
+        liner=fit_liner(read_mesh(EXAMPLES / "planning" / "liner.stl")),
+        worn=measure_wear(read_points(EXAMPLES / "planning" / "worn.xyz")),
+    )
+)
 
 
 @cache
@@ -181,9 +189,12 @@ def contains(line, expected):
 def amount(part, units):
     """Yield the number of an amount in the unit that the doors write."""
     shown = re.sub(r"^\S+? ?(?=[^\d.e+-]|$)", "", units.amount(part)) if part.unit.text else ""
-    value, metric = part.value * part.unit.factor, part.unit.text
-    number = value if metric == shown else converted(value, metric, shown)
-    yield pytest.approx(number, rel=0.6 * 10 ** (1 - part.digits), abs=1e-12)
+    metric = part.unit.text
+    factor = part.unit.factor * (1.0 if metric == shown else converted(1.0, metric, shown))
+    digits = {"rel": 0.6 * 10 ** (1 - part.digits), "abs": 1e-12}
+    if part.decimals is not None:
+        digits = {"abs": 0.6 * 10**-part.decimals * factor / part.unit.factor}
+    yield pytest.approx(part.value * factor, **digits)
 
 
 def expected_numbers(row, table, units, most_rank):

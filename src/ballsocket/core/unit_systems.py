@@ -136,8 +136,8 @@ class Units(StrEnum):
         unit = self.written(amount.unit)
         if amount.decimals is None:
             return _written(amount.value, unit, amount.digits)
-        decimals = max(0, amount.decimals - floor(log10(unit.factor / amount.unit.factor)))
-        text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{decimals}f}"
+        decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
+        text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
         return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
 
     def of_text(self, unit: str) -> Unit:
