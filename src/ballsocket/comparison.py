@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .contact import Contact, Model
-from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
+from .contact.describe import UTILISATION, UTILISATION_NOTE, count_text, number_text, values_of
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
 from .core.display import html_table, load_plot
-from .core.quantities import HEADLINE
+from .core.quantities import CONTACT, HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError
 from .model_catalogue import catalogue, reference
@@ -83,8 +83,8 @@ class Comparison(Mapping[str, Contact]):
         Returns
         -------
         dict of str to array, or None
-            Deviation of each column of `COLUMNS`, of the shape of the contact. None for the exact model itself, for
-            a missing model, and in a comparison without the exact model.
+            Deviation of each quantity by its key in JSON, of the shape of the contact. None for the exact model
+            itself, for a missing model, and in a comparison without the exact model.
         """
         return self._deviations.get(name)
 
@@ -93,9 +93,12 @@ class Comparison(Mapping[str, Contact]):
         exact = self.contacts.get(reference.name)
         if exact is None:
             return {}
-        truths = [(column, column.values_of(exact)) for column in COLUMNS]
+        truths = {quantity: values_of(exact, quantity) for quantity in CONTACT.values()}
         return {
-            name: {column.name: relative_deviation(column.values_of(contact), truth) for column, truth in truths}
+            name: {
+                quantity.key: relative_deviation(values_of(contact, quantity), truth)
+                for quantity, truth in truths.items()
+            }
             for name, contact in self.contacts.items()
             if name != reference.name
         }
@@ -103,14 +106,14 @@ class Comparison(Mapping[str, Contact]):
     def rows(self) -> list[tuple[str, ...]]:
         """Format the table rows, one per model, with the columns of `COLUMN_HEADS`."""
         return [
-            (name, *(number_text(column.values_of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
+            (name, *(number_text(values_of(contact, column), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
         results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
-        gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
+        gaps = dict.fromkeys([*(quantity.key for quantity in (*CONTACT.values(), UTILISATION)), UTILISATION_NOTE])
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()
@@ -173,8 +176,8 @@ def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
-_SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
-COLUMN_HEADS = ("model", *(column.head for column in _SHOWN), "valid")
+_SHOWN = tuple(CONTACT[name] for name in HEADLINE)
+COLUMN_HEADS = ("model", *(quantity.head(quantity.written) for quantity in _SHOWN), "valid")
 """Heads of the columns of `Comparison.rows`: model, the quantities of `HEADLINE` with units, and valid."""
 
 

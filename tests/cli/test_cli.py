@@ -12,8 +12,8 @@ from types import SimpleNamespace
 import pytest
 
 import ballsocket as bs
-from ballsocket import cli
-from ballsocket.cli import elasticity_options, root
+from ballsocket import cli, press_answer
+from ballsocket.cli import root
 from ballsocket.cli.json_answers import echo_json
 from ballsocket.cli.press_files import ReportOptions
 from ballsocket.files.joint_file import JointFile
@@ -374,7 +374,7 @@ def test_a_contact_at_the_rim_has_no_negative_distance_and_a_preloaded_one_has_n
     joint, error = SimpleNamespace(clearance=clearance, socket_radius=14.0), {"edge_margin": 0.02}
     state = {"edge_distance": distance, "edge_loaded": True, "half_angle": 0.7, "stated_error": error}
     contact = SimpleNamespace(joint=joint, error=error, **state)
-    assert re.fullmatch(f"contact {text}", elasticity_options._rim_text(contact))
+    assert re.fullmatch(f"contact {text}", press_answer._rim_sentence(contact))
 
 
 @pytest.mark.parametrize("load", [{"indentation": 0.04}, {"half_angle": 0.7}, {"force": 0.0}])

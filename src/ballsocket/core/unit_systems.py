@@ -12,12 +12,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isinf, prod
+from math import floor, isinf, log10, prod
 from types import MappingProxyType
 from typing import Any
 
 from .display import plain_number
-from .kinds import PLAIN, Kind, Unit
+from .kinds import MILLIMETRES, PLAIN, Kind, Unit
 from .quantities import Quantity
 
 _KSI_FROM = 1e4
@@ -94,19 +94,12 @@ class Units(StrEnum):
 
     def short_length(self, millimetres: float) -> str:
         """Write a length (mm) to 0.1 mm or to 0.001 in."""
-        length, digits = (millimetres / _INCH, 3) if self is Units.IMPERIAL else (millimetres, 1)
-        return f"{round(length, digits) + 0.0:.{digits}f} {self.length_unit.text}"
+        return self.amount(Amount(millimetres, MILLIMETRES, decimals=1))
 
     @property
     def length_unit(self) -> Unit:
         """Unit of dimensions: mm or inches."""
         return _INCHES if self is Units.IMPERIAL else Unit("mm")
-
-    def torque(self, newton_millimetres: float) -> str:
-        """Write a torque (N mm) in N m or in pound inches."""
-        if self is Units.IMPERIAL:
-            return f"{newton_millimetres / (_INCH * _POUND):.3g} lbf in"
-        return f"{1e-3 * newton_millimetres:.3g} N m"
 
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
@@ -139,8 +132,13 @@ class Units(StrEnum):
         return Unit(converted.text, unit.factor * converted.factor)
 
     def amount(self, amount: Amount) -> str:
-        """Write an amount with its unit."""
-        return _written(amount.value, self.written(amount.unit), amount.digits)
+        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer."""
+        unit = self.written(amount.unit)
+        if amount.decimals is None:
+            return _written(amount.value, unit, amount.digits)
+        decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
+        text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
+        return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
@@ -166,10 +164,6 @@ class Units(StrEnum):
         written = self.of_text(unit)
         return (f"{head}{bracket}{written.text}]", written.factor) if bracket else (label, 1.0)
 
-    def joint(self, joint: Any) -> str:
-        """Describe a joint in one line; its name stays as it is."""
-        return self.sentence(joint_sentence(joint))
-
 
 @dataclass(frozen=True)
 class Amount:
@@ -178,6 +172,7 @@ class Amount:
     value: float  # in the internal unit
     unit: Unit = PLAIN  # metric unit in which it is written
     digits: int = 4  # significant
+    decimals: int | None = None  # in the metric unit, in place of significant digits
 
 
 class Sentence(str):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import ceil, floor, inf, isclose, isnan, log10
+from typing import Any
 
-from ...contact.describe import Column
+from ...contact.describe import values_of
+from ...core.arrays import Array
 from ...core.kinds import Kind, Unit
-from ...core.quantities import CONTACT, JOINT, Quantity
+from ...core.quantities import JOINT, Quantity
 from ...core.unit_systems import Units
 
 _DIGITS, _BOX_DIGITS = 4, 5
@@ -66,10 +67,9 @@ class Reading:
         decimals = max(0, ceil(-log10(error * unit.factor)))
         return f"{number_text(round(value * unit.factor, decimals), unit.text)}{unit_suffix(unit.text)}"
 
-    @cached_property
-    def columns(self) -> tuple[Column, ...]:
-        """Every quantity of a contact."""
-        return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
+    def values_of(self, contact: Any, quantity: Quantity) -> Array:
+        """Return a quantity of a contact in its chosen unit."""
+        return values_of(contact, quantity, self.unit(quantity))
 
 
 def unit_suffix(unit: str) -> str:
