@@ -102,14 +102,11 @@ class ChebyshevCurve:
     def is_accurate(self) -> bool:
         """True if the errors are within the tolerance and loads increase with the half angle."""
         state = ChebyshevState(series=self, half_angle=self.knots.half_angle)
-        load_errors = [error for kind in _POWERS for error in self._errors(kind, state).values()]
-        angle_errors = [
-            error[state.relative_clearance > _NEAR_PERFECT_FIT] for error in self._errors("half_angle", state).values()
-        ]
-        largest = max(numpy.max(error) for error in (*load_errors, *angle_errors))
-        return bool(
-            largest <= self.curve.tolerance and all(numpy.all(numpy.diff(x) > 0) for x in self._start_loads.values())
-        )
+        counted = state.relative_clearance > _NEAR_PERFECT_FIT
+        errors = [error for kind in _POWERS for error in self._errors(kind, state).values()]
+        errors += [error[counted] for error in self._errors("half_angle", state).values()]
+        accurate = max(numpy.max(error) for error in errors) <= self.curve.tolerance
+        return bool(accurate and all(numpy.all(numpy.diff(x) > 0) for x in self._start_loads.values()))
 
     @cached_property
     def expansion(self) -> Numbers:
@@ -188,31 +185,30 @@ class ChebyshevState(PeakPressure):
         return self.series.evaluate_dimensionless_functions(self.half_angle)
 
     @cached_property
-    def _relative_indentation(self) -> tuple[Numbers, Numbers]:
-        """Ratio of indentation d to total displacement X = c + d, and its difference from 1 (0 at the perfect fit)."""
-        ratio = numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
-        return ratio, 1 - ratio
+    def _relative_indentation(self) -> Numbers:
+        """Ratio of indentation d to total displacement X = c + d."""
+        return numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
 
-    @property
+    @cached_property
     def relative_clearance(self) -> Numbers:
         """Ratio c/X of clearance and total displacement, from 1 down to 0 at the perfect fit."""
-        return self._relative_indentation[1]
+        return 1 - self._relative_indentation
 
     @cached_property
     def _total_displacement(self) -> Numbers:
         """Total displacement X = c + d in mm, the sum of clearance and indentation."""
-        return self.gap.clearance / self._relative_indentation[1]
+        return self.gap.clearance / self.relative_clearance
 
     @cached_property
     def indentation(self) -> Numbers:
         """Indentation d in mm."""
-        return self._total_displacement * self._relative_indentation[0]
+        return self._total_displacement * self._relative_indentation
 
     @cached_property
     def indentation_slope(self) -> Numbers:
         """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad."""
         rate = self._function_values[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
-        return self._total_displacement * self._relative_indentation[0] * rate / self._relative_indentation[1]
+        return self._total_displacement * self._relative_indentation * rate / self.relative_clearance
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
@@ -261,11 +257,8 @@ class ChebyshevState(PeakPressure):
 
     @property
     def displacement_error(self) -> Numbers:
-        """Relative error of the total displacement X at a half angle.
-
-        It equals that of the distance to the perfect fit.
-        """
-        return self.series.truncation_error[0] * self._relative_indentation[0] / self._relative_indentation[1]
+        """Relative error of the total displacement X at a half angle, and of the distance to the perfect fit."""
+        return self.series.truncation_error[0] * self._relative_indentation / self.relative_clearance
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
@@ -281,16 +274,10 @@ class ChebyshevState(PeakPressure):
         values[reachable] = self.series.stress_curve.stress_ratio(angle) * self.max_pressure[reachable]
         return values
 
-    @cached_property
-    def _expansion(self) -> Numbers:
-        """Legendre coefficients of the pressure profile G/sin s/X of each contact."""
-        return self.series.expansion @ self.series.evaluate_polynomials(self.half_angle)
-
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute the contact pressure p(φ) in MPa at polar angles (any, contacts); 0 outside the contact."""
-        return scaled_pressure(self.half_angle, self._expansion, angle) * (
-            self._total_displacement / self.kernel.compliance
-        )
+        expansion = self.series.expansion @ self.series.evaluate_polynomials(self.half_angle)
+        return scaled_pressure(self.half_angle, expansion, angle) * (self._total_displacement / self.kernel.compliance)
 
     def single_contact(self, number: int) -> AbelState:
         """Solve the contact with index `number` exactly."""
@@ -315,6 +302,5 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
 def _evaluate_contacts_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
     if len(contacts) <= _BLOCK:
         return function(contacts)
-    return numpy.concatenate(
-        [function(contacts[first : first + _BLOCK]) for first in range(0, len(contacts), _BLOCK)], axis=-1
-    )
+    starts = range(0, len(contacts), _BLOCK)
+    return numpy.concatenate([function(contacts[first : first + _BLOCK]) for first in starts], axis=-1)

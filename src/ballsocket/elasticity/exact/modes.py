@@ -13,10 +13,10 @@ from math import ceil, inf, isinf, log, log1p
 import numpy
 from numpy.typing import ArrayLike
 
-from ...core.arrays import Array, Numbers
+from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
-from ...problem import Joint, Material, Support
+from ...problem import Joint, Support
 from .waves import UNIT, SupportedLayer, fixed_surface_condition, free_surface_condition
 
 
@@ -119,9 +119,8 @@ class Socket:
     def expansion(self, order: int) -> numpy.ndarray:
         """Compute the coefficients a_1, ..., a_order of the asymptotic series ρ_n ~ Σ a_j (n + ½)^-j.
 
-        They are those of an infinite socket of the innermost material.
-
-        That series converges for n >= 2; the contribution of the layers is exponentially small, see `backing_degree`.
+        They are those of an infinite socket of the innermost material, whose series converges for n >= 2. The
+        contribution of the layers is exponentially small, see `backing_degree`.
         """
         return homogeneous_expansion(self.shells[0].poisson, order)
 
@@ -247,9 +246,12 @@ def socket_of(joint: Joint) -> Socket:
     >>> socket_of(bs.joints["hip-28"]).shells
     (Shell(thickness=5.0, young=1000.0, poisson=0.4),)
     """
-    liner = _make_shell(joint.liner_thickness, joint.liner)
-    backing = (_make_shell(layer.thickness, layer.material) for layer in joint.backing)
-    return Socket(radius=float(joint.socket_radius), shells=(liner, *backing), support=joint.support)
+    layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
+    shells = (
+        Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
+        for thickness, material in layers
+    )
+    return Socket(radius=float(joint.socket_radius), shells=tuple(shells), support=joint.support)
 
 
 def ball_of(joint: Joint) -> ElasticBall | None:
@@ -259,10 +261,6 @@ def ball_of(joint: Joint) -> ElasticBall | None:
     return ElasticBall(
         radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson)
     )
-
-
-def _make_shell(thickness: Array, material: Material) -> Shell:
-    return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
 
 _NEGLIGIBLE = 1e-17  # contribution of the layers to ρ_n

@@ -175,11 +175,7 @@ class Grid:
 
         It is bilinear in polar angle and azimuth, and passes the pole in a straight line. The field is constant between
         the last middle and the end of the grid, and 0 beyond.
-
-        Parameters
-        ----------
-        directions : array (directions, 3)
-            Unit vectors in the frame of the grid.
+        Directions (directions, 3) are unit vectors in the frame of the grid.
         """
         from scipy.sparse import csr_matrix  # slow to import
 

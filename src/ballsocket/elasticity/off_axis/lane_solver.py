@@ -86,20 +86,11 @@ def _solve_block_tangents(bore: BoreArrays, share: Numbers, edge_compliance: Num
 def solve_lanes(
     bore: BoreContact, coarser: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float
 ) -> EquilibriumBatch:
-    """Solve the displacements and pressures of balls in equilibrium with their loads.
+    """Solve the displacements and pressures of balls in equilibrium with their loads (batch, 3) in N.
 
-    Parameters
-    ----------
-    bore, coarser : BoreContact
-        Bore, and the same in wide cells: see `coarser_lanes`.
-    load : array (batch, 3)
-        Loads in N, in the cup's frame.
-    force_scale : array (batch,)
-        Forces in N to which residual forces are relative.
-    start : array (batch, 3)
-        Initial displacements in mm at which the ball touches.
-    tolerance : float
-        Largest residual of force and overlap, relative to the force scale and the largest overlap.
+    `coarser` is the bore in wide cells, see `coarser_lanes`. Initial displacements (batch, 3) in mm touch the bore. The
+    tolerance limits the residuals of force and overlap, relative to the force scale (batch,) in N and the largest
+    overlap.
     """
     solution = EquilibriumBatch(
         displacement=start.copy(), pressure=bore.zero_pressure(len(load)), converged=numpy.zeros(len(load), dtype=bool)
@@ -108,7 +99,8 @@ def solve_lanes(
     for components, lanes in ((_PLANE, symmetric), (numpy.arange(3), ~symmetric)):
         if not lanes.any():
             continue
-        bores = _make_bores(bore, coarser, folded=components is _PLANE)
+        unfolded = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
+        bores = _LaneBores(*(fold_bore(part, even=True) if components is _PLANE else part for part in unfolded))
         indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores.single.gap.size, 1)
         for block in (indices[i : i + size] for i in range(0, len(indices), size)):
             row = numpy.ix_(block, components)
@@ -142,11 +134,6 @@ class _LaneBores(NamedTuple):
     double: BoreArrays
     single: BoreArrays
     coarse: BoreArrays
-
-
-def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _LaneBores:
-    bores = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
-    return _LaneBores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
 
 
 class _Solution(NamedTuple):

@@ -118,19 +118,9 @@ def indentation_curve(points: RimPoints, reach: float, clearance: float, radius:
 def cached_rim_points(compliance: Compliance, edge_softness: float, inset: float) -> RimPoints:
     """Solve contacts that just touch the rim, in the order of their loads, from a cache.
 
-    Parameters
-    ----------
-    compliance : Compliance
-        An elastic bore with a coarser grid.
-    edge_softness : float
-        `EdgeRelation.compliance` by a ring's width in rad, in mm/MPa.
-    inset : float
-        See `EdgeRelation`.
-
-    Returns
-    -------
-    RimPoints
-        For a clearance of 1 mm in a bore of radius 1 mm. Loads that fill the bore before they touch are left out.
+    The bore is elastic and has a coarser grid. `edge_softness` is `EdgeRelation.compliance` by a ring's width in rad,
+    in mm/MPa. The points hold for a clearance of 1 mm in a bore of radius 1 mm. Loads that fill the bore before they
+    touch are left out.
     """
     coarser = compliance.coarser_compliance
     if coarser is None:
@@ -142,7 +132,7 @@ def cached_rim_points(compliance: Compliance, edge_softness: float, inset: float
     with numpy.errstate(all="ignore"):  # a contact that diverges is left out
         search = _RimSearch(wide, rim_angle)
         search.approach_rim(_COARSE_TARGETS, _COARSE_ITERATIONS)
-        search.continue_in(fine)
+        search.cells, search.pressure = fine, refine_fields(fine.bore, search.pressure)
         search.approach_rim(_FINE_TARGETS, _FINE_ITERATIONS)
         return search.touching_points()
 
@@ -185,10 +175,6 @@ class _RimSearch:
         axes = numpy.stack([numpy.sin(polar), numpy.cos(polar)])
         displacement: Numbers = (axes * (1 + numpy.exp(self.log_indentation))).astype(numpy.float32)
         return displacement
-
-    def continue_in(self, cells: _RimCells) -> None:
-        """Continue in other cells, half as wide."""
-        self.cells, self.pressure = cells, refine_fields(cells.bore, self.pressure)
 
     def approach_rim(self, targets: tuple[float, ...], iterations: int) -> None:
         """Change the indentations towards margins in ring widths, one after the other."""
