@@ -61,10 +61,7 @@ def hip_report(
 ) -> str:
     """Return the page of a wear simulation as HTML; bands of patients who differ have sections of their own.
 
-    Raises
-    ------
-    ValueError, OSError
-        As `pages.logo_address`, for the logo of the head.
+    Raises ValueError, OSError: as `pages.logo_address`, for the logo of the head.
     """
     answer = describe_history(history)
     sections = answer_sections(answer, units)
