@@ -263,26 +263,18 @@ def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]
     return {name: contact for name, contact in comparison.items() if not contact.status.failed}
 
 
-THIN_LINER_RATIO = 12.0
-"""R2/L above which a curve of a numerical model takes seconds."""
+THIN_LINER_RATIO = 12.0  # R2/L above which a curve of a numerical model takes seconds
 
-_NUMERICAL_SECONDS = 1e-3
-"""Time of one press in s above which a model counts as numerical."""
-
-_MESH_SECONDS = 0.1
-"""Time of one press in s above which a model counts as one that makes meshes."""
-
-_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2
-"""Indentations of a curve of a fast model, relative to the largest."""
+_NUMERICAL_SECONDS = 1e-3  # time of one press in s above which a model counts as numerical
+_MESH_SECONDS = 0.1  # time of one press in s above which a model counts as one that makes meshes
+_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2  # indentations of a curve of a fast model, relative to the largest
 
 _MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
 """Indentations of a curve of a model that makes meshes, relative to the largest; few, since each range needs a mesh."""
 
-_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)
-"""Half angles of a short curve, relative to the largest."""
+_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)  # half angles of a short curve, relative to the largest
 
-MAX_HALF_ANGLE = radians(84.9)
-"""Largest half angle of a short curve in rad."""
+MAX_HALF_ANGLE = radians(84.9)  # largest half angle of a short curve in rad
 
 
 def is_curve_slow(model: Model, joint: Joint) -> bool:
@@ -302,17 +294,8 @@ def press_short_curve(contact: Contact, model: Model) -> Contact:
 def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
     """Compute the force curve of each model, up to 1.15 times the largest indentation of some contacts.
 
-    Parameters
-    ----------
-    contacts : mapping of str to Contact
-        Contacts of one point each, by the name of the model.
-    models : mapping of str to Model
-        Models by the same names.
-
-    Returns
-    -------
-    dict of str to Contact
-        Contacts of a 1-D array of indentations. Slow models have 12, up to 1.15 times their own half angle.
+    Contacts of one point each, and models, have the same names. The curves are contacts of a 1-D array of indentations;
+    slow models have 12, up to 1.15 times their own half angle.
     """
     max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 

@@ -13,8 +13,7 @@ import ballsocket as bs
 from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.hip.bands_answer import describe_bands
-from ballsocket.hip.comparison_answer import HipRun, describe_hips
-from ballsocket.hip.history_answer import describe_history
+from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
 from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant

@@ -33,11 +33,8 @@ from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
 
-_RING_WIDTH = radians(3.0)
-"""Width of the rings that tabulate a preloaded joint, in rad."""
-
-_NOTED_ERROR = 0.02
-"""Relative error of the force of a preloaded element above which a message states it."""
+_RING_WIDTH = radians(3.0)  # width of the rings that tabulate a preloaded joint, in rad
+_NOTED_ERROR = 0.02  # relative error of the force of a preloaded element above which a message states it
 
 
 class ForceElementInputs(Table, frozen=True, kw_only=True):
@@ -70,10 +67,7 @@ class ForceElementInputs(Table, frozen=True, kw_only=True):
 
         A joint with an interference has a tabulated element of the model sphere.
 
-        Raises
-        ------
-        ValueError
-            The model has no force law, or a value is not allowed.
+        Raises ValueError: the model has no force law, or a value is not allowed.
         """
         friction = None if self.friction is None else Friction(coefficient=float(self.friction))
         if file.joint.clearance < 0:

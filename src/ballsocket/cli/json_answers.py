@@ -22,20 +22,14 @@ from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS
 from ..problem.presets import joints, materials
 
-Answer = Mapping[str, Any]
-"""JSON answer of a command."""
-
-Arguments = Sequence[str]
-"""Name of a command, and its arguments."""
+Answer = Mapping[str, Any]  # JSON answer of a command
+Arguments = Sequence[str]  # name of a command, and its arguments
 
 
 def echo_json(answer: Answer) -> None:
     """Print one JSON object with provenance and next steps; a missing number is null.
 
-    Raises
-    ------
-    ArithmeticError
-        A number is infinite.
+    Raises ArithmeticError: a number is infinite.
     """
     try:
         text = json.dumps(add_provenance(answer, sys.argv[1:]), indent=2, allow_nan=False)
@@ -47,12 +41,9 @@ def echo_json(answer: Answer) -> None:
 def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
     """Add `valid`, `error`, `notes`, `sources` and `next` to an answer that lacks them.
 
-    Returns
-    -------
-    dict
-        `valid` is true where the requested results are in the range of their models, and null where no result was
-        checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
-        `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
+    `valid` is true where the requested results are in the range of their models, and null where no result was checked.
+    `error` has estimated relative errors, by model where there are several, and null where none are known. `notes` are
+    sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
     if "next" in answer:  # of several joints
         return dict(answer)

@@ -6,8 +6,7 @@ from math import radians
 
 from ..core.arrays import Array, exp, log, log1p, sqrt
 
-LIMIT = radians(85.0)
-"""Largest half angle in rad of the exact solution and its tables."""
+LIMIT = radians(85.0)  # largest half angle in rad of the exact solution and its tables
 
 ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
 """Scales of the coordinates of ε and R2/L; tables are valid for the scales they were built with."""

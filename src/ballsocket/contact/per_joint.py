@@ -58,16 +58,7 @@ Solve = Callable[..., JointContacts]
 def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *parameters: Array) -> CombinedSolution:
     """Solve the contacts of arrays of joints and loads: one solution for each distinct joint, with all its loads.
 
-    Parameters
-    ----------
-    model : Model
-    joint : Joint
-        Joint of numbers or arrays.
-    load : array
-    solve : function
-        Solver of one joint.
-    *parameters : array
-        Arrays that broadcast against joint and load; `solve` gets them after the loads.
+    `solve` solves one joint. It gets the loads, then the parameters, arrays that broadcast against joint and load.
 
     Raises TypeError: traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """

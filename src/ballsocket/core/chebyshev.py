@@ -11,8 +11,7 @@ import numpy
 from . import arrays
 from .arrays import Array, Numbers
 
-Pair = tuple[Array, Array]
-"""Two arrays, such as a value and its slope."""
+Pair = tuple[Array, Array]  # two arrays, such as a value and its slope
 
 
 def chebyshev_points(count: int) -> Numbers:

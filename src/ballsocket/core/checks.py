@@ -17,35 +17,18 @@ from .display import html_list
 
 Value = TypeVar("Value")
 
-_MAX_TEXT_LENGTH = 1000
-"""Largest number of characters of a text."""
-
-_MAX_LIST_LENGTH = 200
-"""Largest number of characters of a list of names in a message."""
-
-_MAX_SHOWN_LENGTH = 60
-"""Largest number of characters of a value in a message."""
-
-_PREVIEW_LENGTH = 40
-"""Number of characters of a longer value in a message."""
+_MAX_TEXT_LENGTH = 1000  # largest number of characters of a text
+_MAX_LIST_LENGTH = 200  # largest number of characters of a list of names in a message
+_MAX_SHOWN_LENGTH = 60  # largest number of characters of a value in a message
+_PREVIEW_LENGTH = 40  # number of characters of a longer value in a message
 
 
 def require(name: str, value: Array, valid: Array, allowed: str) -> None:
     """Check that all elements of a value are allowed; raise ValueError otherwise.
 
-    The message has the first element for which `valid` is false.
+    The message has the name, the first element for which the mask `valid` is false, and the description `allowed`.
 
     Traced values (inside `jax.jit`) are not checked.
-
-    Parameters
-    ----------
-    name : str
-        Name of the value in the message.
-    value : number or array
-    valid : bool or array of bool
-        Mask of the allowed elements.
-    allowed : str
-        Description of the allowed values.
     """
     if all_true(valid) is not False:
         return
@@ -244,14 +227,7 @@ def normalise_name(text: str) -> str:
 def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
     """Return the known name that matches a name, regardless of capitals, spaces, hyphens and underscores.
 
-    Parameters
-    ----------
-    kind : str
-        Kind of the named item, for the message.
-    name : object
-    known : iterable of str
-
-    Raises ValueError: an unknown name; the message suggests the most similar one.
+    Raises ValueError: an unknown name; the message has the `kind` of the named item and suggests the most similar name.
     """
     names = list(known)
     for candidate in (name, normalise_name(name)) if isinstance(name, str) else ():
@@ -261,13 +237,7 @@ def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
 
 
 class NamedItems(dict[str, Value]):
-    """Dictionary of named items whose KeyError suggests the most similar name.
-
-    Parameters
-    ----------
-    kind : str
-        Kind of the items, for the message.
-    items : mapping of str to item
+    """Dictionary of named items whose KeyError has their kind and suggests the most similar name.
 
     Examples
     --------
@@ -316,8 +286,7 @@ def check_filled(name: str, text: str, meaning: str = "") -> str:
     return str(text)
 
 
-_MAX_INTEGER = (1 << 53) - 1
-"""Largest whole number up to which a float represents every whole number exactly."""
+_MAX_INTEGER = (1 << 53) - 1  # largest whole number up to which a float represents every whole number exactly
 
 
 def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INTEGER) -> int:

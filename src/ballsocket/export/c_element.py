@@ -27,8 +27,7 @@ from .tunable import TUNABLES
 
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
 STATE = ("position", "velocity", "spin")
-Outputs = dict[str, Part]
-"""Recorded quantities by the C expression that receives them."""
+Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

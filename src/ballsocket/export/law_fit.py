@@ -11,17 +11,10 @@ from ..contact import Model
 from ..core.arrays import Numbers
 from ..dynamics import ForceElement, PreloadedElement
 
-_SAMPLES = 400
-"""Number of indentations of a fit."""
-
-_DEGREE = 18
-"""Degree of the fitted polynomial."""
-
-_NEGLIGIBLE_ERROR = 1e-6
-"""Relative error of the force without a note."""
-
-_LOWEST_FITTED_SHARE = 0.05
-"""Smallest fitted indentation as a fraction of the depth."""
+_SAMPLES = 400  # number of indentations of a fit
+_DEGREE = 18  # degree of the fitted polynomial
+_NEGLIGIBLE_ERROR = 1e-6  # relative error of the force without a note
+_LOWEST_FITTED_SHARE = 0.05  # smallest fitted indentation as a fraction of the depth
 
 
 @dataclass(frozen=True, kw_only=True)

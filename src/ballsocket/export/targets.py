@@ -26,8 +26,7 @@ _NOT_CENTRAL = (
     "export c, drake, modelica or mujoco, or table for splines along two axes, or use `ballsocket fmu`"
 )
 
-Texts = Mapping[str, str]
-"""Contents of files by their names."""
+Texts = Mapping[str, str]  # contents of files by their names
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -259,8 +258,7 @@ def _table_texts(job: ExportJob) -> Texts:
     }
 
 
-_TABLE_ROWS = 201
-"""Number of indentations in a table of the law."""
+_TABLE_ROWS = 201  # number of indentations in a table of the law
 
 _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_angle_deg", "max_pressure_MPa")
 

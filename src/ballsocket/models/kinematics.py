@@ -210,8 +210,7 @@ def _other_depth_ratio(contact: Any) -> Array:
     return where(c > 0, other / where(L < R2, L, R2), inf)
 
 
-Formula = Callable[..., Array]
-"""Formula of R2, c, K and d, or as `Kinematics` states."""
+Formula = Callable[..., Array]  # formula of R2, c, K and d, or as `Kinematics` states
 
 
 @dataclass(frozen=True, kw_only=True)

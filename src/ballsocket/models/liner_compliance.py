@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 from ..core.arrays import Array, exp, log, sqrt, where
 
-Pair = tuple[Array, Array]
-"""A value and its slope."""
+Pair = tuple[Array, Array]  # a value and its slope
 
 
 class Liner(NamedTuple):

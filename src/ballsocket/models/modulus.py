@@ -17,8 +17,7 @@ from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_dom
 from ..problem import Joint
 from .table_3 import scaled_modulus, table_formula
 
-Formula = Callable[..., Array]
-"""Function that computes K from R2, L, E, ν and the constants of the modulus."""
+Formula = Callable[..., Array]  # function that computes K from R2, L, E, ν and the constants of the modulus
 
 
 @dataclass(frozen=True, kw_only=True)

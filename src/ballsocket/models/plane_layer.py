@@ -32,8 +32,7 @@ from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint
 
-MAX_THICKNESS_RATIO = 100.0
-"""Largest R2/L of the quadrature."""
+MAX_THICKNESS_RATIO = 100.0  # largest R2/L of the quadrature
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -290,8 +289,7 @@ class LayerSolution:
 _BLOCK = 4_000_000  # numbers in a block of waves: 32 MB
 
 
-TRACED_WIDTH = 8.0
-"""Largest a/L in a call inside `jax.jit` or `jax.grad`; wider contacts are NaN."""
+TRACED_WIDTH = 8.0  # largest a/L in a call inside `jax.jit` or `jax.grad`; wider contacts are NaN
 
 
 @cache

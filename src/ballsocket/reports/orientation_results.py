@@ -185,8 +185,7 @@ def load_text(orientations: Orientations) -> str:
     return f"{load} along ({along}); arc of cover {degrees(orientations.model.cup.arc_of_cover):.4g}°"
 
 
-LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")
-"""Fields of orientations that can be limited."""
+LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")  # fields of orientations that can be limited
 
 
 def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
@@ -307,8 +306,7 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit],
     return table
 
 
-_MARKS = ("", "?", "*")
-"""Marks of the verdicts on the limits."""
+_MARKS = ("", "?", "*")  # marks of the verdicts on the limits
 
 
 def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str, digits: int) -> Text:

@@ -16,8 +16,7 @@ from .terminal import Terminal, print_columns, print_folded
 
 _Row = tuple[str, str, str]
 
-_MESH_ERROR = 0.005
-"""Smallest error of a radius in mm from a mesh."""
+_MESH_ERROR = 0.005  # smallest error of a radius in mm from a mesh
 
 
 def print_plan(plan: HipPlan, remarks: Iterable[str]) -> None:

@@ -35,8 +35,7 @@ if TYPE_CHECKING:
 SHOWN = ("max_pressure", "area", "half_angle")
 """Results that a design map shows by default."""
 
-_VEIL = 0.65
-"""Opacity of the white veil over forbidden areas."""
+_VEIL = 0.65  # opacity of the white veil over forbidden areas
 
 
 def design_map(

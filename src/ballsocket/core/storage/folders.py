@@ -20,8 +20,7 @@ from ..input_files import open_input
 from .atomic_files import address_of, pack_arrays, unpack_arrays, write_atomically
 from .pieces import PieceStore
 
-_LOCAL = "file://"
-"""Beginning of the address of a local file."""
+_LOCAL = "file://"  # beginning of the address of a local file
 
 
 class ResultFolder(ABC):

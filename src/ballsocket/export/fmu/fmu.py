@@ -23,8 +23,7 @@ from ..targets import ExportJob
 from ..tunable import TUNABLES
 from .variables import STEP, STOP, UNITS, Variable, start_inputs, variables
 
-_ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
-"""Fixed date of all files, so that equal elements give equal archives."""
+_ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
 
 
 _CAPABILITIES = {

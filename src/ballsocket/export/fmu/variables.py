@@ -28,8 +28,7 @@ UNITS: Mapping[str, Mapping[str, int]] = {
 }
 """Powers of the base units for each unit."""
 
-STOP, STEP = 0.1, 1e-3
-"""Suggested end and step of a simulation in s."""
+STOP, STEP = 0.1, 1e-3  # suggested end and step of a simulation in s
 
 
 @dataclass(frozen=True, kw_only=True)
