@@ -67,10 +67,7 @@ class Comparison(Mapping[str, Contact]):
         return tuple(dict.fromkeys(listed))
 
     def notes(self) -> list[str]:
-        """List the notes of all contacts and the reasons of missing models, without duplicates.
-
-        Each note has the names of its models.
-        """
+        """List the notes of all contacts with their models, and the reasons of missing models, without duplicates."""
         holders: dict[str, list[str]] = {}
         for name, contact in self.contacts.items():
             for note in contact.notes:
@@ -165,10 +162,7 @@ class Comparison(Mapping[str, Contact]):
 
 
 def relative_deviation(value: Array, truth: Array) -> Array:
-    """Compute the relative deviation value/truth - 1.
-
-    It is 0 where both are equal, and NaN where the truth is 0, infinite or NaN.
-    """
+    """Compute value/truth - 1: 0 where both are equal, else NaN where the truth is 0, infinite or NaN."""
     known = (truth > -inf) & (truth < inf) & (truth != 0)
     return where(truth == value, 0.0, value / where(known, truth, nan) - 1)
 
@@ -273,10 +267,7 @@ def is_curve_slow(model: Model, joint: Joint) -> bool:
 
 
 def press_short_curve(contact: Contact, model: Model) -> Contact:
-    """Compute 12 contacts at half angles up to 1.15 times that of a contact.
-
-    A given half angle needs no search for the load.
-    """
+    """Compute 12 contacts at half angles, which need no search for the load, up to 1.15 times that of a contact."""
     max_half_angle = min(1.15 * float(contact.half_angle), MAX_HALF_ANGLE)
     return model.press(contact.joint, half_angle=max_half_angle * numpy.linspace(0.0, 1.0, 12))
 

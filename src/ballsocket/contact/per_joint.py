@@ -42,10 +42,7 @@ class JointContacts:
     error: dict[str, numpy.ndarray]  # relative error of each quantity of the touching contacts
 
     def expand_to_all_loads(self, values: numpy.ndarray) -> numpy.ndarray:
-        """Expand values of the touching contacts (..., touching) to all loads (..., loads).
-
-        Loads of 0 get 0, and loads without a solution NaN.
-        """
+        """Expand values (..., touching) to all loads (..., loads): 0 at loads of 0, NaN without a solution."""
         expanded = numpy.zeros((*values.shape[:-1], len(self.load)))
         expanded[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
         return expanded
@@ -116,10 +113,7 @@ def _quantity_of_all_joints(quantity_name: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CombinedSolution:
-    """Solutions of all joints, combined to arrays: the `Laws` of their contact.
-
-    Its arrays have the library of the load.
-    """
+    """Solutions of all joints, combined to arrays of the load's library: the `Laws` of their contact."""
 
     like: Array  # load, whose library, dtype and device the quantities have
     shape: tuple[int, ...]  # common shape of joint and load
