@@ -94,11 +94,12 @@ def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
         return "the ball is preloaded"
     if file.tilt > AXIAL_TILT:
         return f"the load is tilted {degrees(file.tilt):.3g}° against the axis of the cup"
-    radius = float(file.joint.socket_radius)
+    radius, (cup, direction) = float(file.joint.socket_radius), file.cup.under_load(file.tilt)
     near_rim = (
         contact is not None
         and not contact.status.failed
-        and file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius)
+        and cup.edge_distance(radius, float(contact.half_angle), direction)
+        < min(float(file.joint.liner_thickness), radius)
     )
     return "the contact ends near the rim of the cup" if near_rim else ""
 

@@ -105,9 +105,11 @@ def test_finite_elements_agree_at_the_limit_of_validity():
 
 
 def test_tilt_brings_the_rim_closer_to_the_contact():
-    for tilt, valid in ((0.0, True), (45.0, False)):
-        cup = bs.Cup(arc_of_cover=radians(170.0), inclination=radians(tilt))
-        assert bs.Exact().in_cup(cup).press(HIP, force=3000.0).valid is valid
+    for arc, tilt, valid in ((170.0, 0.0, True), (170.0, 45.0, False), (340.0, 95.0, True), (340.0, 140.0, False)):
+        model = bs.Exact().in_cup(bs.Cup(arc_of_cover=radians(arc)), tilt=radians(tilt))
+        assert model.press(HIP, force=3000.0).valid is valid
+        cup = bs.Cup(arc_of_cover=radians(arc), inclination=radians(min(tilt, 90.0)))
+        assert tilt > 90.0 or bs.Exact().in_cup(cup).press(HIP, force=3000.0).valid is valid
 
 
 def test_a_sliding_liner_is_valid_only_for_finite_elements():

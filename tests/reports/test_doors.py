@@ -13,8 +13,7 @@ import ballsocket as bs
 from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.hip.bands_answer import describe_bands
-from ballsocket.hip.comparison_answer import HipRun, describe_hips
-from ballsocket.hip.history_answer import describe_history
+from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
 from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
@@ -22,17 +21,13 @@ from ballsocket.lubrication.film_answer import describe_films
 from ballsocket.problem.cup import Cup
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
-from ballsocket.studies.calibration_answer import describe_calibration
+from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.derivatives import local_uncertainty
 from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.limits import Limit
-from ballsocket.studies.map_answer import describe_map
-from ballsocket.studies.optimisation import optimise
-from ballsocket.studies.optimum_answer import describe_front, describe_optimum
-from ballsocket.studies.pareto_front import pareto
-from ballsocket.studies.sensitivity_answer import describe_sensitivity
-from ballsocket.studies.study_answer import describe_study
-from ballsocket.studies.uncertainty_answer import uncertainty_tables
+from ballsocket.studies.optimisation import optimise, pareto
+from ballsocket.studies.sensitivity_answer import describe_sensitivity, uncertainty_tables
+from ballsocket.studies.study_answer import describe_front, describe_map, describe_optimum, describe_study
 from ballsocket.studies.variance_shares import sensitivity
 
 from ..hip.hips import QUICK, hip

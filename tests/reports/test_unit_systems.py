@@ -7,7 +7,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.unit_systems import Units
 from ballsocket.reports import study_plots
-from ballsocket.studies.calibration_answer import describe_calibration
+from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import partial
-from math import pi
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -16,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
-from ..problem.cup import Cup, Interface
+from ..problem.cup import UP, Cup, Direction, Interface
 from .assembly import (
     SolverResult,
     as_arrays,
@@ -202,8 +201,11 @@ class Model(PressModel):
         OutsideDomainError
             A load at an angle to the axis of the cup, of a model with a rim for axial loads only.
         """
-        tilted = cup.tilted(min(cup.load_tilt(**aim), pi / 2)) if aim else cup
-        return self if tilted == Cup() else RimLimited(model=self, cup=tilted)
+        if aim:
+            cup, direction = cup.under_load(cup.load_tilt(**aim))
+        else:
+            direction = UP
+        return self if cup == Cup() and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.
@@ -266,10 +268,11 @@ class ModelWrapper(_Delegation, Model):
 class RimLimited(ModelWrapper):
     """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
 
-    The cup is loaded upwards in its frame.
+    `direction` is that of the force on the cup, in the body.
     """
 
     cup: Cup
+    direction: Direction = UP
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -278,7 +281,10 @@ class RimLimited(ModelWrapper):
         The rim must be one liner thickness or more away.
         """
         rim_range = Range(
-            quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
+            quantity=partial(_relative_rim_distance, self.cup, self.direction),
+            symbol="distance to the rim over L",
+            low=1.0,
+            why=_RIM,
         )
         sliding_liner = NeverValid(
             why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
@@ -293,7 +299,7 @@ class RimLimited(ModelWrapper):
 _RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"
 
 
-def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
+def _relative_rim_distance(cup: Cup, direction: Direction, contact: Contact) -> Array:
     """Compute the distance from contact edge to rim, divided by the liner thickness.
 
     R2 replaces a larger thickness.
@@ -303,4 +309,4 @@ def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
     """
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
-    return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
+    return cup.edge_distance(R2, contact.half_angle, direction) / where(L < R2, L, R2)

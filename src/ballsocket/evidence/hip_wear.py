@@ -13,7 +13,7 @@ from ..core.arrays import Numbers
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
-from ..hip.rim import MEASURED_SEPARATIONS
+from ..hip.microseparation import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache
+from functools import cache, cached_property
 from math import inf
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -104,7 +104,13 @@ _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 """Inputs whose default is not that of the file, which is read to radiographic angles in the body."""
 
 _PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
-_RIVALS = (tuple(LOADS), ("tilt", "direction"))  # keys of which a load has one
+
+_RIVALS = (
+    *([name for name in LENGTHS if canonical(name) == length] for length in dict.fromkeys(map(canonical, LENGTHS))),
+    tuple(LOADS),
+    ("tilt", "direction"),
+)
+"""Keys of which a joint or a load has one."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +151,7 @@ class Input:
         """Name of the table."""
         return self.table.strip("[]")
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Name of the option: "liner" and "ball" are materials, and keys of the liner have no prefix."""
         return self.part if self.key == "material" else f"{_PREFIXES.get(self.part, '')}{self.key}"
@@ -170,7 +176,7 @@ class Input:
         """Example of a value; empty for a key without one."""
         return self.shown.get("example") or (self.typical.example if self.typical else "")
 
-    @property
+    @cached_property
     def choices(self) -> list[str]:
         """Words that the key allows, or the names that it knows; empty for other keys."""
         return choices_in(self.type)
@@ -190,8 +196,8 @@ class Input:
     @property
     def rivals(self) -> list[str]:
         """Keys of a joint file that exclude this one."""
-        groups = ([name for name in LENGTHS if canonical(name) == canonical(self.key)], *_RIVALS)
-        return [rival for group in groups if self.part and self.key in group for rival in group if rival != self.key]
+        groups = [group for group in _RIVALS if self.part and self.key in group]
+        return [rival for group in groups for rival in group if rival != self.key]
 
     @property
     def values(self) -> str:
@@ -207,7 +213,7 @@ class Input:
         text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
         return text[:1].lower() + text[1:]
 
-    @property
+    @cached_property
     def help(self) -> str:
         """Help of the option: label, symbol, unit, example or choices, definition, remark, rivals and default."""
         kinds = [custom.kind for custom in customs_in(self.type) if issubclass(custom, QuantityValue)]

@@ -77,21 +77,10 @@ def solve_cohort(
 ) -> CohortSolution:
     """Compute the results of a cohort by a series where the patients are similar, else by simulating each of them.
 
-    Parameters
-    ----------
-    run : CohortRun
-        Patients.
-    seed : int
-        Seed of the samples.
-    method : str, optional
-        "series" or "runs". By default a series, if it holds and needs fewer simulations than there are patients.
-    engine : Engine
-    store : CohortStore, optional
-    progress : function
-        Called with the number of finished patients; a series counts them in proportion to its simulations.
+    By default (method None) a series is used if it holds and needs fewer simulations than there are patients. For the
+    progress, it counts patients in proportion to its simulations.
 
     Raises ValueError: an unknown method, or a series of patients that are not similar.
-    Raises OSError: the store is not writable or the disk is full.
     """
     method = None if method is None else known_name("method", method, METHODS)
     obstacle = "" if method == "runs" else find_obstacle(run.variability, run.counts)
@@ -145,11 +134,7 @@ class CohortSeries:
         return _MEMBER_COST * members_of(self.family.box, self.first_degree) + N_HELD_OUT
 
     def solve(self, progress: ProgressCallback) -> CohortSolution:
-        """Fit a series, estimate its error, refine it, and compute the results of all patients.
-
-        Raises NoSeriesError: the series has no result.
-        Raises OSError: the store is not writable or the disk is full.
-        """
+        """Fit a series, estimate its error, refine it, and compute the results of all patients."""
         held_out = self._select(numpy.arange(min(N_HELD_OUT, len(self.run))))
         expected = held_out.simulate(self.engine, self.store)
         series, accuracy = self._refine(held_out, expected, progress)

@@ -24,8 +24,8 @@ from ..lubrication import Lubricant, Stribeck
 from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
-from ..studies.distribution_tables import Read, distribution_of
 from ..studies.distributions import check_nominal
+from ..studies.expressions import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of

@@ -70,13 +70,11 @@ def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInte
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GridSmoothing:
-    """Smoothing filter for fields on a grid, which preserves the integral over the surface.
-
-    The filter is [1 2 1]/4 along the meridians and around the axis, there with the width of the rings.
+    """Smoothing filter [1 2 1]/4 along the meridians and around the axis; it preserves the integral over the surface.
 
     An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
-    shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is wider
-    in proportion.
+    shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is as
+    wide as the rings.
     """
 
     grid: Grid

@@ -29,11 +29,6 @@ class PatientEquilibria(NamedTuple):
 def join_contacts(contacts: list[SpringContact]) -> SpringContact:
     """Join the contacts of several patients to one with arrays (patients, ...), as `solve_patients` takes.
 
-    Parameters
-    ----------
-    contacts : list of SpringContact
-        Contacts with the same numbers of loads and cells.
-
     Raises
     ------
     ValueError

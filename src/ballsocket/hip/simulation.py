@@ -306,9 +306,7 @@ def _relative_discretization_error(values: list[float]) -> float:
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Check the cycle counts of a run, and return the counts of its reports in ascending order.
-
-    The last one is the total count.
+    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end.
 
     Raises ValueError: a total count that is not positive and finite, or a report beyond it.
     """

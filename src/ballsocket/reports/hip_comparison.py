@@ -11,8 +11,8 @@ import numpy
 
 from ..core.answers import named_records
 from ..core.storage.atomic_files import write_csv
-from ..hip.comparison_answer import HipRun
 from ..hip.history import History
+from ..hip.history_answer import HipRun
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
 

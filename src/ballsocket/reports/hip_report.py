@@ -12,8 +12,7 @@ from ..core.unit_systems import Units
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
 from ..hip.bands_answer import describe_bands
-from ..hip.film import WAVE_NOTE
-from ..hip.hamrock_dowson import CONFORMITY_NOTE
+from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
 from ..hip.history import History
 from ..hip.history_answer import describe_history
 from . import hip_plots

@@ -24,8 +24,8 @@ from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
+from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
-from ..studies.uncertainty_answer import uncertainty_tables
 from . import press_plots
 from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from .pages import (

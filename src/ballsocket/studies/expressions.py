@@ -1,17 +1,18 @@
-"""Short texts of command options and links: ranges, lists, limits, tolerances and correlations of parameters."""
+"""Ranges, lists, limits, distributions and correlations of parameters: short texts, and tables of files."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ..core.checks import check_names, shown
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
-from ..files.units import parse
+from ..files.schema import QUANTITY_SCHEMA
+from ..files.units import as_given, parse
 from ..problem.presets import named_material
-from .distributions import Correlation, Distribution, Rectangular, tolerance
+from .distributions import Correlation, Distribution, LogNormal, Normal, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
 
@@ -135,3 +136,46 @@ def _add_unit(number: str, last: str) -> str:
     unit = re.fullmatch(r"[-+\d.eE]+\s*(.*)", last)
     bare = re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", number)
     return f"{number} {unit.group(1)}".strip() if unit and bare else number
+
+
+Read = Callable[[str, Any], float]
+"""Function from name and value of a number in a file to the number."""
+
+_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
+    (("low", "high"), Rectangular),
+    (("mean", "deviation"), Normal),
+    (("mean", "deviation", "low"), Normal),
+    (("mean", "deviation", "high"), Normal),
+    (("mean", "deviation", "low", "high"), Normal),
+    (("median", "factor"), LogNormal),
+    (("nominal", "plus_minus"), tolerance),
+)
+"""Keys of the tables, and the distributions that they describe."""
+
+DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
+    "type": "object",
+    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
+    "additionalProperties": False,
+}
+"""JSON schema of a distribution."""
+
+
+def distribution_of(name: str, content: Any, read: Read) -> Distribution:
+    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
+
+    Raises
+    ------
+    ValueError
+        Other keys, or numbers that are not allowed.
+    """
+    for keys, make in _DISTRIBUTIONS:
+        if isinstance(content, Mapping) and set(content) == set(keys):
+            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
+            if "factor" in keys:  # it has no unit
+                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
+            with as_given(content, f"{name}."):
+                return make(**numbers)
+    raise ValueError(
+        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
+        "{median, factor}, or {nominal, plus_minus}"
+    )
