@@ -26,7 +26,7 @@ _SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
 @cache
 def fingerprint() -> str:
-    """Compute an identifier of the installed code, data and page templates: the version and eight characters of a hash."""
+    """Compute an identifier of the installed code, data and templates: the version and eight characters of a hash."""
     package = Path(__file__).parents[2]
     digest = sha256()
     for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
