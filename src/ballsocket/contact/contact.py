@@ -373,10 +373,7 @@ class Contact(Outcome):
         return coefficient
 
     def _evaluate(self, read_quantity: Callable[[Laws], Array]) -> Array:
-        """Evaluate one quantity from the formulas or the solution of the contact; set failed points to NaN.
-
-        NumPy numbers replace Python floats where these raise ArithmeticError.
-        """
+        """Evaluate one quantity of the laws, with NumPy numbers where Python floats raise; NaN at failed points."""
 
         def evaluate_quantity() -> Array:
             try:

@@ -152,10 +152,7 @@ class Outcome(ABC):
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     def _match_load(self, value: Array) -> Array:
-        """Convert values to the type and the shape of the load; a load of one number gives a float.
-
-        Arrays are read-only: a contact is a record, and its quantities are stored.
-        """
+        """Convert values to the type and the shape of the load, a float for one number, or a read-only array."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

@@ -63,10 +63,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
 
 
 def rim_verdict(contact: Contact) -> Verdict:
-    """Decide if a single contact in a cup ends before the rim; undecided where its error bar contains the rim.
-
-    A ball without load is undecided.
-    """
+    """Decide if a single contact ends before the rim; undecided if its error bar contains the rim, or without load."""
     if not contact.half_angle > 0:
         return Verdict.UNDECIDED
     return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded

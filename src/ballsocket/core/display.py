@@ -99,10 +99,7 @@ _LOADERS: dict[str, Callable[[], Plot]] = {}
 
 
 def register_plot(name: str, loader: Callable[[], Plot]) -> None:
-    """Register a function that imports and returns a plot function, by the name of the plot.
-
-    Matplotlib is thus imported only when a plot is made.
-    """
+    """Register a loader of a plot function by name, so that matplotlib is imported only when a plot is made."""
     _LOADERS[name] = loader
 
 

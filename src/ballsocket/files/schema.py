@@ -6,7 +6,7 @@ A table of a file is a subclass of `Table`, a key of the table is a field of the
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
 The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
-(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`schema_keys`). A key whose
+(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`inputs`). A key whose
 name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
 """
 

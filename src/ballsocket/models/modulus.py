@@ -317,10 +317,7 @@ def constant(modulus: Array) -> Modulus:
 
 
 def _volume_constraint(contact: Any) -> Array:
-    """Compute (ν - 0.43) a/L, a measure of the volume constraint in a nearly incompressible liner.
-
-    It is 0 for a compressible liner.
-    """
+    """Compute (ν - 0.43) a/L, a measure of the volume constraint in nearly incompressible liners, or 0."""
     excess = contact.joint.liner.poisson - 0.43
     return clip(excess, 0.0, inf) * contact.width_ratio
 

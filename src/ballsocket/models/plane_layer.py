@@ -140,10 +140,7 @@ class LayerSolution:
 
     @cached_property
     def _quadrature_points(self) -> tuple[Array, Array, Array, Array]:
-        """Quadrature points x in the radius and k L in the wave number, each with its weights.
-
-        They are arrays of the caller's library: x, weights of x, k L, weights of k L.
-        """
+        """Points and weights in the radius x and the wave number k L, as arrays of the caller's library."""
         like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
         return tuple(arrays.namespace(self.width).asarray(part, **like) for part in _quadrature(self.widest))
 
