@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import Any
 
 from .display import plain_number
-from .kinds import MILLIMETRES, PLAIN, Kind, Unit
+from .kinds import MILLIMETRES, PLAIN, Unit
 from .quantities import Quantity
 
 _KSI_FROM = 1e4
@@ -25,21 +25,6 @@ _KSI_FROM = 1e4
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND
-
-_IMPERIAL = MappingProxyType(
-    {
-        Kind.LENGTH: Unit("mil", 1e3 / _INCH),
-        Kind.FORCE: Unit("lbf", 1 / _POUND),
-        Kind.MODULUS: Unit("psi", _PSI),
-        Kind.AREA: Unit("in²", _INCH**-2),
-        Kind.STIFFNESS: Unit("kip/in", 1e-3 * _INCH / _POUND),
-        Kind.ENERGY: Unit("lbf in", 1 / (_INCH * _POUND)),
-        Kind.FOUNDATION: Unit("ksi/in", 1e-3 * _PSI * _INCH),
-    }
-)
-"""Imperial units by kind; a mil is a thousandth of an inch."""
-
-_INCHES = Unit("in", 1 / _INCH)
 
 _WRITTEN_UNITS = MappingProxyType(
     {
@@ -53,7 +38,7 @@ _WRITTEN_UNITS = MappingProxyType(
         "N m": Unit("lbf in", 1e3 / (_INCH * _POUND)),
         "mm³": Unit("in³", _INCH**-3),
         "mm²": Unit("in²", _INCH**-2),
-        "mm": _INCHES,
+        "mm": Unit("in", 1 / _INCH),
         "µm": Unit("mil", 1 / _INCH),
         "nm": Unit("µin", 1 / _INCH),
         "kN": Unit("lbf", 1e3 / _POUND),
@@ -63,7 +48,7 @@ _WRITTEN_UNITS = MappingProxyType(
         "kPa": Unit("psi", 1e-3 * _PSI),
     }
 )
-"""Imperial units by the metric unit of a text, longest first."""
+"""Imperial units by the metric unit, longest first; a mil is a thousandth of an inch."""
 
 _NUMBER = r"(?:[-+]?(?:\d++\.?\d*+|\.\d++)(?:e[-+]?\d++)?|inf|nan)"
 _SEPARATORS = (", ", " to ", " and ", " or ", "..", " ± ", " x ")
@@ -89,8 +74,7 @@ class Units(StrEnum):
         """Write a length (mm) in mm or in inches."""
         if isinf(millimetres):
             return "to infinity"
-        unit = self.length_unit
-        return f"{millimetres * unit.factor:.4g} {unit.text}"
+        return self.amount(Amount(millimetres, MILLIMETRES))
 
     def short_length(self, millimetres: float) -> str:
         """Write a length (mm) to 0.1 mm or to 0.001 in."""
@@ -99,11 +83,11 @@ class Units(StrEnum):
     @property
     def length_unit(self) -> Unit:
         """Unit of dimensions: mm or inches."""
-        return _INCHES if self is Units.IMPERIAL else Unit("mm")
+        return self.written(MILLIMETRES)
 
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
-        return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
+        return self.written(quantity.shown)
 
     def text_of(self, quantity: Quantity, number: float) -> str:
         """Write a number, stated in the internal unit, with the unit of this system."""

@@ -244,7 +244,7 @@ def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:
         if name in _ORIENTATION and not cup.oriented:
             continue
         number = float(getattr(cup, name))
-        yield quantity.title, units.length(number) if name == "chamfer" else units.text_of(quantity, number), ""
+        yield quantity.title, units.text_of(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
 
 
