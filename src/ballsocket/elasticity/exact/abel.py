@@ -63,7 +63,7 @@ class AbelState(PeakPressure):
     @cached_property
     def _weights(self) -> Numbers:
         """Quadrature weights of integrals over [0, ε]."""
-        return self.half_angle[:, None] * (self.grid.weights * self.grid.slope)[self.grid.points :]
+        return self.half_angle[:, None] * (self.grid.nodes[1] * self.grid.slope)[self.grid.points :]
 
     @cached_property
     def _operators(self) -> tuple[Numbers, Numbers]:
@@ -277,13 +277,9 @@ def scaled_pressure(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> 
     return numpy.where(inside, 2 * numpy.sqrt(width) * total, 0.0)
 
 
-ROUNDING = 1e-9
-"""Relative rounding error of a pressure."""
-
+ROUNDING = 1e-9  # relative rounding error of a pressure
 _MODES_PER_BLOCK = 64
-
-_DEPTH_TOLERANCE = 1e-9
-"""Relative tolerance of an indentation, which is least accurate for the widest contact of a circular gap."""
+_DEPTH_TOLERANCE = 1e-9  # relative, of an indentation: least accurate for the widest contact of a circular gap
 
 
 def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:

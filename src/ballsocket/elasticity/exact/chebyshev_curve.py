@@ -35,9 +35,7 @@ _BLOCK = 2000  # contacts in one block, which fits into the cache
 _POWERS = {"indentation": 2.0, "force": 3.0}  # of ε in the loads of a point contact
 _STARTS, _MIN_START, _NEWTON_STEPS, _ROUNDING = 800, 1e-9, 3, 1e-12
 
-LOG_FUNCTIONS = 2
-"""Number of functions that are logarithms."""
-
+LOG_FUNCTIONS = 2  # number of functions that are logarithms
 _PRESSURE_RIPPLE = 1e-7  # relative ripple of a pressure from series
 
 
@@ -69,9 +67,8 @@ class ChebyshevCurve:
             angle = _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
         reachable = angle <= self.curve.widest_angle
         state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest_angle))
-        return JointContacts(
-            load=load, touching=touching, state=state, reached=reachable, error=self._errors(kind, state)
-        )
+        errors = self._errors(kind, state)
+        return JointContacts(load=load, touching=touching, state=state, reached=reachable, error=errors)
 
     def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
         """Estimate the relative error of each quantity at the applied load."""
@@ -129,9 +126,8 @@ class ChebyshevCurve:
 
     def evaluate_polynomials(self, angle: Numbers) -> Numbers:
         """Evaluate the Chebyshev polynomials (terms, contacts) at half angles."""
-        return chebyshev_polynomials(
-            2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1, self._chebyshev_coefficients.shape[1]
-        )
+        coordinate = 2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1
+        return chebyshev_polynomials(coordinate, self._chebyshev_coefficients.shape[1])
 
     @cached_property
     def stress_curve(self) -> StressCurve:
@@ -164,19 +160,17 @@ class ChebyshevCurve:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevState(PeakPressure):
-    """Contacts interpolated at half angles ε (contacts,) above 0, with the quantities of an `AbelState`."""
+    """Contacts interpolated at half angles ε (contacts,) above 0; the quantities are those of an `AbelState`."""
 
     series: ChebyshevCurve
     half_angle: Numbers
 
     @property
     def kernel(self) -> Kernel:
-        """Kernel of the joint's contact equation."""
         return self.series.curve.kernel
 
     @property
     def gap(self) -> Gap:
-        """Gap between ball and socket, as a function of angle and indentation."""
         return self.series.curve.gap
 
     @cached_property
@@ -201,45 +195,38 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation d in mm."""
         return self._total_displacement * self._relative_indentation
 
     @cached_property
     def indentation_slope(self) -> Numbers:
-        """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad."""
         rate = self._function_values[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
         return self._total_displacement * self._relative_indentation * rate / self.relative_clearance
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
-        """Pressure scale X ε/C in MPa, from the total displacement X and the compliance C of the kernel."""
+        """Pressure scale X ε/C in MPa."""
         return self._total_displacement * self.half_angle / self.kernel.compliance
 
     @cached_property
     def force(self) -> Numbers:
-        """Force F in N."""
         radius = self.gap.socket_radius * self.half_angle
         dimensionless_force = numpy.exp(self._function_values[0][1])
         return dimensionless_force * self._pressure_scale * radius * radius
 
     @cached_property
     def pole_pressure(self) -> Numbers:
-        """Pressure p0 at the pole in MPa."""
         return self._function_values[0][2] * self._pressure_scale
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Tangent stiffness dF/dd in N/mm."""
         return self._function_values[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
 
     @cached_property
     def energy(self) -> Numbers:
-        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
         return self._function_values[0][4] * self.force * self.indentation
 
     @cached_property
     def pressure_integral(self) -> Numbers:
-        """Integral of the pressure over the contact area, ∫ p dA, in N."""
         return self._function_values[0][5] * self.force
 
     @cached_property
@@ -249,11 +236,8 @@ class ChebyshevState(PeakPressure):
         The half angle ε and the total displacement X count as exact.
         """
         truncation_error, values = self.series.truncation_error[:, None], abs(self._function_values[0][LOG_FUNCTIONS:])
-        return (
-            numpy.max(truncation_error[:LOG_FUNCTIONS])
-            + numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
-            + numpy.max(self.series.knots.error)
-        )
+        relative = numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
+        return numpy.max(truncation_error[:LOG_FUNCTIONS]) + relative + numpy.max(self.series.knots.error)
 
     @property
     def displacement_error(self) -> Numbers:
@@ -262,7 +246,6 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
-        """Largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.series.knots.pressure_decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)

@@ -48,8 +48,7 @@ class HemisphereGap(LinearGap):
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
-        total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._wave_numbers))
-        return total
+        return numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._wave_numbers))
 
 
 def hemisphere_response(socket: Socket, ball: ElasticBall | None) -> Numbers:
@@ -106,8 +105,7 @@ def low_pressure_modes(state: AbelState) -> Numbers:
     """Compute the pressure modes p_n in MPa of the lowest degrees: (contacts, MODES)."""
     waves, sines = _quadrature_waves(tuple(state.half_angle.tolist()))
     series = state.expansion @ _even_legendre(state.grid.points)
-    modes: Numbers = numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
-    return modes
+    return numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
 
 
 @lru_cache(maxsize=16)
@@ -150,8 +148,7 @@ def _extrapolate_iterates(iterates: Numbers) -> Numbers:
     steps = steps / scale
     bends = numpy.diff(steps, axis=-1)
     weights = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
-    limit: Numbers = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
-    return limit
+    return iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -46,12 +46,12 @@ class Intervals:
         square = edge * grid.distance
         square *= square
         weights = _evaluate_polynomial(logarithm_coefficients(a), square)
-        weights *= grid.weights * numpy.log(edge) + grid.log_weights
+        weights *= grid.nodes[1] * numpy.log(edge) + grid.log_weights
         term = _evaluate_polynomial(distance_coefficients(a), square)
         term *= edge * grid.distance_weights
         weights += term
         term = _evaluate_polynomial(smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
-        term *= grid.weights
+        term *= grid.nodes[1]
         weights += term
         weights *= edge * (grid.slope / 2)
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import inf
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy
 
@@ -16,9 +16,6 @@ from ...problem.gaps import Gap
 from .abel import AbelState
 from .grid import cached_grid
 from .kernel import CachedIntervals, Intervals, Kernel
-
-if TYPE_CHECKING:
-    from .chebyshev_curve import ChebyshevState
 
 _GRIDS = (14, 20, 28, 40, 56, 80)  # numbers of points, increased until the error is small enough
 _COARSE_POINTS = 10
@@ -164,13 +161,13 @@ def _is_contact(state: AbelState) -> Numbers:
         return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
-def log_slope(kind: str, state: AbelState | ChebyshevState) -> Numbers:
-    """Compute the logarithmic derivative of the load by the half angle, d ln(load)/d ln ε."""
+def log_slope(kind: str, state: Any) -> Numbers:
+    """Compute d ln(load)/d ln ε of solved or interpolated contacts."""
     deepening = state.half_angle * state.indentation_slope
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def estimate_errors(kind: str, state: AbelState | ChebyshevState) -> dict[str, Numbers]:
+def estimate_errors(kind: str, state: Any) -> dict[str, Numbers]:
     """Estimate the relative error of each quantity at the applied load."""
     state_error = _SAFETY * state.error
     slopes = {name: log_slope(name, state) for name in _LAWS}

@@ -71,8 +71,7 @@ def initial_displacement(bore: Any, modulus: float, depth: Numbers, force: Numbe
     """
     clearance = max(bore.clearance, 0.0)
     indentation = linear_indentation(bore.socket_radius, clearance, modulus, force)
-    start: Numbers = axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
-    return start
+    return axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
 
 
 _PATH_POINTS = 4  # number of contacts on the way of a ball, at which the work of the load is integrated
@@ -123,8 +122,7 @@ class BoreContact:
 
     def force(self, pressure: Numbers) -> Numbers:
         """Compute the force on the bore in N, (batch, 3), from pressures (batch, rings, meridians)."""
-        force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
-        return force
+        return pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
 
     def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
         """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""

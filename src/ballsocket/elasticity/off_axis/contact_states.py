@@ -11,23 +11,12 @@ import numpy
 
 from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
+from . import patch_measures as measures
 from .bore_contact import BoreContact, EquilibriumBatch
 from .contact_patch import ContactPatch
 from .directions import magnitudes_and_directions
 from .lane_solver import can_solve_lanes, solve_tangents
-from .patch_measures import (
-    CellArrays,
-    Patches,
-    axis_pressures,
-    cell_shares,
-    edge_loaded,
-    edge_margins,
-    half_angles,
-    largest_pressures,
-    make_cell_arrays,
-    measure_edges,
-    tangents_at,
-)
+from .patch_measures import CellArrays, Patches
 from .rim_curve import CurveFunction
 from .surfaces import EdgeRelation
 
@@ -87,14 +76,12 @@ class ContactStates:
     @property
     def loaded_area(self) -> Numbers:
         """Area of the loaded cells on a unit sphere: (contacts,)."""
-        area: Numbers = ((self.equilibrium.pressure > 0) * self.bore.compliance.grid.areas).sum(axis=(1, 2))
-        return area
+        return ((self.equilibrium.pressure > 0) * self.bore.compliance.grid.areas).sum(axis=(1, 2))
 
     @property
     def rim_level(self) -> Numbers:
         """Largest level in mm over the cells of the ring at the rim: (contacts,)."""
-        largest: Numbers = self.levels[:, -1].max(axis=1)
-        return largest
+        return self.levels[:, -1].max(axis=1)
 
     @property
     def unconverged(self) -> Numbers:
@@ -117,7 +104,7 @@ class ContactStates:
 
     @cached_property
     def _cells(self) -> CellArrays:
-        return make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
+        return measures.make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
 
     def _measure(self, measure: Callable[..., Numbers], *values: Numbers) -> Numbers:
         """Measure all contacts by a function of cells and values, in blocks that fit into the processor's cache."""
@@ -160,7 +147,7 @@ class ContactStates:
         weights, levers = pressure * grid.areas, numpy.zeros(len(pressure))
         for contact, load_axis in enumerate(self.axes):
             cosine = numpy.tensordot(load_axis, grid.centroids, 1)
-            first, second = tangents_at(load_axis)
+            first, second = measures.tangents_at(load_axis)
             azimuth = numpy.arctan2(
                 numpy.tensordot(second, grid.centroids, 1), numpy.tensordot(first, grid.centroids, 1)
             )
@@ -195,7 +182,7 @@ class ContactStates:
 
         The edge of the contact crosses the cells steadily: see `cell_shares`.
         """
-        share = self._measure_patches(cell_shares, self._edges[:, :3], self._edges[:, 3:])
+        share = self._measure_patches(measures.cell_shares, self._edges[:, :3], self._edges[:, 3:])
         if can_solve_lanes(self.bore):
             return numpy.moveaxis(solve_tangents(self.bore, share, self.edges.compliance), 0, -1)
         tangents = [numpy.zeros((0, 3, 3))]
@@ -234,22 +221,22 @@ class ContactStates:
     @cached_property
     def half_angle(self) -> Numbers:
         """Half angles in rad of round contacts of the same area."""
-        return self._measure_patches(half_angles, self._edges[:, 3:])
+        return self._measure_patches(measures.half_angles, self._edges[:, 3:])
 
     @cached_property
     def _edges(self) -> Numbers:
         """Centre of each contact, and the angles in rad from it to the edge along rays: (contacts, 3 + rays)."""
-        return self._measure_patches(lambda cells, patches: numpy.column_stack(measure_edges(cells, patches)))
+        return self._measure_patches(lambda cells, patches: numpy.column_stack(measures.measure_edges(cells, patches)))
 
     @property
     def edge_loaded(self) -> Numbers:
         """Flag of each contact: 1 if there is pressure at the end of the bore, else 0."""
-        return numpy.asarray(edge_loaded(self.equilibrium.pressure)).astype(float)
+        return numpy.asarray(measures.edge_loaded(self.equilibrium.pressure)).astype(float)
 
     @cached_property
     def edge_margin(self) -> Numbers:
         """Angle in rad from the edge of each contact to the end of the bore; 0 if it reaches the end."""
-        return self._measure_patches(edge_margins)
+        return self._measure_patches(measures.edge_margins)
 
     @property
     def unbounded(self) -> Numbers:
@@ -260,7 +247,7 @@ class ContactStates:
     def _largest(self) -> Numbers:
         """Largest pressure of each contact in MPa, and the unit vector to it: (contacts, 4)."""
         return self._measure(
-            lambda cells, pressure, axis: numpy.column_stack(largest_pressures(cells, pressure, axis)),
+            lambda cells, pressure, axis: numpy.column_stack(measures.largest_pressures(cells, pressure, axis)),
             self.equilibrium.pressure,
             self.axes,
         )
@@ -284,7 +271,7 @@ class ContactStates:
     @property
     def pole_pressure(self) -> Numbers:
         """Pressure in MPa at the axis of the load."""
-        return self._measure(axis_pressures, self.equilibrium.pressure, self.axes)
+        return self._measure(measures.axis_pressures, self.equilibrium.pressure, self.axes)
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles (..., contacts) in rad from the load towards the rim.

@@ -238,8 +238,7 @@ def start_coarse(bore: BoreArrays, load: Array, force_scale: Array, start: Array
     """Start a search in wide cells at displacements (3, lanes), with pressures from a few iterations."""
     pressure = estimate_pressure(bore, start)
     lanes = start_lanes(load, force_scale, start, pressure, measure(bore, load, start, pressure))
-    warmed: Lanes = arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
-    return warmed
+    return arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
 
 
 class Sensitivity(NamedTuple):

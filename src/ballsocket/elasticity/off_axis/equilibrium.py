@@ -215,5 +215,4 @@ class _NewtonSearch:
         trace = numpy.trace(self.tangent, axis1=1, axis2=2)
         diagonal = numpy.where(trace > 0, (_REGULARISATION + self.damping) * trace, 1.0)
         matrices = self.tangent + diagonal[:, None, None] * numpy.eye(3)
-        step: Numbers = numpy.linalg.solve(matrices, (self.load - self.force)[:, :, None])[:, :, 0]
-        return step
+        return numpy.linalg.solve(matrices, (self.load - self.force)[:, :, None])[:, :, 0]

@@ -118,8 +118,7 @@ class Grid:
     def _attenuate(self, ring_matrices: Numbers) -> Numbers:
         """Convert matrices between rings to means over the widths of cells."""
         attenuation = numpy.sinc(numpy.arange(self.max_harmonic + 1) / self.meridians) ** 2
-        cells: Numbers = ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
-        return cells
+        return ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
 
     def _missing_compliance(self, cells: Numbers) -> Numbers:
         """Compute the compliance (m, rings) that cells lack from that of waves of two rings; 0 of longer waves."""

@@ -215,8 +215,7 @@ def _interpolate_rim_contact(
     from scipy.interpolate import make_interp_spline  # slow to import
 
     spline = make_interp_spline(numpy.log(load[nodes]), solved, k=min(3, len(nodes) - 1))
-    tilts: Numbers = spline(numpy.log(load))
-    return tilts
+    return spline(numpy.log(load))
 
 
 def _spread_nodes(positions: Numbers) -> Numbers:

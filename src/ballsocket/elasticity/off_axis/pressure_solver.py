@@ -101,8 +101,7 @@ class _ConjugateGradients:
             self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])
             self.is_single &= ~doubtful
             self._update_residual()
-        converged: Numbers = self.relative_residual <= tolerance
-        return converged
+        return self.relative_residual <= tolerance
 
     def select_contacts(self, mask: Numbers) -> None:
         """Continue the iteration with only the contacts in a mask (batch,)."""
@@ -174,5 +173,4 @@ def solve_pressure_change(
 
 
 def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
-    quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
-    return quotient
+    return numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
