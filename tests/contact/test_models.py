@@ -64,11 +64,6 @@ def test_a_wrapper_presses_as_the_wrapped_model():
     assert wrapped.press(HIP, force=1.0).model is wrapped
 
 
-def test_a_model_info_without_a_contact_has_no_laws():
-    with pytest.raises(NotImplementedError, match="pin-in-hole has no laws of a contact"):
-        bs.PinInHole().numpy_laws(HIP, 0.1)
-
-
 NARROW = bs.Cup(arc_of_cover=radians(60.0))
 
 

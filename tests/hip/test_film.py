@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Cycle, FilmLimit, Lubricant, Stribeck, flexion, iso_14242_1, read_hip
-from ballsocket.hip.hamrock_dowson import film_thickness
+from ballsocket.hip.film import film_thickness
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear
 
 from ..cli.command import run

@@ -11,7 +11,8 @@ import numpy
 
 from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
-from ..contact.describe import Column
+from ..contact.describe import values_of
+from ..core.kinds import Unit
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
@@ -19,7 +20,7 @@ from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..question import complete
-from ..reports.press_plots import force_axes
+from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
@@ -145,23 +146,23 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
 
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
-    axes = depth, force = force_axes(reading.units)
-    top = rounded_up(1.2 * max(float(force.values_of(contact)) for contact in contacts.values()))
+    depth, force = force_axes(reading.units)
+    top = rounded_up(1.2 * max(force.factor * float(contact.force) for contact in contacts.values()))
     largest = top / force.factor
-    deepest = max(float(depth.values_of(contact)) for contact in contacts.values())
+    deepest = max(depth.factor * float(contact.indentation) for contact in contacts.values())
     return chart(
         "force over indentation",
-        depth.label,
-        force.label,
-        {name: _force_curve(contact, largest, axes, lines[name]) for name, contact in contacts.items()},
+        FORCE_CURVE[0].label(depth),
+        FORCE_CURVE[1].label(force),
+        {name: _force_curve(contact, largest, (depth, force), lines[name]) for name, contact in contacts.items()},
         (rounded_up(1.3 * deepest), top),
     )
 
 
-def _force_curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: LineStyle) -> Curve:
-    depth, force = axes
-    mark = (float(depth.values_of(contact)), float(force.values_of(contact)))
+def _force_curve(contact: Contact, largest: float, axes: tuple[Unit, Unit], line: LineStyle) -> Curve:
+    depth, force = zip(FORCE_CURVE, axes, strict=True)
+    mark = (float(values_of(contact, *depth)), float(values_of(contact, *force)))
     press = curve(contact, largest)
     if press is None:
         return Curve(numpy.empty(0), numpy.empty(0), line, mark=mark)
-    return Curve(depth.values_of(press), force.values_of(press), line, press.valid, mark)
+    return Curve(values_of(press, *depth), values_of(press, *force), line, press.valid, mark)

@@ -25,12 +25,11 @@ from .assembly import (
     make_scalar_contact,
     select_and_check_load,
 )
-from .contact import Contact, Laws
+from .contact import Contact, Laws, PressModel
 from .law import CurveLaw, ForceLaw, fit_curve_law
-from .outcome import ModelInfo
 
 
-class Model(ModelInfo):
+class Model(PressModel):
     """Base class of contact models: `press` computes the `Contact` of a joint under one load.
 
     Attributes that are equal for all instances of a model are class variables.
@@ -133,10 +132,6 @@ class Model(ModelInfo):
         return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
-        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
-
-        These become infinite or NaN where Python floats raise ArithmeticError.
-        """
         _, array_joint, d = as_arrays(joint, indentation)
         with numpy.errstate(all="ignore"):
             return self._solve(array_joint, "indentation", d).laws
@@ -258,15 +253,7 @@ _Delegation: Any = type(
 
 @dataclass(frozen=True, kw_only=True)
 class ModelWrapper(_Delegation, Model):
-    """Base class of models that wrap another model.
-
-    Delegates every attribute it does not override to the wrapped model.
-
-    Parameters
-    ----------
-    model : Model
-        The wrapped model.
-    """
+    """Base class of models that wrap another model: every attribute that it does not override is the wrapped one."""
 
     model: Model
 
@@ -281,13 +268,7 @@ class ModelWrapper(_Delegation, Model):
 class RimLimited(ModelWrapper):
     """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
 
-    Parameters
-    ----------
-    model : Model
-        Model without a rim.
-    cup : Cup
-    direction : tuple of float
-        Direction of the force on the cup, in the body.
+    `direction` is that of the force on the cup, in the body.
     """
 
     cup: Cup

@@ -22,11 +22,8 @@ if TYPE_CHECKING:
 
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PINK, SKY)
-_SAMPLES = 4000
-"""Samples about the best fit, without a posterior."""
-
-_CONTENTS = (0.5, 0.95)
-"""Shares of the samples within the drawn regions."""
+_SAMPLES = 4000  # samples about the best fit, without a posterior
+_CONTENTS = (0.5, 0.95)  # shares of the samples within the drawn regions
 
 
 def fit_figure(result: IdentificationResult) -> Figure:

@@ -9,7 +9,6 @@ from html import escape
 from ...comparison import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...contact.verdict import Verdict, range_text
-from ...core.kinds import Unit
 from ...core.quantities import CONTACT, JOINT
 from ...files.joint_file import JointFile
 from ...model_catalogue import OFF_AXIS
@@ -135,11 +134,10 @@ def design_rows(
     rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
     balls = [design.file.joint.ball for design in listed]
     rows.append(("ball", [Cell(text="rigid" if ball is None else ball.name or "custom numbers") for ball in balls]))
-    for column in reading.columns:
-        if column.attribute in names:
-            values = {name: _value(design, column.attribute, column.factor) for name, design in designs.items()}
-            label = f"{column.title}{Unit(column.unit).text_in_brackets}"
-            rows.append((label, [_number(name, values, base) for name in designs]))
+    for quantity in (CONTACT[name] for name in CONTACT if name in names):
+        unit = reading.unit(quantity)
+        values = {name: _value(design, quantity.name, unit.factor) for name, design in designs.items()}
+        rows.append((f"{quantity.title}{unit.text_in_brackets}", [_number(name, values, base) for name in designs]))
     return rows
 
 

@@ -12,7 +12,7 @@ from ....files.joint_file import JointFile
 from ....reports.figure_files import figure_bytes
 from ....reports.pages import answer_table
 from ....reports.study_plots import design_map
-from ....studies.map_answer import map_table
+from ....studies.study_answer import map_table
 from ....studies.task import BOUNDS, EDGE_DISTANCE
 from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
