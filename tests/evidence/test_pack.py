@@ -45,6 +45,11 @@ from .small_pack import CLEARANCE, FORCE, QUESTION_TEXT, YOUNG, question_of
         ("coefficient = 0.06", "coefficient = 2.01", "a coefficient of friction is 0 to 2"),
         ("coefficient = 0.06", "coefficient = -0.01", "a coefficient of friction is 0 to 2"),
         (FORCE, f"force = {list(range(1000, 2001))}", "cases of the matrix = 2002"),
+        (
+            '"hip-36"',
+            f"'{EXAMPLES / 'tilted_hip.toml'}'",
+            r"has a direction of the load, and \[matrix\] loads the cup upw",
+        ),
         ("May it be?", "May \u202eti be?", r"asked.toml has the invisible character U\+202E in line 2"),
     ],
 )

@@ -249,6 +249,11 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
     check_values(grid(**{name: list(values) for name, values in axes.items()}))
     tolerances = _tolerances({name: str(getattr(tables.tolerances, name)) for name in content.get("tolerances", {})})
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
+    if file.aim and not any(name in AIMS for name in axes):
+        raise ValueError(
+            f"the joint file has a {next(iter(file.aim))} of the load, and [matrix] loads the cup upwards: add tilt to "
+            "[matrix], or remove it from the joint file and turn the cup by its inclination"
+        )
     sources, friction = tables.sources or {}, tables.friction.coefficient
     check_names(sources, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
     if friction is not None:

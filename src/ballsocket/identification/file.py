@@ -233,7 +233,7 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
         for name, table in (tables.machine or {}).items()
     }
     return IdentifyFile(
-        model=with_gap(named_models[tables.model], tables.gap).in_cup(joint_file.cup),
+        model=with_gap(named_models[tables.model], tables.gap).in_cup(joint_file.cup, **joint_file.aim),
         joint=joint_file.joint,
         data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
         free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),
