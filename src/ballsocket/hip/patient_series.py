@@ -138,17 +138,14 @@ class PatientSeries:
         low, high = self.family.log_exposures
         weights = partial(interpolation_weights, low=low, high=high, count=self.family.n_nodes)
         stages = [numpy.matmul(weights(exposure + log(count))[:, None, :], at_nodes)[:, 0] for count in counts]
-        inside = box.contains(numbers) & self._wears_allowed_depth(unworn[:, 0] + exposure + log(counts[-1]), values)
+        # clearly below the largest allowed wear, by the logarithm of depth over clearance
+        clearance, log_depth = similarity.clearances(values), unworn[:, 0] + exposure + log(counts[-1])
+        thickness = numpy.minimum(float(similarity.setup.joint.liner_thickness), similarity.socket_radius(clearance))
+        inside = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
+        inside &= box.contains(numbers)
         for count in (counts[0], counts[-1]):
             inside &= (exposure + log(count) >= low - _ROUNDING) & (exposure + log(count) <= high + _ROUNDING)
         return self._table(stages, values), self._contacts(unworn, stages, values), inside
-
-    def _wears_allowed_depth(self, log_depth: Numbers, values: Mapping[str, Numbers]) -> Numbers:
-        """Return the mask of the patients clearly below the largest allowed wear, by ln of depth over c."""
-        joint, clearance = self.family.similarity.setup.joint, self.family.similarity.clearances(values)
-        thickness = numpy.minimum(float(joint.liner_thickness), self.family.similarity.socket_radius(clearance))
-        mask: Numbers = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
-        return mask
 
     def _table(self, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:
         """Convert the numbers of worn bores (patients, numbers) to results: (patients, reports, results)."""

@@ -31,7 +31,7 @@ MAX_WORN_LINERS = 10.0
 _VERSION = 7  # version of the file's format
 _FILE_NAME = "hip_in_use.npz"
 _REPORT_FIELDS = fields(Report)
-_CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
+_CONVERTERS: Mapping[str, Any] = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
 
 _ERROR_RATIO = 1 / (1 - 2**-1.5)
 """Ratio of the error to the difference from half the step: 1 / (1 - 2^-p) for errors of order p = 1.5.
@@ -77,7 +77,17 @@ class Checkpoint:
             arrays = read_arrays(self.path)
             identity, n_reports = str(arrays.pop("identity")), int(arrays.pop("count"))
             if identity == self.identity:
-                reports = tuple(_read_report(arrays, f"report_{number}_") for number in range(n_reports))
+                reports = tuple(
+                    Report(
+                        **{
+                            field.name: _CONVERTERS.get(str(field.type), numpy.asarray)(
+                                arrays[f"report_{n}_{field.name}"]
+                            )
+                            for field in _REPORT_FIELDS
+                        }
+                    )
+                    for n in range(n_reports)
+                )
         except (OSError, ValueError, KeyError) as error:
             raise ValueError(f"{self.path} is not a checkpoint of a run; delete it to start again") from error
         if identity != self.identity:
@@ -86,14 +96,6 @@ class Checkpoint:
                 "choose another folder"
             )
         return {name: array for name, array in arrays.items() if not name.startswith("report_")}, reports
-
-
-def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    values: dict[str, Any] = {}
-    for field in _REPORT_FIELDS:
-        convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
-        values[field.name] = convert_value(arrays[prefix + field.name])
-    return Report(**values)
 
 
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:

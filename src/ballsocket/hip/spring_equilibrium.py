@@ -111,20 +111,16 @@ def _solve_block(
         unbalanced = ~(numpy.linalg.norm(residual, axis=1) <= FORCE_TOLERANCE * magnitude)
         if not unbalanced.any():
             return True
-        step = _displacement_step(contact, in_contact @ to_stiffness, residual, magnitude)
+        tangent = in_contact @ to_stiffness
+        trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
+        separated = trace <= 0
+        tangent += contact.lateral_stiffness[numpy.triu_indices(3)]
+        tangent[:, [0, 3, 5]] += numpy.where(separated, 1.0, REGULARISATION * trace)[:, None]
+        step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
+        # a ball without contact moves along its load towards the bore
+        step = numpy.where(separated[:, None], contact.approach * loads / magnitude[:, None], step)
         displacement += numpy.where(unbalanced[:, None], step, 0.0)
     return False
-
-
-def _displacement_step(contact: SpringContact, tangent: Numbers, residual: Numbers, magnitude: Numbers) -> Numbers:
-    """Compute the Newton step (loads, 3) in mm; a ball without contact moves along its load towards the bore."""
-    trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
-    separated = trace <= 0
-    regularisation = numpy.where(separated, 1.0, REGULARISATION * trace)
-    tangent = tangent + contact.lateral_stiffness[numpy.triu_indices(3)]
-    tangent[:, [0, 3, 5]] += regularisation[:, None]
-    step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
-    return numpy.where(separated[:, None], contact.approach * contact.loads / magnitude[:, None], step)
 
 
 @cache
