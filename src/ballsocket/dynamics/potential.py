@@ -143,10 +143,7 @@ def energy_derivatives_of_array(indentation: Array, curve: CurveLaw) -> Slopes:
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law.
-
-    Raises TypeError, ValueError: the errors of `model.law(joint)`.
-    """
+    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law."""
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
         return SpringPotential(springs=law)

@@ -264,10 +264,7 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 
 
 def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
-    """Return the foundation of the socket by its name in files, with the model of its springs.
-
-    Raises ValueError: a model without springs, or next to another foundation.
-    """
+    """Return the foundation of the socket by its name in files, with the model of its springs."""
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
         if model is not None:

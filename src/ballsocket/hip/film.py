@@ -297,10 +297,7 @@ def _moment(foundation: SocketFoundation, sliding: SurfaceSliding, shear: Number
     """
     directions, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
     weight = numpy.divide(
-        shear * foundation.areas * sliding.radius**2,
-        distances,
-        out=numpy.zeros_like(distances),
-        where=distances > 0,
+        shear * foundation.areas * sliding.radius**2, distances, out=numpy.zeros_like(distances), where=distances > 0
     )
     normal_part = weight * (rotations @ directions)
     return rotations * weight.sum(axis=1)[:, None] - normal_part @ directions.T

@@ -187,8 +187,6 @@ def read_law(
 
     `laws` is the registry, `keys` has other keys of this table by the usual key, and `values` are those of fields that
     files do not have.
-
-    Raises ValueError: a missing key, a key of another law, or a value that is not allowed.
     """
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):

@@ -52,10 +52,7 @@ class FamilyRun:
         return 1 if high == low else min(2 + ceil(_NODES_PER_UNIT * (high - low)), _MAX_NODES)
 
     def __call__(self, piece: int) -> dict[str, Numbers]:
-        """Simulate the members of a piece; those without a result are NaN.
-
-        Raises ValueError: this worker has another version of the package than the process that started the run.
-        """
+        """Simulate the members of a piece; those without a result are NaN."""
         check_worker_code(self.code)
         first = piece * MEMBERS_PER_PIECE
         members = [self._simulate(numbers) for numbers in self.box.sample(first + MEMBERS_PER_PIECE)[first:]]
@@ -184,10 +181,7 @@ class PatientSeries:
 
 
 def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:
-    """Fit polynomials of a degree to the simulated members of a family by least squares.
-
-    Raises NoSeriesError: too many members have no result.
-    """
+    """Fit polynomials of a degree to the simulated members of a family by least squares."""
     unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))
     points, exponents = family.box.sample(len(known)), _exponents(family.box, degree)

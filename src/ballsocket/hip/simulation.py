@@ -54,10 +54,7 @@ class Checkpoint:
         return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
-        """Write the state of a simulation and its reports so far to the file.
-
-        Raises OSError: the folder is not writable or the disk is full.
-        """
+        """Write the state of a simulation and its reports so far to the file."""
         make_folder(self.folder)
         report_arrays = {
             f"report_{number}_{field.name}": getattr(report, field.name)
@@ -67,10 +64,7 @@ class Checkpoint:
         write_arrays(self.path, identity=self.identity, count=len(reports), **state, **report_arrays)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
-        """Read the stored state and reports; return None if the file does not exist.
-
-        Raises ValueError: the file belongs to another run, or is damaged.
-        """
+        """Read the stored state and reports; return None if the file does not exist."""
         if not self.path.exists():
             return None
         try:
@@ -99,10 +93,7 @@ class Checkpoint:
 
 
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written.
-
-    Raises ValueError: a wear law by a function, which has no fingerprint.
-    """
+    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written."""
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
@@ -300,10 +291,7 @@ class HipSimulation(HipSetup):
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end.
-
-    Raises ValueError: a total count that is not positive and finite, or a report beyond it.
-    """
+    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end."""
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
     rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
     for count in report_at:

@@ -211,10 +211,7 @@ class Patient:
     cycle_ratio: float  # ratio of the patient's cycles to those of the nominal patient in the same time
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
-        """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts.
-
-        Raises ValueError: a contact did not balance its load, or the liner would be worn through many times.
-        """
+        """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts."""
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
         integrator = WearIntegrator(setup=self.use)
         reports = tuple(

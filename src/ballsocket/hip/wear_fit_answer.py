@@ -17,12 +17,7 @@ def describe_wear_fit(fit: WearFit) -> Answer:
     law = str(getattr(use.wear, "name", type(use.wear).__name__))
     title = "{}; {}: coefficient of the wear law {}"
     return Answer(
-        title=Sentence(
-            title,
-            joint_sentence(use.joint),
-            use.cycle.name,
-            repr(law),
-        ),
+        title=Sentence(title, joint_sentence(use.joint), use.cycle.name, repr(law)),
         tables=[_coefficients(fit), *([_readings(fit)] if fit.readings else []), _measured(fit)],
         notes=fit.notes,
     )

@@ -305,10 +305,7 @@ MATERIAL = "material"
 
 
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
-    """Read the wear law of the socket from the table [wear] of a file.
-
-    Raises ValueError: an unknown law, a missing key, a key of another law, or a value that is not allowed.
-    """
+    """Read the wear law of the socket from the table [wear] of a file."""
     law = select_law_class(table, WEAR_LAWS, "law")
     if MATERIAL not in table:
         return read_law(table, WEAR_LAWS, law)
@@ -320,10 +317,7 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
-    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear.
-
-    Raises ValueError: a law that does not wear balls, or as `read_wear_law`.
-    """
+    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear."""
     law = select_law_class(table, WEAR_LAWS, "law")
     if BALL_COEFFICIENT not in table:
         return None
