@@ -19,8 +19,7 @@ from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
-Slopes = tuple[Array, Array, Array]
-"""Energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm."""
+Slopes = tuple[Array, Array, Array]  # energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm
 
 
 class Potential(Protocol):

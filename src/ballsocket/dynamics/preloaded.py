@@ -33,8 +33,7 @@ from .load import ContactState, describe_load, is_finite_state, tangent_matrix, 
 from .matrices import join_vector
 from .potential import CurvePotential
 
-NODES = 7
-"""Number of tabulated directions, from the dome to the opening."""
+NODES = 7  # number of tabulated directions, from the dome to the opening
 
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""

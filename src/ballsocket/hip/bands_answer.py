@@ -18,8 +18,7 @@ from ..studies.sensitivity_answer import IndexEntry, share_table
 from .bands import Bands
 from .variability import INFLUENCED_RESULTS
 
-_ANY = "any"
-"""Wear coefficient of a row that holds for all coefficients."""
+_ANY = "any"  # wear coefficient of a row that holds for all coefficients
 
 
 def describe_bands(bands: Bands) -> Answer:

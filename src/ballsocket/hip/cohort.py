@@ -20,8 +20,7 @@ from .cup_frame import ANGLES
 from .simulation import make_checkpoint
 from .variability import RESULT_UNITS, CohortResult, PatientVariability, contact_table, join_results, result_table
 
-PATIENTS_PER_PIECE = 16
-"""Patients of one piece of work: about half a second."""
+PATIENTS_PER_PIECE = 16  # patients of one piece of work: about half a second
 
 _MAX_PATIENTS = 1_000_000
 _COPIES = 4  # copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band
@@ -30,8 +29,7 @@ _LABEL_NAME = "patients.json"  # name of the file with the identity of a stored 
 _SERIAL = Serial()
 _SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}  # units in the table's columns
 
-ProgressCallback = Callable[[int], None]
-"""Function that is called with the number of finished patients."""
+ProgressCallback = Callable[[int], None]  # function that is called with the number of finished patients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,8 +16,7 @@ from ..core.checks import check_whole_number, require
 from ..core.kinds import Kind
 from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
 
-DEFAULT_STEPS = 100
-"""Number of time steps of a cycle, unless another is set."""
+DEFAULT_STEPS = 100  # number of time steps of a cycle, unless another is set
 
 MIN_STEPS, MAX_STEPS = 8, 10_000
 _PEAK_SAMPLES = 10_000  # number of intervals in which the largest force of a cycle is searched

@@ -149,8 +149,7 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
     return replace(reaction, columns=columns)
 
 
-DEFAULT_CLOSURE = 0.01
-"""Largest difference between the ends of a column, as a share of its range."""
+DEFAULT_CLOSURE = 0.01  # largest difference between the ends of a column, as a share of its range
 
 _MAX_STEP_RATIO = 3.0  # longest time step as a multiple of the median step; a longer one is a gap
 _TIME_TOLERANCE = 1e-6  # difference by which two tables may end apart, as a share of the duration

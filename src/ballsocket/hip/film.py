@@ -35,8 +35,7 @@ CONFORMITY_NOTE = (
 )
 """Note on the film thickness of a conforming joint."""
 
-METHODS = ("wave", "hamrock-dowson")
-"""Names of the methods; the first is the default."""
+METHODS = ("wave", "hamrock-dowson")  # names of the methods; the first is the default
 
 _SMALL_SHARE = 0.01  # share of a contact without fresh lubricant up to which it is not noted
 _MAX_ERROR = 0.1  # largest estimated error of a valid film

@@ -53,11 +53,8 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     return LawUnit(text=text, typed=text, suffix=suffix, read=read_numbers)
 
 
-NUMBER = kind_unit(Kind.NUMBER)
-"""Unit of a plain number."""
-
-PRESSURE = kind_unit(Kind.MODULUS)
-"""Unit of a pressure: MPa."""
+NUMBER = kind_unit(Kind.NUMBER)  # unit of a plain number
+PRESSURE = kind_unit(Kind.MODULUS)  # unit of a pressure: MPa
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,8 +18,7 @@ from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
 from .simulation import MAX_WORN_LINERS
 from .variability import RESULT_UNITS, CohortResult
 
-MEMBERS_PER_PIECE = 8
-"""Simulations of one piece of work: about half a second."""
+MEMBERS_PER_PIECE = 8  # simulations of one piece of work: about half a second
 
 _NODES_PER_UNIT = 1.5  # interpolation points per unit of the logarithm of the exposure
 _MAX_NODES = 24  # largest number of interpolation points of the exposure

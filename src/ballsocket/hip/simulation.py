@@ -25,8 +25,7 @@ from .rim import mask_edge_loading
 from .socket_foundation import CycleEquilibrium
 from .wear_integrator import WearIntegrator
 
-MAX_WORN_LINERS = 10.0
-"""Largest wear by the rate of the first cycle, in liner thicknesses."""
+MAX_WORN_LINERS = 10.0  # largest wear by the rate of the first cycle, in liner thicknesses
 
 _VERSION = 7  # version of the file's format
 _FILE_NAME = "hip_in_use.npz"

@@ -14,8 +14,7 @@ from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.grid import Grid
 from .spring_equilibrium import SpringContact, load_blocks, spring_solver
 
-NO_LATERAL_SPRING = numpy.zeros((3, 3))
-"""Stiffness matrix (N/mm) for a ball without a lateral spring."""
+NO_LATERAL_SPRING = numpy.zeros((3, 3))  # stiffness matrix (N/mm) for a ball without a lateral spring
 
 _CONTACT_STEP = 1e-3  # step of a ball without contact beyond the clearance, relative to the socket's radius
 

@@ -15,14 +15,9 @@ import numpy
 
 from ..core.arrays import Numbers
 
-MAX_ITERATIONS = 60
-"""Number of Newton steps after which an equilibrium counts as not converged."""
-
-FORCE_TOLERANCE = 1e-8
-"""Allowed error of the force balance, relative to the load."""
-
-REGULARISATION = 1e-12
-"""Stiffness added to the tangent stiffness, relative to its trace."""
+MAX_ITERATIONS = 60  # number of Newton steps after which an equilibrium counts as not converged
+FORCE_TOLERANCE = 1e-8  # allowed error of the force balance, relative to the load
+REGULARISATION = 1e-12  # stiffness added to the tangent stiffness, relative to its trace
 
 _BLOCK_SIZE = 131_072  # values (loads times cells) computed together, which stay in the processor's cache
 

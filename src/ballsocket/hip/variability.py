@@ -36,15 +36,13 @@ SAMPLED_QUANTITIES = (
 )
 """Quantities that may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
 
-DEFAULT_COUNT = 64
-"""Default number of samples in each sample set of an uncertainty analysis."""
+DEFAULT_COUNT = 64  # default number of samples in each sample set of an uncertainty analysis
 
 _COARSE_RINGS = radians(8.0)  # least ring width of a patient on springs; its error is below the variability
 _COARSE_ELASTIC_RINGS = radians(6.0)  # ring width of a patient with full elasticity, the largest of `Sphere`
 _COARSE_INSTANTS = 32  # largest number of instants of a cycle in a patient's simulation
 
-DEFAULT_LEVEL = 0.95
-"""Default fraction of the predictions within a band."""
+DEFAULT_LEVEL = 0.95  # default fraction of the predictions within a band
 
 INFLUENCED_RESULTS = ("volume", "depth", "penetration")
 """Results whose variance is divided among the sampled quantities."""

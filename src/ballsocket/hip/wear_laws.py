@@ -296,12 +296,10 @@ _WEAR_LAWS: tuple[type[WearLaw], ...] = (
 WEAR_LAWS: Mapping[str, type[WearLaw]] = NamedItems("wear law", {law.name: law for law in _WEAR_LAWS})
 """Registry of the wear laws by their names in files; the first one is the default."""
 
-BALL_COEFFICIENT = "ball_coefficient"
-"""Key of the wear coefficient of a ball that wears too."""
+BALL_COEFFICIENT = "ball_coefficient"  # key of the wear coefficient of a ball that wears too
 
 
-MATERIAL = "material"
-"""Key of the material whose published wear factor is used."""
+MATERIAL = "material"  # key of the material whose published wear factor is used
 
 
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
