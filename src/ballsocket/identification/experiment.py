@@ -113,10 +113,6 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
         By default the standard quantities at loads up to one and a half times those of the data. Their uncertainties
         are those of the data, or 2 % for a new quantity.
 
-    Returns
-    -------
-    Experiment
-
     References
     ----------
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.

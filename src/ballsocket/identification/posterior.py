@@ -76,10 +76,6 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         Number of independent samples, 100 or more.
     seed : int
 
-    Returns
-    -------
-    Posterior
-
     Raises
     ------
     ImportError

@@ -54,10 +54,6 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
         Sets of data, 1 or more.
     seed : int
 
-    Returns
-    -------
-    Trials
-
     Raises
     ------
     ValueError

@@ -131,10 +131,7 @@ def fit_liner(mesh: Mesh) -> ImplantFit:
     The bore is the largest concave spherical surface. Its radius is that of the corners of the facets, which a CAD
     program puts on the surface. Chamfers, holes, ribs and cylinders are left out.
 
-    Raises
-    ------
-    ValueError
-        A mesh without a bore, or with one that no hip has.
+    Raises ValueError: a mesh without a bore, or with one that no hip has.
     """
     bore = _find_sphere(mesh, -1.0, RADII)
     if bore is None:
@@ -150,10 +147,7 @@ def fit_liner(mesh: Mesh) -> ImplantFit:
 def fit_head(mesh: Mesh) -> ImplantFit:
     """Fit the sphere and the taper's opening of a head.
 
-    Raises
-    ------
-    ValueError
-        A mesh without a ball, or with one that no hip has.
+    Raises ValueError: a mesh without a ball, or with one that no hip has.
     """
     ball = _find_sphere(mesh, 1.0, RADII)
     if ball is None:

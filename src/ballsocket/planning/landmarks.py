@@ -58,10 +58,7 @@ class Landmarks:
     def find(self, role: str) -> Numbers | None:
         """Return the point (3,) of a role, such as "right_asis"; None without one.
 
-        Raises
-        ------
-        ValueError
-            Several points have the role.
+        Raises ValueError: several points have the role.
         """
         allowed = (_squeeze(role), *ROLES[role])
         indices = [index for index, name in enumerate(self.names) if _squeeze(name) in allowed]
@@ -76,10 +73,7 @@ class Landmarks:
         Points of the rim have names that begin with "rim", after "cup", "liner" or "acetabular" and a side if needed:
         "rim-1", "cup rim 2", "left rim 3".
 
-        Raises
-        ------
-        ValueError
-            Points of both sides without `side`.
+        Raises ValueError: points of both sides without `side`.
         """
         sides: dict[int, str | None] = {}
         for index, name in enumerate(map(_squeeze, self.names)):

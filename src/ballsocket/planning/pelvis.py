@@ -181,10 +181,7 @@ class CupOrientation:
 
         Without a vertical, both are equal.
 
-        Raises
-        ------
-        ValueError
-            A cup that opens upwards or to the middle of the body.
+        Raises ValueError: a cup that opens upwards or to the middle of the body.
         """
         lateral, front, up = (self.frame.body_axes if upright else numpy.eye(3)) @ self.axis
         lateral = lateral if self.side is Side.RIGHT else -lateral
@@ -248,10 +245,7 @@ def orientation_of_axis(
 
     Without `signed`, the axis has either sign: a cup opens downwards and to the side. The side follows from the centre.
 
-    Raises
-    ------
-    ValueError
-        A centre in the middle of the pelvis, or on the other side than stated.
+    Raises ValueError: a centre in the middle of the pelvis, or on the other side than stated.
     """
     lies = Side.RIGHT if centre[0] > 0 else Side.LEFT
     clear = abs(centre[0]) >= _MIN_SIDE_DISTANCE

@@ -46,14 +46,8 @@ def fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float,
 
     The facets are relative to the centre, in radii. Points on the edges count: the edges of a rim lie in its plane.
 
-    Returns
-    -------
-    axis : array (3,)
-        Unit vector out of the opening.
-    angle : float
-        Polar angle in rad of the rim from the pole.
-    deviation : float
-        Largest angle in rad of the rim from the plane.
+    Returns the unit vector (3,) out of the opening, the polar angle in rad of the rim from the pole, and the largest
+    angle in rad of the rim from the plane.
     """
     points, dome = edge_points(corners), pole / numpy.linalg.norm(pole)
     for _ in range(8):

@@ -39,10 +39,7 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
     The constants are 0 or more.
 
-    Raises
-    ------
-    ValueError
-        A joint with fewer than three thicknesses.
+    Raises ValueError: a joint with fewer than three thicknesses.
     """
     from scipy.optimize import nnls
 
@@ -146,10 +143,6 @@ def calibrate(
         `as_constant`, `as_polynomial` or `as_corrected_vessel`.
     reference : Model
         `Exact()` by default.
-
-    Returns
-    -------
-    Calibration
 
     Raises
     ------
