@@ -100,7 +100,6 @@ class PlaneLayer(Model):
     promise: ClassVar[Promise] = Promise(within=0.15)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve contacts for given forces, indentations or half angles, and mark those that did not converge."""
         solution = _solve_width(joint, kind, load)
         force, indentation = solution.force_and_indentation
         reached = indentation if kind == "indentation" else force
