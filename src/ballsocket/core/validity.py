@@ -202,11 +202,7 @@ SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )
 RIGID_BALL = Range(quantity="joint.modulus_ratio", high=0.02, why="the model takes the ball as rigid")
-RIGID_BACKING = Range(
-    quantity="joint.backing_ratio",
-    high=0.01,
-    why="the model takes the liner's backing as rigid",
-)
+RIGID_BACKING = Range(quantity="joint.backing_ratio", high=0.01, why="the model takes the liner's backing as rigid")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -64,11 +64,7 @@ class PlaneLayer(Model):
     sources: ClassVar[tuple[Source, ...]] = (Source("jin2000"),)
     planar: ClassVar[bool] = True
     domain: ClassVar[tuple[Range, ...]] = (
-        Range(
-            quantity="joint.clearance",
-            low=0.0,
-            why="the effective radius R1 R2/c is infinite without clearance",
-        ),
+        Range(quantity="joint.clearance", low=0.0, why="the effective radius R1 R2/c is infinite without clearance"),
         Range(
             quantity="joint.liner_thickness",
             low=0.0,
