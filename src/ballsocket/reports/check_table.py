@@ -15,16 +15,7 @@ from math import nextafter
 from typing import Any
 
 from ..contact import Contact
-from ..contact.verdict import (
-    EDGE_DISTANCE,
-    Bounded,
-    Verdict,
-    ball_von_mises,
-    bar_text,
-    error_bar,
-    percent,
-    ratio_text,
-)
+from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, ball_von_mises, bar_text, error_bar, percent, ratio_text
 from ..core.answers import Check
 from ..core.quantities import QUANTITIES, STRENGTH, Quantity
 from ..elasticity.off_axis.contact import OffAxisContact
