@@ -19,10 +19,10 @@ assert b"Volume: hip-28" in make_file(page.seen(), "HTML")[1]
 
 
 @pytest.mark.long
-def test_a_new_view_is_a_folder_and_a_line(tmp_path):
+def test_a_new_view_is_a_file_and_a_line(tmp_path):
     code = page_code("view")[0]
     assert code.count("\n") <= 31
-    files = {"app/views/volume/__init__.py": "", "app/views/volume/view.py": code}
+    files = {"app/views/volume.py": code}
     extend_package(tmp_path, files, {"app/views/registry.py": {LAST: f'{LAST}    "volume": "volume.Volume",\n'}})
     done = run_python(tmp_path, "-c", OPENED)
     assert done.returncode == 0, done.stderr

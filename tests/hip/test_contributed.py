@@ -50,7 +50,7 @@ assert abs(abs(cycle.rotation_increments[:, 0]).sum() / 4 / 0.4 - 1) < 1e-2
 EXPLORER = """
 from ballsocket.app.state.use import CHOICES, hip_of, use_of, use_pairs
 from ballsocket.app.state.screen import Screen
-from ballsocket.app.views.wear.view import Wear
+from ballsocket.app.views.wear import Wear
 from ballsocket.files.joint_file import JointFile
 assert "pendulum" in CHOICES["cycle"]
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})

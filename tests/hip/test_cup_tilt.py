@@ -11,9 +11,9 @@ import ballsocket as bs
 from ballsocket.app.state.evidence_question import DEFAULT_QUESTION
 from ballsocket.app.state.screen import START, link_of, read_link
 from ballsocket.app.state.use import Use, hip_of
-from ballsocket.app.views.evidence.worker import write_question
-from ballsocket.app.views.gait.worker import gait_key
-from ballsocket.app.views.wear.worker import wear_key
+from ballsocket.app.views.evidence import write_question
+from ballsocket.app.views.gait_cycle import gait_key
+from ballsocket.app.views.wear_run import wear_key
 from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import tables_of
 from ballsocket.hip import PatientVariability

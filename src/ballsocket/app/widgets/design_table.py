@@ -18,7 +18,7 @@ from ...reports.check_table import Check, checks_of, verdict_of
 from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
-from ..views.cup.worker import answer_in_cup, is_prepared
+from ..views.real_cup import answer_in_cup, is_prepared
 from .reading import number_text
 from .words import VERDICT_KINDS, percent
 

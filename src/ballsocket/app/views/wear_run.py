@@ -8,20 +8,20 @@ from typing import Any
 
 import numpy
 
-from ....contact.verdict import EDGE_DISTANCE, Bounded, exact_number
-from ....elasticity.off_axis.grid import Grid
-from ....files.joint_file import JointFile
-from ....hip import HipSimulation, History, PatientVariability, population
-from ....hip.cycle_registry import CYCLES
-from ....problem.cup import Cup
-from ....reports.check_table import Check, sorted_checks, wear_check
-from ....reports.figure_files import figure_bytes
-from ....reports.hip_plots import penetration_curve
-from ....studies.distributions import LogNormal
-from ...results import without_name
-from ...running import Reached, Report
-from ...state.use import Use, hip_of
-from ..gait.worker import checks_in_use
+from ...contact.verdict import EDGE_DISTANCE, Bounded, exact_number
+from ...elasticity.off_axis.grid import Grid
+from ...files.joint_file import JointFile
+from ...hip import HipSimulation, History, PatientVariability, population
+from ...hip.cycle_registry import CYCLES
+from ...problem.cup import Cup
+from ...reports.check_table import Check, sorted_checks, wear_check
+from ...reports.figure_files import figure_bytes
+from ...reports.hip_plots import penetration_curve
+from ...studies.distributions import LogNormal
+from ..results import without_name
+from ..running import Reached, Report
+from ..state.use import Use, hip_of
+from .gait_cycle import checks_in_use
 
 WEAR_SECONDS = 300.0  # seconds that a run of wear may take
 _REPORTS = 10

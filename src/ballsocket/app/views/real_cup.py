@@ -10,22 +10,22 @@ from typing import Any
 
 import numpy
 
-from ....elasticity.finite_elements.mesh import socket_shape
-from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....elasticity.off_axis.grid import rim_grid
-from ....elasticity.off_axis.model import Sphere
-from ....elasticity.off_axis.orientations import orient
-from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
-from ....files.joint_file import JointFile
-from ....model_catalogue import OFF_AXIS, named_models
-from ....problem import Joint
-from ....problem.cup import Cup, Side
-from ....question import PressAnswer, PressQuestion, answer, complete
-from ....reports.figure_files import figure_bytes
-from ....reports.orientation_results import orientation_figure
-from ...results import RESULTS, without_name
-from ...running import Reached, Report
+from ...elasticity.finite_elements.mesh import socket_shape
+from ...elasticity.finite_elements.progress import progress_to
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...elasticity.off_axis.grid import rim_grid
+from ...elasticity.off_axis.model import Sphere
+from ...elasticity.off_axis.orientations import orient
+from ...elasticity.off_axis.ring_matrices import are_cup_rings_cached
+from ...files.joint_file import JointFile
+from ...model_catalogue import OFF_AXIS, named_models
+from ...problem import Joint
+from ...problem.cup import Cup, Side
+from ...question import PressAnswer, PressQuestion, answer, complete
+from ...reports.figure_files import figure_bytes
+from ...reports.orientation_results import orientation_figure
+from ..results import RESULTS, without_name
+from ..running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
 ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))  # orientations of the map

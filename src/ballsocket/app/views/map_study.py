@@ -11,23 +11,23 @@ from typing import Any
 
 import numpy
 
-from ....comparison import THIN_LINER_RATIO
-from ....contact import Model
-from ....core.kinds import Kind
-from ....core.quantities import JOINT, QUANTITIES
-from ....core.validity import OutsideDomainError, check_domain
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue
-from ....problem import Joint
-from ....problem.dimensions import give
-from ....studies.design import Span, grid
-from ....studies.limits import Limit, allowed, count_verdicts, undecided_reason
-from ....studies.metadata import held_in, held_text
-from ....studies.parameters import LOADS, PARAMETERS, press_arguments
-from ....studies.run import default_model, joint_of_arrays, study
-from ....studies.task import with_bounds
-from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
-from ...widgets.numbers import of_parameter
+from ...comparison import THIN_LINER_RATIO
+from ...contact import Model
+from ...core.kinds import Kind
+from ...core.quantities import JOINT, QUANTITIES
+from ...core.validity import OutsideDomainError, check_domain
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue
+from ...problem import Joint
+from ...problem.dimensions import give
+from ...studies.design import Span, grid
+from ...studies.limits import Limit, allowed, count_verdicts, undecided_reason
+from ...studies.metadata import held_in, held_text
+from ...studies.parameters import LOADS, PARAMETERS, press_arguments
+from ...studies.run import default_model, joint_of_arrays, study
+from ...studies.task import with_bounds
+from ..state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
+from ..widgets.numbers import of_parameter
 
 _POINTS = 61
 _SOLVED_POINTS = 17  # values along an axis where every joint is solved: a second in all

@@ -8,22 +8,22 @@ from functools import partial
 from html import escape
 from typing import Any
 
-from ....contact import Contact
-from ....core.checks import check_names
-from ....core.quantities import JOINT
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue
-from ....problem.presets import joints
-from ....reports.figure_files import figure_bytes
-from ....reports.pages import table
-from ....reports.press_plots import press_figure
-from ....reports.style import LineStyle, numbered
-from ...pressing import fine_curves, press_charts
-from ...state.screen import MAX_COMPARED, Screen
-from ...view import STRESS_PAUSE, Document, Host, View, field_places
-from ...widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
-from ...widgets.fields import Field, choice
-from ...widgets.words import number_rows
+from ...contact import Contact
+from ...core.checks import check_names
+from ...core.quantities import JOINT
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue
+from ...problem.presets import joints
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
+from ...reports.press_plots import press_figure
+from ...reports.style import LineStyle, numbered
+from ..pressing import fine_curves, press_charts
+from ..state.screen import MAX_COMPARED, Screen
+from ..view import STRESS_PAUSE, Document, Host, View, field_places
+from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
+from ..widgets.fields import Field, choice
+from ..widgets.words import number_rows
 
 _CHOOSE = ""
 _PRESENT = "this design"

@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy
 
-from ....contact.verdict import exact_number
-from ....files.joint_file import JointFile
-from ....hip import HipSimulation, Lubricant
-from ....hip.ball_wear import interpolation_at
-from ....hip.contact_checks import ContactCheck, largest_utilisation, list_check_notes
-from ....hip.cycle_registry import CYCLES
-from ....reports.check_table import Check, checks_at
-from ....reports.figure_files import figure_bytes
-from ...pictures.bore import node_directions, relative_bytes
-from ...results import without_name
-from ...running import Reached, Report
-from ...state.use import UploadedCycle, Use, hip_of
+from ...contact.verdict import exact_number
+from ...files.joint_file import JointFile
+from ...hip import HipSimulation, Lubricant
+from ...hip.ball_wear import interpolation_at
+from ...hip.contact_checks import ContactCheck, largest_utilisation, list_check_notes
+from ...hip.cycle_registry import CYCLES
+from ...reports.check_table import Check, checks_at
+from ...reports.figure_files import figure_bytes
+from ..pictures.bore import node_directions, relative_bytes
+from ..results import without_name
+from ..running import Reached, Report
+from ..state.use import UploadedCycle, Use, hip_of
 
 RINGS, MERIDIANS = 30, 90  # rings and meridians of the field that moves on the page
 _INSIDE = 0.5  # share of the neighbouring cells with a value, from which a node has one

@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from math import atan2, cos, isinf, pi, radians, sin
 
-from ....contact import Contact
-from ....core.kinds import Unit
-from ....core.quantities import Quantity
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....files.joint_file import JointFile
-from ....reports.section_plots import gap_factor, radii_of
-from ...pictures import svg
-from ...pictures.section import DrawingFrame, ball, layers, painted
-from ...widgets.fields import Field
-from ...widgets.reading import number_text
+from ...contact import Contact
+from ...core.kinds import Unit
+from ...core.quantities import Quantity
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...files.joint_file import JointFile
+from ...reports.section_plots import gap_factor, radii_of
+from ..pictures import svg
+from ..pictures.section import DrawingFrame, ball, layers, painted
+from ..widgets.fields import Field
+from ..widgets.reading import number_text
 
 Formatter = Callable[[float], str]
 Aim = tuple[float, Unit]

@@ -9,30 +9,30 @@ from html import escape
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from ....comparison import Comparison, successful_contacts
-from ....contact import Contact
-from ....core.quantities import BEARING, FIELD
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue, reference
-from ....question import complete, real_cup_reason
-from ....reports.cup_plots import cup_figure
-from ....reports.figure_files import figure_bytes
-from ....reports.press_plots import press_figure
-from ....reports.press_report import press_lede, press_sections
-from ....reports.style import line_of
-from ....studies.derivatives import LocalUncertainty, local_uncertainty
-from ...long_view import LongView
-from ...pictures.chart import swatch
-from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import fine_curves, is_waiting, press_charts, pressed
-from ...running import Work
-from ...state.screen import PAINTED, Screen
-from ...view import STRESS_PAUSE, Document, Host
-from ...widgets.fields import choice, segments, several
-from ...widgets.words import alert, headline, models_table, number_rows
-from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
-from .drawing import first_view, frame_of, key
+from ...comparison import Comparison, successful_contacts
+from ...contact import Contact
+from ...core.quantities import BEARING, FIELD
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue, reference
+from ...question import complete, real_cup_reason
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.press_plots import press_figure
+from ...reports.press_report import press_lede, press_sections
+from ...reports.style import line_of
+from ...studies.derivatives import LocalUncertainty, local_uncertainty
+from ..long_view import LongView
+from ..pictures.chart import swatch
+from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
+from ..pressing import fine_curves, is_waiting, press_charts, pressed
+from ..running import Work
+from ..state.screen import PAINTED, Screen
+from ..view import STRESS_PAUSE, Document, Host
+from ..widgets.fields import choice, segments, several
+from ..widgets.words import alert, headline, models_table, number_rows
+from .contact_drawing import first_view, frame_of, key
+from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
 
 _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 """Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
