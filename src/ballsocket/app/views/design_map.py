@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -143,8 +143,26 @@ class DesignMap(View):
         self.channel.put_fields({**self.fields(self.page.screen), "map.limits": limits})
 
     def edit(self, key: str, value: Any) -> None:
-        if key in _ACTIONS:
-            _ACTIONS[key](self, value)
+        screen = self.page.screen
+        if key == "limits":
+            self._edit_limits(value)
+        elif key == "drag":
+            number, *point = read_point(value, 3)
+            self.page.ask(limits=move_limit(mapped(screen), screen, int(number), self._in_study(*point)))
+        elif key == "pick":
+            x, y = self._in_study(*read_point(value, 2))
+            self._show_point({screen.across.name: x, screen.up.name: y})
+        elif key == "best":
+            best = best_point(mapped(screen), screen)
+            if best is None:
+                raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
+            self._show_point(best)
+        elif key == "use":
+            self.page.ask(file=self._picked_file(), picked=None)
+        elif key == "compare":
+            self.page.ask(beside=with_compared(screen, self._picked_file()))
+        elif key == "drop":
+            self.page.ask(picked=None)
         else:
             super().edit(key, value)
 
@@ -156,45 +174,24 @@ class DesignMap(View):
     def _edit_limits(self, value: Any) -> None:
         """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""
         screen = self.page.screen
-        limits = self._rows.read(
-            value,
-            screen.limits,
-            screen.reading,
-            self._present_value,
-            lambda limits: allowed_points(mapped(screen), replace(screen, limits=limits)),
-        )
+
+        def present(name: str) -> float:
+            designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+            return present_value(screen.file, name, designs[_PRESENT].contact)
+
+        def check(limits: tuple[Limit, ...]) -> None:
+            allowed_points(mapped(screen), replace(screen, limits=limits))
+
+        limits = self._rows.read(value, screen.limits, screen.reading, present, check)
         self._put_fields()
         if limits is not None:
             self.page.ask(limits=limits)
 
-    def _present_value(self, name: str) -> float:
-        """Return a number of the design on the screen by the model of the map."""
-        screen = self.page.screen
-        designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
-        return present_value(screen.file, name, designs[_PRESENT].contact)
-
-    def _edit_drag(self, value: Any) -> None:
-        number, x, y = read_point(value, 3)
-        point = self._in_study(x, y)
-        self.page.ask(limits=move_limit(mapped(self.page.screen), self.page.screen, int(number), point))
-
     def _in_study(self, x: float, y: float) -> tuple[float, float]:
         """Convert a point in the units of the axes to those of a study."""
-        reading = self.page.screen.reading
-        across, up = (
-            reading.unit(QUANTITIES[axis.name]).factor for axis in (self.page.screen.across, self.page.screen.up)
-        )
+        screen = self.page.screen
+        across, up = (screen.reading.unit(QUANTITIES[axis.name]).factor for axis in (screen.across, screen.up))
         return x / across, y / up
-
-    def _pick(self, value: Any) -> None:
-        x, y = self._in_study(*read_point(value, 2))
-        self._show_point({self.page.screen.across.name: x, self.page.screen.up.name: y})
-
-    def _pick_best(self, value: Any) -> None:
-        point = best_point(mapped(self.page.screen), self.page.screen)
-        if point is None:
-            raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
-        self._show_point(point)
 
     def _show_point(self, point: dict[str, float]) -> None:
         picked = catalogue_sizes(point) if self.page.screen.sizes == "catalogue" else point
@@ -215,17 +212,6 @@ class DesignMap(View):
             rows=lambda: _rows(results, screen.reading),
             sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
         )
-
-
-_ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
-    "limits": DesignMap._edit_limits,
-    "drag": DesignMap._edit_drag,
-    "pick": DesignMap._pick,
-    "best": DesignMap._pick_best,
-    "use": lambda view, value: view.page.ask(file=view._picked_file(), picked=None),
-    "compare": lambda view, value: view.page.ask(beside=with_compared(view.page.screen, view._picked_file())),
-    "drop": lambda view, value: view.page.ask(picked=None),
-}
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
@@ -258,7 +244,10 @@ def _rows(results: Any, reading: Reading) -> list[list[Any]]:
 
 
 def map_picture(results: Any, screen: Screen) -> str:
-    """Draw a map with a ring at the picked point; raise ValueError if it has no result anywhere."""
+    """Draw a map with a ring at the picked point; raise ValueError if it has no result anywhere.
+
+    The part that is undecided is faded, and the part that exceeds a limit once more.
+    """
     axes = screen.across.name, screen.up.name
     label, factor = axis_label(screen.quantity, screen)
     values = results[screen.quantity].transpose(*axes[::-1]).values * factor
@@ -270,8 +259,10 @@ def map_picture(results: Any, screen: Screen) -> str:
     )
     picked = screen.picked
     x, y = (present_value(screen.file, name) for name in axes)
+    margins = relative_margins(results, limits_of(screen), *axes)
+    veils = (plane.contours(values).area(_BELOW_ZERO, 0.0) for values in margins)
     marks = [
-        *_veil(results, screen, plane),
+        *(f'<path class="veil" fill-rule="evenodd" d="{outline}"/>' for outline in veils if outline),
         *plane.crosses(~results.valid.transpose(*axes[::-1]).values),
         *plane.ring(x * x_factor, y * y_factor, "here"),
         *(() if picked is None else plane.ring(picked[0] * x_factor, picked[1] * y_factor, "picked")),
@@ -281,13 +272,6 @@ def map_picture(results: Any, screen: Screen) -> str:
     share = 100 * float(allowed_points(results, screen).mean())
     sentence = f"{label} over {x_label} and {y_label}; {share:.3g} % of the map keep the limits"
     return contour_map(plane, values, levels, (label, sentence), marks, "map.pick")
-
-
-def _veil(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
-    """Fade the part of the map that is undecided, and once more the part that exceeds a limit."""
-    for values in relative_margins(results, limits_of(screen), screen.across.name, screen.up.name):
-        if outline := plane.contours(values).area(_BELOW_ZERO, 0.0):
-            yield f'<path class="veil" fill-rule="evenodd" d="{outline}"/>'
 
 
 def _limit_lines(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:

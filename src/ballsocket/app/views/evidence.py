@@ -6,11 +6,12 @@ import io
 import tempfile
 import zipfile
 from base64 import b64encode
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from html import escape
 from math import prod
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +104,10 @@ class Evidence(LongView):
             content = b64encode(self.result(screen).content).decode("ascii")
             self.channel.once("file", {"name": "evidence.zip", "content": content})
         elif key == "allowable":
-            self.page.ask(asked=replace(screen.asked, limits=_allowable_limit(screen)))
+            pressure = screen.file.joint.liner.allowable_pressure
+            if pressure is None:
+                raise ValueError("the liner has no allowable pressure: enter it beside the liner")
+            self.page.ask(asked=replace(screen.asked, limits=f"max_pressure <= {float(pressure):g} MPa"))
         elif key == "limits":
             self._edit_limits(value)
         else:
@@ -132,13 +136,6 @@ class Evidence(LongView):
         super().leave()
         if self._folder is not None:
             self._folder.cleanup()
-
-
-def _allowable_limit(screen: Screen) -> str:
-    pressure = screen.file.joint.liner.allowable_pressure
-    if pressure is None:
-        raise ValueError("the liner has no allowable pressure: enter it beside the liner")
-    return f"max_pressure <= {float(pressure):g} MPa"
 
 
 def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
@@ -179,19 +176,12 @@ _CONTENTS = (
 def _pack_html(pack: EvidencePack) -> str:
     """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
     take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
-    limits = pack.record["limits"]
-    decided = "".join(_decision(limit) for limit in sorted(limits, key=_verdict, reverse=True))
-    return f"{decided}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
-
-
-def _verdict(limit: Mapping[str, Any]) -> Verdict:
-    return Verdict[limit["verdict"].upper()]
-
-
-def _decision(limit: Mapping[str, Any]) -> str:
-    verdict = _verdict(limit)
-    words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
-    return f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>"
+    limits, decisions = pack.record["limits"], []
+    verdicts = [Verdict[limit["verdict"].upper()] for limit in limits]
+    for verdict, limit in sorted(zip(verdicts, limits, strict=True), key=itemgetter(0), reverse=True):
+        words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
+        decisions.append(f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>")
+    return f"{''.join(decisions)}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
 
 
 def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:
@@ -312,14 +302,8 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
 
     record = gather_evidence(question, path / WORK, heard)
     write(question, record, evidence_page, path)
-    return EvidencePack(
-        conclusions=tuple(conclusions(record)), record=record, content=_zipped(path, names_of(question))
-    )
-
-
-def _zipped(folder: Path, names: Sequence[str]) -> bytes:
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
-        for name in sorted({*names, SUMS}):
-            pack.write(folder / name, name)
-    return stream.getvalue()
+        for name in sorted({*names_of(question), SUMS}):
+            pack.write(path / name, name)
+    return EvidencePack(conclusions=tuple(conclusions(record)), record=record, content=stream.getvalue())

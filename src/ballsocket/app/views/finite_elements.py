@@ -12,7 +12,6 @@ from typing import Any
 import numpy
 
 from ...comparison import relative_deviation
-from ...contact import Contact
 from ...contact.describe import to_summary
 from ...core.quantities import BEARING, CONTACT, JOINT
 from ...core.validity import OutsideDomainError
@@ -58,9 +57,7 @@ _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 class ElementCheck(LongView):
     """View that runs finite elements on request."""
 
-    title = "Check by finite elements"
-    name = _NAME
-    run_label = "Run finite elements"
+    name, title, run_label = _NAME, "Check by finite elements", "Run finite elements"
     body = long_body(
         _NAME, field_places(_NAME, _FIELDS), f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>'
     )
@@ -82,17 +79,20 @@ class ElementCheck(LongView):
 
     def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:
-            self.put(numbers="", picture=_preview(screen.file))
+            drawing = section(screen.file, None, extent_of(screen.file), 1.0)
+            preview = f"<div class='beside'><figure>{drawing}</figure><p class='quiet'>{_TO_COME}</p></div>"
+            self.put(numbers="", picture=preview)
         else:
             self.put(numbers=_numbers(result, screen), picture=_pictures(result, screen))
 
     def document(self, screen: Screen) -> Document:
         result: ElementResult = self.result(screen)
         heads = ["quantity", "finite elements", "error of the mesh", "exact"]
+        exact = result.exact or {}
         rows = [
-            [name, result.numbers[name], result.error.get(quantity.name, ""), (result.exact or {}).get(name, "")]
-            for name, quantity in ((item.key, item) for item in CONTACT.values())
-            if isinstance(result.numbers[name], float)
+            [entry.key, result.numbers[entry.key], result.error.get(entry.name, ""), exact.get(entry.key, "")]
+            for entry in CONTACT.values()
+            if isinstance(result.numbers[entry.key], float)
         ]
         body = table(heads, [[str(cell) for cell in row] for row in rows])
         figure = picture(result.png, "mesh, von Mises stress, and pressure beside the exact one")
@@ -101,11 +101,6 @@ class ElementCheck(LongView):
             rows=lambda: [heads, *rows],
             sections=lambda: {"judge": ("Finite elements", body + figure)},
         )
-
-
-def _preview(file: JointFile) -> str:
-    drawing = section(file, None, extent_of(file), 1.0)
-    return f"<div class='beside'><figure>{drawing}</figure><p class='quiet'>{_TO_COME}</p></div>"
 
 
 def _pictures(result: ElementResult, screen: Screen) -> str:
@@ -227,7 +222,11 @@ def section_picture(drawing: SectionDrawing, file: JointFile, reading: Reading) 
     span = (_WIDTH - 20) / count
     parts = [
         f'<path class="mesh" d="{drawing.mesh}"/>',
-        *(part for bands in drawing.bands.values() for part in _coloured(bands)),
+        *(
+            f'<path fill="{svg.heat(number / max(len(bands.paths) - 1, 1))}" fill-rule="evenodd" d="{path}"/>'
+            for bands in drawing.bands.values()
+            for number, path in enumerate(bands.paths)
+        ),
         svg.line(_MIDDLE, 24, _MIDDLE, drawing.height, "edge"),
         svg.text(_MIDDLE - 12, 16, "mesh", "label", "end"),
         svg.text(_MIDDLE + 12, 16, "von Mises stress", "label", "start"),
@@ -241,12 +240,6 @@ def section_picture(drawing: SectionDrawing, file: JointFile, reading: Reading) 
     ]
     label = f"mesh and von Mises stress in section: {', '.join(sizes)}"
     return svg.picture((_WIDTH, drawing.height + 56), label, parts)
-
-
-def _coloured(bands: StressBands) -> Iterator[str]:
-    last = len(bands.paths) - 1
-    for number, path in enumerate(bands.paths):
-        yield f'<path fill="{svg.heat(number / max(last, 1))}" fill-rule="evenodd" d="{path}"/>'
 
 
 def pressure_picture(pressures: Mapping[str, tuple[numpy.ndarray, numpy.ndarray]], reading: Reading) -> str:
@@ -289,7 +282,12 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     if contact.status.failed:
         raise ValueError(f"the finite elements have no result: {contact.status.sentence}")
     assert isinstance(contact, MeshedContact)
-    exact = _exact(file)
+    try:
+        exact = reference.press(file.joint, **file.load)
+    except OutsideDomainError:
+        exact = None
+    if exact is not None and exact.status.failed:
+        exact = None
     report(Reached(share=0.85, words="drawing stresses"))
     figure = section_figure(contact, exact)
     contacts = {JUDGE: contact, reference.name: exact}
@@ -306,11 +304,3 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
         png=figure_bytes(figure),
         svg=figure_bytes(figure, "svg"),
     )
-
-
-def _exact(file: JointFile) -> Contact | None:
-    try:
-        contact = reference.press(file.joint, **file.load)
-    except OutsideDomainError:
-        return None
-    return None if contact.status.failed else contact

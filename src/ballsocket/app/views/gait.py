@@ -30,11 +30,10 @@ from ..running import Work
 from ..state.screen import Screen
 from ..state.use import FIELDS, UploadedCycle
 from ..view import Document, Host
-from ..widgets.cycle_settings import CYCLE_SETTINGS
 from ..widgets.fields import segments
 from ..widgets.reading import Reading
-from ..widgets.settings import chosen
-from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, value_text
+from ..widgets.settings import CYCLE_SETTINGS, chosen
+from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
 from .gait_cycle import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
 _LARGEST = 100_000  # characters of a table
@@ -51,7 +50,6 @@ _SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
 <div data-field="gait-film.run"></div><div id="gait-film-trouble" role="alert"></div></div>
 <div id="gait-courses" class="courses"></div></div></div>"""
 
-_TILES = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
 _PHASE_LABEL = "phase of the cycle [%]"
 _SIZE = (520.0, 182.0)
 _INK, _BLUE = LineStyle(INK), LineStyle(BLUE, (6.0, 2.0))
@@ -62,11 +60,8 @@ _FILM_TITLE = "film thickness"
 class Gait(LongView):
     """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
 
-    title = "Gait"
-    name = "gait"
+    name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
     settings = (*CYCLE_SETTINGS, chosen("use.field", "Shown on the cup", FIELDS, segments))
-    run_label = "Compute the cycle"
-    automatic = True
     body = long_body("gait", _INPUTS, _SHOWN)
 
     def __init__(self, page: Host) -> None:
@@ -144,7 +139,7 @@ class Gait(LongView):
         rows = numpy.stack([result.phase, *courses.values()], axis=1).tolist()
         numbers = {
             **result.numbers,
-            **({} if film is None else {f"film_{name}": value for name, value in film.numbers.items()}),
+            **{f"film_{name}": value for name, value in (film.numbers if film else {}).items()},
         }
         listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in numbers.items()])
         sections = {
@@ -171,29 +166,23 @@ def _read_upload(value: Any) -> UploadedCycle:
 
 
 def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
-    force, pressure, edge = (reading.unit(quantity) for quantity in _TILES)
-    least = least_edge_distance(result)
-    highest = float(numpy.nanmax(result.pressure, initial=0.0)) * pressure.factor
+    force, pressure, distance = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
+    least, notes = least_edge_distance(result), list(result.notes)
     cells = [
-        number_cell("largest load", float(result.force.max(initial=0.0)) * force.factor, force.text),
-        number_cell("largest pressure", highest, pressure.text),
-        number_cell("smallest distance to the rim", least * edge.factor, edge.text, result.worst),
-        number_cell("sliding distance per cycle", result.numbers["slide_mm"] * edge.factor, edge.text),
-        *([] if film is None else _film_cells(film)),
+        quantity_cell(force, result.force.max(initial=0.0), reading, "largest load"),
+        quantity_cell(pressure, numpy.nanmax(result.pressure, initial=0.0), reading, "largest pressure"),
+        quantity_cell(distance, least, reading, "smallest distance to the rim", result.worst),
+        quantity_cell(distance, result.numbers["slide_mm"], reading, "sliding distance per cycle"),
     ]
-    notes = [*result.notes, *([] if film is None else [film.note])]
+    if film is not None:
+        state = "wave method, valid here" if film.valid else "✗ wave method, not valid here"
+        thinnest, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
+        cells.append(number_cell("smallest film thickness", thinnest, "nm", state))
+        cells.append(number_cell("smallest film ratio λ", ratio, "", film.regime))
+        notes.append(film.note)
     checks = checked(result.checks, reading)
     rim = rim_sentence(result, reading)
     return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes)}"
-
-
-def _film_cells(film: GaitFilm) -> list[str]:
-    state = "wave method, valid here" if film.valid else "✗ wave method, not valid here"
-    least, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
-    return [
-        number_cell("smallest film thickness", least, "nm", state),
-        number_cell("smallest film ratio λ", ratio, "", film.regime),
-    ]
 
 
 @dataclass(frozen=True)
@@ -207,7 +196,6 @@ class Course:
     line: LineStyle = _INK
 
     def unit(self, reading: Reading) -> Unit:
-        """Return the unit of the values; films are in nm."""
         return self.own_unit if self.quantity is None else reading.unit(self.quantity)
 
     def label(self, reading: Reading) -> str:
@@ -272,20 +260,18 @@ def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, read
         for course, values in charted
     }
     flagged = _spans(result) if charted[0][0].field == "edge" else []
-    sentence = "; ".join(_range_sentence(course, values, unit) for course, values in charted)
+    sentences = []
+    for course, values in charted:
+        finite = values[numpy.isfinite(values)]
+        ends = f"{number_text(finite.min())} to {number_text(finite.max())} {unit.text}" if finite.size else "no number"
+        sentences.append(f"{course.name}: {ends}".rstrip())
+    sentence = "; ".join(sentences)
     named = f"{legend({course.name: course.line for course, _ in charted})} " if len(charted) > 1 else ""
     red = " <b class='no'>✗ red: rim contact</b>" if flagged else ""
     drawn = chart(
         f"over the cycle: {sentence}", _PHASE_LABEL, unit.text or "λ", curves, (100.0, highest), _SIZE, flagged
     )
     return f"<figure><figcaption>{escape(sentence)}{red} {named}</figcaption>{drawn}</figure>"
-
-
-def _range_sentence(course: Course, values: numpy.ndarray, unit: Unit) -> str:
-    known = values[numpy.isfinite(values)]
-    if not len(known):
-        return f"{course.name}: no number"
-    return f"{course.name}: {number_text(known.min())} to {number_text(known.max())} {unit.text}".rstrip()
 
 
 def _spans(result: GaitResult) -> list[tuple[float, float]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -75,29 +75,24 @@ def simulate_designs(
     return {key: results[key] for key in files}
 
 
-def _simulate_design(hip: HipSimulation, use: Use, reached: Any) -> WearResult:
+def _simulate_design(hip: HipSimulation, use: Use, reached: Callable[[float, str], None]) -> WearResult:
     cycles = 1e6 * use.millions
     report_cycles = [share * cycles / _REPORTS for share in range(1, _REPORTS + 1)]
     history = hip.after(
         cycles, report_cycles, lambda count: reached(0.05 + 0.65 * count / cycles, f"{count / 1e6:.3g} million cycles")
     )
-    bands = None
+    bands: Any = None
     if use.spread > 1 and use.coefficient > 0 and use.coefficient_field is not None:
         reached(0.72, "the band of the wear coefficient")
         wear = {"coefficient": LogNormal(median=use.coefficient, factor=use.spread)}
         counts = [report.cycles for report in history.reports]
         _, bands = population(PatientVariability(use=hip, distributions=wear), counts, patients=_PATIENTS)
     reached(0.95, "drawing")
-    return _wear_result(hip, history, bands)
-
-
-def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult:
     reports = history.reports
-    courses = {
-        name: numpy.array([0.0, *(getattr(report, name) for report in reports)])
+    penetration, deepest, volume = (
+        numpy.array([0.0, *(getattr(report, name) for report in reports)])
         for name in ("penetration", "depth", "volume")
-    }
-    penetration = courses["penetration"]
+    )
     if bands is None:
         low, high = (penetration * (1 + sign * history.error.depth) for sign in (-1, 1))
         band = f"band: numerical error of the run, {100 * history.error.depth:.2g} %"
@@ -109,8 +104,8 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
     return WearResult(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),
         penetration=penetration,
-        deepest=courses["depth"],
-        volume=courses["volume"],
+        deepest=deepest,
+        volume=volume,
         low=low,
         high=high,
         band=band,
@@ -137,7 +132,7 @@ def worn_rim_rows(hip: HipSimulation, distances: numpy.ndarray, edge_loaded: num
     """Return the row of a bore that is worn to its rim without edge loading, which has no limit; else no row."""
     if edge_loaded.any() or not (distances <= 0).any():
         return []
-    row = Check(
+    check = Check(
         title="reach of the contact",
         quantity=EDGE_DISTANCE,
         demand=exact_number(hip.frame.reach * float(hip.joint.socket_radius)),
@@ -145,4 +140,4 @@ def worn_rim_rows(hip: HipSimulation, distances: numpy.ndarray, edge_loaded: num
         limit="arc from pole to rim",
         source="worn to the rim, which is not edge loading: see the notes",
     )
-    return [row]
+    return [check]

@@ -68,15 +68,8 @@ def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
         return varied(file, {"load": {key: value}})
     if key in _LEANS:
         return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
-    if key == "aim":
-        return _aimed_from(file, value)
+    if key == "aim":  # the load keeps its angle to the cup's axis where possible
+        check_names([value], (_BODY, _AXIS), "as aim")
+        return replace(file, aim={} if value == _BODY else {"tilt": file.tilt})
     changed = varied(file, {"cup": {key: value}})
     return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so
-
-
-def _aimed_from(file: JointFile, origin: Any) -> JointFile:
-    """Change how the load is aimed, and keep its angle to the cup's axis where possible."""
-    check_names([origin], (_BODY, _AXIS), "as aim")
-    if origin == _BODY:
-        return replace(file, aim={})
-    return replace(file, aim={"tilt": file.tilt})
