@@ -20,9 +20,8 @@ from ballsocket.app.solving import heavy, solved_curve
 from ballsocket.app.state.screen import START
 from ballsocket.app.state.use import Use
 from ballsocket.app.views.contact import Press
-from ballsocket.app.views.gait_cycle import gait_key
+from ballsocket.app.views.hip_runs import gait_key, wear_key
 from ballsocket.app.views.real_cup import bore_of, orientation_key
-from ballsocket.app.views.wear_run import wear_key
 from ballsocket.comparison import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile

@@ -6,7 +6,7 @@ from ..extended_package import extend_package, page_code, run_python
 
 LAST = '    "evidence": "evidence.Evidence",\n'
 OPENED = """
-from ballsocket.app.page import page_files
+from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
 from ballsocket.app.view import make_file
 page = Page("view=volume&preset=hip-28&load.force=3000")

@@ -12,9 +12,9 @@ import pytest
 import ballsocket as bs
 from ballsocket.app import server as serve
 from ballsocket.app.long_view import LongView
-from ballsocket.app.page import page_files
 from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
+from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import AXES, START, VIEWS, MapAxis
 from ballsocket.app.view import make_file

@@ -29,8 +29,8 @@ from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..running import Work
 from ..state.screen import STANDINGS, Screen
 from ..view import Document, Host, field_places
-from ..widgets.cup_fields import cup_edited, cup_fields
 from ..widgets.fields import segments
+from ..widgets.joint_fields import cup_edited, cup_fields
 from ..widgets.reading import Reading
 from ..widgets.settings import chosen
 from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, unit_of_files, value_text

@@ -164,12 +164,9 @@ class DesignMap(View):
         elif key == "drop":
             self.page.ask(picked=None)
         else:
-            super().edit(key, value)
-
-    def change(self, **changes: Any) -> None:
-        """Request another map, unless it is impossible."""
-        check_map(replace(self.page.screen, **changes))
-        self.page.ask(**changes)
+            changes = self.read(key, value)
+            check_map(replace(screen, **changes))
+            self.page.ask(**changes)
 
     def _edit_limits(self, value: Any) -> None:
         """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""

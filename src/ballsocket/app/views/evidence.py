@@ -38,8 +38,7 @@ from ...studies.parameters import PARAMETERS
 from ..long_view import LongView, long_body
 from ..pressing import pressed
 from ..running import Reached, Report, Work
-from ..state.evidence_question import EvidenceQuestion
-from ..state.screen import Screen, phrases_of
+from ..state.screen import EvidenceQuestion, Screen, phrases_of
 from ..state.use import Use
 from ..view import Document, Host, field_places
 from ..widgets.fields import segments

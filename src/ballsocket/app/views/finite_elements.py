@@ -32,7 +32,7 @@ from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import Screen
 from ..view import Document, field_places
-from ..widgets.cup_fields import cup_edited, cup_fields
+from ..widgets.joint_fields import cup_edited, cup_fields
 from ..widgets.reading import Reading, number_text
 from ..widgets.words import distinct_columns, notes_list, percent
 

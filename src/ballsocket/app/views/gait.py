@@ -34,7 +34,7 @@ from ..widgets.fields import segments
 from ..widgets.reading import Reading
 from ..widgets.settings import CYCLE_SETTINGS, chosen
 from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
-from .gait_cycle import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
+from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
 _LARGEST = 100_000  # characters of a table
 _FILM_SECONDS = 300.0

@@ -32,7 +32,7 @@ from ..widgets.numbers import capital
 from ..widgets.reading import Reading
 from ..widgets.settings import CYCLE_SETTINGS, Setting, amount, changed, chosen
 from ..widgets.words import checked, doubt, notes_list, number_text, percent, unit_of_files
-from .wear_run import WEAR_SECONDS, WearResult, simulate_designs, wear_key
+from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]  # quantities whose units depths and pressures have

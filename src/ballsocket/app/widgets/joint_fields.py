@@ -1,4 +1,4 @@
-"""Inputs of the joint and its load, each with its field and its edit, and those of the layers behind the liner."""
+"""Inputs of joint, load, cup and layers, each with its field and its edit."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
-from math import degrees, inf, isinf
+from math import atan2, degrees, inf, isinf, radians, tan
 from typing import Any
 
 from ...core.checks import check_names, check_text, shown
@@ -14,12 +14,14 @@ from ...core.quantities import LOADS, STRESS_LIMITS
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Material, Support
+from ...problem.cup import UP, Side
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
+from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
 from .fields import Field, choice, segments, tick, words
-from .numbers import ALLOWABLE, THICKNESS, TILT, Number, choice_of, number_of, of_parameter
+from .numbers import ALLOWABLE, CUP_NUMBERS, THICKNESS, TILT, Number, choice_of, number_of, of_parameter
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
@@ -29,6 +31,8 @@ _LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")  # le
 _MAX_NAME = 80  # characters of a design's name
 _NO_CHOICE, _REMOVE = "", "away"
 _NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
+_BODY, _AXIS = "body", "axis"
+_LEANS = ("inwards", "forwards")
 
 
 @dataclass(frozen=True)
@@ -244,3 +248,60 @@ def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
     joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
     return replace(file, joint=_as_changed(joint))
+
+
+def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
+    """Return every input of the cup by name, which begins with that of the view; inputs without effect are hidden."""
+    file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
+    numbers = {
+        "inclination": (degrees(cup.inclination), tilted),
+        "anteversion": (degrees(cup.anteversion), tilted),
+        **{name: (lean, tilted) for name, lean in zip(_LEANS, leaning(file), strict=True)},
+        "tilt": (degrees(file.aim.get("tilt", 0.0)), not tilted),
+        "arc_of_cover": (degrees(cup.arc_of_cover), False),
+        "chamfer": (cup.chamfer, False),
+    }
+    aims = ((_BODY, "in the body"), (_AXIS, "from the cup's axis"))
+    listed = [
+        *(
+            {**CUP_NUMBERS[name].field(name, round(value, 9) + 0.0, screen.reading), "hidden": hidden}
+            for name, (value, hidden) in numbers.items()
+        ),
+        segments("aim", "Load direction given", aims, _AXIS if tilted else _BODY),
+        choice_of("cup.side", cup.side.value),
+        choice_of("cup.interface", cup.interface.value),
+    ]
+    return {f"{view}.{field['name']}": {**field, "name": f"{view}.{field['name']}"} for field in listed}
+
+
+def leaning(file: JointFile) -> tuple[float, float]:
+    """Compute the angles in degrees by which a load leans medially and anteriorly."""
+    x, y, z = file.aim.get("direction", UP)
+    return degrees(atan2(_inwards(file) * x, z)), degrees(atan2(y, z))
+
+
+def _inwards(file: JointFile) -> float:
+    """Return the sign of the body's x axis that points medially."""
+    return -1.0 if file.cup.side is Side.RIGHT else 1.0
+
+
+def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
+    direction = (_inwards(file) * tan(radians(inwards)), tan(radians(forwards)), 1.0)
+    return replace(file, aim={} if direction[:2] == (0.0, 0.0) else {"direction": direction})
+
+
+def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
+    """Return the joint file after a change of one input of `cup_fields`, named without its prefix."""
+    check_names([key], (*CUP_NUMBERS, "side", "interface", "aim"), "among the inputs of a cup")
+    file = screen.file
+    if key in CUP_NUMBERS:
+        value = CUP_NUMBERS[key].meant(value, screen.reading)
+    if key == "tilt":
+        return varied(file, {"load": {key: value}})
+    if key in _LEANS:
+        return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
+    if key == "aim":  # the load keeps its angle to the cup's axis where possible
+        check_names([value], (_BODY, _AXIS), "as aim")
+        return replace(file, aim={} if value == _BODY else {"tilt": file.tilt})
+    changed = varied(file, {"cup": {key: value}})
+    return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so
