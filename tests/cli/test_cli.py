@@ -5,7 +5,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,14 +12,15 @@ from types import SimpleNamespace
 import pytest
 
 import ballsocket as bs
-from ballsocket import cli
-from ballsocket.cli import elasticity_options, root
+from ballsocket import cli, press_answer
+from ballsocket.cli import root
 from ballsocket.cli.json_answers import echo_json
 from ballsocket.cli.press_files import ReportOptions
 from ballsocket.files.joint_file import JointFile
 
 from ..extent import some
 from ..places import EXAMPLES
+from ..processes import stopped_program
 from .command import answer, run
 
 EXAMPLE = str(EXAMPLES / "hip.toml")
@@ -80,16 +80,11 @@ def test_an_infinite_result_is_a_failure_in_one_line(capsys):
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
-    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 400_000}\n"
+    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 40}\n"
     (tmp_path / "s.toml").write_text(study, encoding="utf-8")
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    process = subprocess.Popen([*PROGRAM, "study", "s.toml", "--out", "s.csv"], cwd=tmp_path, **pipes)
-    deadline = time.monotonic() + 60
-    while not list(tmp_path.glob(".s.csv.*/s.csv")) and time.monotonic() < deadline:  # it is writing the numbers
-        time.sleep(0.001)
-    process.terminate()
-    process.communicate(timeout=60)
-    assert process.returncode == 143
+    program = stopped_program(2, "s.csv", "SIGTERM")  # its folder is there, and the file is being opened
+    done = subprocess.run([sys.executable, "-c", program, "study", "s.toml", "--out", "s.csv"], cwd=tmp_path)
+    assert done.returncode == 143
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
@@ -379,7 +374,7 @@ def test_a_contact_at_the_rim_has_no_negative_distance_and_a_preloaded_one_has_n
     joint, error = SimpleNamespace(clearance=clearance, socket_radius=14.0), {"edge_margin": 0.02}
     state = {"edge_distance": distance, "edge_loaded": True, "half_angle": 0.7, "stated_error": error}
     contact = SimpleNamespace(joint=joint, error=error, **state)
-    assert re.fullmatch(f"contact {text}", elasticity_options._rim_text(contact))
+    assert re.fullmatch(f"contact {text}", press_answer._rim_sentence(contact))
 
 
 @pytest.mark.parametrize("load", [{"indentation": 0.04}, {"half_angle": 0.7}, {"force": 0.0}])

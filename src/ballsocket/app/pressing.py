@@ -11,6 +11,7 @@ import numpy
 
 from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
+from ..contact.describe import values_of
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
@@ -18,7 +19,7 @@ from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..question import complete
-from ..reports.press_plots import force_axes
+from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
@@ -145,8 +146,10 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     depth, force = force_axes(reading.units)
+    (x, y), (depth, force) = FORCE_CURVE, force_axes(reading.units)
     marks = {
-        name: (float(depth.values_of(contact)), float(force.values_of(contact))) for name, contact in contacts.items()
+        name: (float(values_of(contact, x, depth)), float(values_of(contact, y, force)))
+        for name, contact in contacts.items()
     }
     deepest, largest = (max(ends) for ends in zip(*marks.values(), strict=True))
     top, curves = rounded_up(1.2 * largest), {}
@@ -155,11 +158,6 @@ def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
         if press is None:
             curves[name] = Curve(numpy.empty(0), numpy.empty(0), line, mark=marks[name])
         else:
-            curves[name] = Curve(depth.values_of(press), force.values_of(press), line, press.valid, marks[name])
-    return chart(
-        "force over indentation",
-        depth.label,
-        force.label,
-        curves,
-        (rounded_up(1.3 * deepest), top),
-    )
+            course = values_of(press, x, depth), values_of(press, y, force)
+            curves[name] = Curve(*course, line, press.valid, marks[name])
+    return chart("force over indentation", x.label(depth), y.label(force), curves, (rounded_up(1.3 * deepest), top))

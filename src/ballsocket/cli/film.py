@@ -84,8 +84,7 @@ class FilmInputs(Table, frozen=True, kw_only=True):
         return rate * across / numpy.linalg.norm(across)
 
 
-_NEARLY_PARALLEL = 0.99
-"""Cosine of the angle between load and x above which the rotation is about y."""
+_NEARLY_PARALLEL = 0.99  # cosine of the angle between load and x above which the rotation is about y
 
 
 @app.command()
@@ -132,10 +131,7 @@ def film(
 def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: RingTable) -> list[Contact]:
     """Press the joint by the requested models.
 
-    Raises
-    ------
-    typer.Exit
-        A model has no result.
+    Raises typer.Exit: a model has no result.
     """
     load = needed_load(file)
     question = PressQuestion(

@@ -9,7 +9,7 @@ import typer
 
 from ..core.checks import known_name
 from ..core.sources import cite as bibtex_of
-from ..files.schema_keys import json_schema
+from ..files.inputs import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..model_catalogue import listed_models
 from ..problem.presets import find_material, joints, materials

@@ -28,19 +28,7 @@ SUCCESS, MISUSE, FAILURE = 0, 2, 3
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 + number of the signal, like in a shell
 _MAX_MESSAGE_LENGTH = 600  # characters
 _MAX_HELP_WIDTH = 120  # columns; a narrower terminal has its own width
-_ASCII_REPLACEMENTS = {
-    "≤": "<=",
-    "≥": ">=",
-    "±": "+-",
-    "°": "o",
-    "µ": "u",
-    "ε": "e",
-    "ν": "v",
-    "φ": "f",
-    "Δ": "D",
-    "²": "2",
-    "ß": "ss",
-}
+_ASCII_REPLACEMENTS = {"≤": "<=", "≥": ">=", "±": "+-", "ß": "ss"} | dict(zip("°µενφΔ²", "ouevfD2", strict=True))
 
 
 @dataclass(frozen=True)

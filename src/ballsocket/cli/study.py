@@ -102,10 +102,7 @@ def study(
 def _choose_plot(study_file: StudyFile, path: Path) -> Callable[..., Figure]:
     """Return the plot of a study, before it runs.
 
-    Raises
-    ------
-    ValueError
-        Another file format, or a study without two axes.
+    Raises ValueError: another file format, or a study without two axes.
     """
     check_format(path)
     axes = [axis.name for axis in study_file.design.axes if len(axis) > 1]

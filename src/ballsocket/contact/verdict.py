@@ -22,14 +22,12 @@ from ..problem import Joint, Material
 from .contact import Contact
 from .strength import joint_ball_stress_ratio, unchecked_strength_reason, utilisation
 
-EDGE_DISTANCE = "edge_distance"
-"""Arc from the edge of the contact to the rim; its error is that of the `edge_margin`."""
+EDGE_DISTANCE = "edge_distance"  # arc from the edge of the contact to the rim; its error is that of the `edge_margin`
 
 _BALL_STRESS_ERROR = 0.02
 """Relative error of the largest von Mises stress in the ball, see `strength.ball_stress_ratio`."""
 
-_AREA_ERRORS = 2.0
-"""Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
+_AREA_ERRORS = 2.0  # relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε
 
 
 def error_bar(contact: Contact, name: str) -> Bounded:
@@ -65,10 +63,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
 
 
 def rim_verdict(contact: Contact) -> Verdict:
-    """Decide if a single contact in a cup ends before the rim; undecided where its error bar contains the rim.
-
-    A ball without load is undecided.
-    """
+    """Decide if a single contact ends before the rim; undecided if its error bar contains the rim, or without load."""
     if not contact.half_angle > 0:
         return Verdict.UNDECIDED
     return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded

@@ -53,8 +53,7 @@ def ascii_text(text: str) -> str:
     return "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
 
 
-_LARGEST_PLAIN = 1e9
-"""Value from which numbers have an exponent."""
+_LARGEST_PLAIN = 1e9  # value from which numbers have an exponent
 
 
 def finite_or_none(value: float) -> float | None:
@@ -94,17 +93,13 @@ def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     return f"<b>{escape(title)}</b><table>{body}</table>"
 
 
-Plot = Callable[..., Any]
-"""A function that returns a matplotlib figure."""
+Plot = Callable[..., Any]  # a function that returns a matplotlib figure
 
 _LOADERS: dict[str, Callable[[], Plot]] = {}
 
 
 def register_plot(name: str, loader: Callable[[], Plot]) -> None:
-    """Register a function that imports and returns a plot function, by the name of the plot.
-
-    Matplotlib is thus imported only when a plot is made.
-    """
+    """Register a loader of a plot function by name, so that matplotlib is imported only when a plot is made."""
     _LOADERS[name] = loader
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import partial
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
@@ -15,25 +16,27 @@ from .quantities import QUANTITIES
 
 
 class Status(IntEnum):
-    """Outcome of a press: success, or the reason of its failure.
+    """Outcome of a press: success, or the reason of its failure, with a sentence that describes it.
 
     Arrays of results have the integer codes.
     """
 
-    OK = 0
-    OUTSIDE_DOMAIN = 1
-    NOT_REACHED = 2
-    NOT_CONVERGED = 3
-    BEYOND_EQUATOR = 4
-    AT_RIM = 5
-    NOT_ROUND = 6
-    NO_JOINT = 7
-    DISLOCATED = 8
+    sentence: str
 
-    @property
-    def sentence(self) -> str:
-        """Message that describes this status."""
-        return _SENTENCES[self]
+    def __new__(cls, code: int, sentence: str = "") -> Self:
+        status = int.__new__(cls, code)
+        status._value_, status.sentence = code, sentence
+        return status
+
+    OK = 0, "solved"
+    OUTSIDE_DOMAIN = 1, "the model has no formula for this joint"
+    NOT_REACHED = 2, "the model does not reach this load"
+    NOT_CONVERGED = 3, "the iteration did not converge"
+    BEYOND_EQUATOR = 4, "the contact circle would pass the socket's equator (half angle above 90 degrees)"
+    AT_RIM = 5, "the contact fills the socket and reaches its rim"
+    NOT_ROUND = 6, "the contact is not a single round patch around the pole, as the model assumes"
+    NO_JOINT = 7, "invalid geometry: liner thickness or clearance would be negative"
+    DISLOCATED = 8, "dislocated: the load pushes the ball out of its bore"
 
     @property
     def failed(self) -> bool:
@@ -41,16 +44,7 @@ class Status(IntEnum):
         return self in _FAILED
 
 
-_FAILED = frozenset(
-    (
-        Status.OUTSIDE_DOMAIN,
-        Status.NOT_REACHED,
-        Status.NOT_CONVERGED,
-        Status.NOT_ROUND,
-        Status.NO_JOINT,
-        Status.DISLOCATED,
-    )
-)
+_FAILED = frozenset(Status) - {Status.OK, Status.BEYOND_EQUATOR, Status.AT_RIM}
 
 
 def is_missing(status: Array) -> Array:
@@ -61,33 +55,14 @@ def is_missing(status: Array) -> Array:
     return mask
 
 
-_SENTENCES = {
-    Status.OK: "solved",
-    Status.OUTSIDE_DOMAIN: "the model has no formula for this joint",
-    Status.NOT_REACHED: "the model does not reach this load",
-    Status.NOT_CONVERGED: "the iteration did not converge",
-    Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
-    Status.AT_RIM: "the contact fills the socket and reaches its rim",
-    Status.NOT_ROUND: "the contact is not a single round patch around the pole, as the model assumes",
-    Status.NO_JOINT: "invalid geometry: liner thickness or clearance would be negative",
-    Status.DISLOCATED: "dislocated: the load pushes the ball out of its bore",
-}
-
-
 class OutsideDomainError(ValueError):
     """Error raised if no point of a press lies in the domain of the model."""
 
 
-class _AttributePath:
-    """Function that reads an attribute such as "joint.clearance"; `torch.compile` traces no `attrgetter`."""
-
-    def __init__(self, path: str) -> None:
-        self._names = path.split(".")
-
-    def __call__(self, owner: Any) -> Any:
-        for name in self._names:
-            owner = getattr(owner, name)
-        return owner
+def _read_attributes(names: list[str], owner: Any) -> Any:
+    for name in names:  # `torch.compile` traces no `attrgetter`
+        owner = getattr(owner, name)
+    return owner
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +95,7 @@ class Range:
     @cached_property
     def quantity_of(self) -> Callable[[Any], Array]:
         """Function that reads or computes the quantity from a contact."""
-        return self.quantity if callable(self.quantity) else _AttributePath(self.quantity)
+        return self.quantity if callable(self.quantity) else partial(_read_attributes, self.quantity.split("."))
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
@@ -212,14 +187,7 @@ class _UnloadedContact(NamedTuple):
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Check which joints lie in the domain of a model or modulus: return a mask, true for these joints.
 
-    The mask is true for an empty array of joints.
-
-    Parameters
-    ----------
-    domain : tuple of Range
-    joint : Joint
-    name : str
-        Name of the model or modulus for the message.
+    The mask is true for an empty array of joints. The message has the `name` of the model or modulus.
 
     Raises OutsideDomainError: no point is inside one of the ranges.
     """

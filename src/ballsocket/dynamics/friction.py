@@ -94,9 +94,7 @@ def check_and_store_number(instance: object, name: str, low: float, allowed: str
 
 
 def widening_factor(versine: Array) -> Array:
-    """Compute the ratio of the friction of an extended contact patch to that of a point contact.
-
-    The factor is the ratio of ∫ p |a x n| dA to the force.
+    """Compute the ratio ∫ p |a x n| dA/F of the friction of an extended patch to that of a point contact.
 
     a is an axis across the load, and 1 - cos ε the versine. The polynomial fits radial springs within 2e-6; other
     pressure distributions differ by about 1 %.
@@ -122,9 +120,7 @@ def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_s
 
 
 def rolling_slip_ratio(versine: Array) -> Array:
-    """Compute the ratio κ of mean slip to surface speed for a ball that rolls without slip at the pole.
-
-    κ = ∫ p sin²(φ/2) dA/N.
+    """Compute the ratio κ = ∫ p sin²(φ/2) dA/N of mean slip to surface speed for a ball that rolls about the pole.
 
     The polynomial fits radial springs within 2e-5 of κ.
     """

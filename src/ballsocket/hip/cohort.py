@@ -43,10 +43,7 @@ ProgressCallback = Callable[[int], None]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortRun:
-    """Simulation of a sampled patient cohort, divided into groups ("pieces") of a few patients.
-
-    A call with the number of a piece simulates its patients.
-    """
+    """Simulation of a sampled patient cohort; a call with the number of a piece simulates its few patients."""
 
     variability: PatientVariability  # distributions of the patients
     counts: tuple[float, ...]  # cycles of the nominal patient at the reports, in ascending order
@@ -116,26 +113,14 @@ class CohortRun:
 class CohortStore(ArrayPieceStore):
     """Folder of stored cohort results, one file for each piece (group of patients).
 
-    Attributes
-    ----------
-    folder : ResultFolder
-        Local or remote folder.
-    identity : str
-        Digest of the nominal hip, the distributions, the seed and the code, without the number of patients.
-    n_patients : int
-        Number of patients of the present run. A stored last piece with fewer patients is computed again.
-    prefix : str
-        Beginning of the file names.
+    The identity is a digest of nominal hip, distributions, seed and code, without the number of patients.
     """
 
-    n_patients: int = 0
+    n_patients: int = 0  # of the present run; a stored last piece with fewer patients is computed again
     prefix: str = "patients"
 
     def create(self) -> None:
-        """Create the folder and the label file of the store, unless they exist.
-
-        Raises OSError: the folder is not writable.
-        """
+        """Create the folder and the label file of the store, unless they exist."""
         if self._read_label() is None:
             self.folder.write(_LABEL_NAME, json.dumps({"identity": self.identity}).encode())
 

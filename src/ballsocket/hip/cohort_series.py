@@ -77,21 +77,10 @@ def solve_cohort(
 ) -> CohortSolution:
     """Compute the results of a cohort by a series where the patients are similar, else by simulating each of them.
 
-    Parameters
-    ----------
-    run : CohortRun
-        Patients.
-    seed : int
-        Seed of the samples.
-    method : str, optional
-        "series" or "runs". By default a series, if it holds and needs fewer simulations than there are patients.
-    engine : Engine
-    store : CohortStore, optional
-    progress : function
-        Called with the number of finished patients; a series counts them in proportion to its simulations.
+    By default (method None) a series is used if it holds and needs fewer simulations than there are patients. For the
+    progress, it counts patients in proportion to its simulations.
 
     Raises ValueError: an unknown method, or a series of patients that are not similar.
-    Raises OSError: the store is not writable or the disk is full.
     """
     method = None if method is None else known_name("method", method, METHODS)
     obstacle = "" if method == "runs" else find_obstacle(run.variability, run.counts)
@@ -145,11 +134,7 @@ class CohortSeries:
         return _MEMBER_COST * members_of(self.family.box, self.first_degree) + N_HELD_OUT
 
     def solve(self, progress: ProgressCallback) -> CohortSolution:
-        """Fit a series, estimate its error, refine it, and compute the results of all patients.
-
-        Raises NoSeriesError: the series has no result.
-        Raises OSError: the store is not writable or the disk is full.
-        """
+        """Fit a series, estimate its error, refine it, and compute the results of all patients."""
         held_out = self._select(numpy.arange(min(N_HELD_OUT, len(self.run))))
         expected = held_out.simulate(self.engine, self.store)
         series, accuracy = self._refine(held_out, expected, progress)
@@ -181,27 +166,18 @@ class CohortSeries:
         best: tuple[PatientSeries, SeriesAccuracy] | None = None
         while True:
             series = fit_series(self.family, self._simulate_members(degree, pieces, progress), degree)
-            accuracy = self._estimate_accuracy(series, held_out, expected)
+            result, inside = series.results(held_out.values, held_out.counts)
+            compared = inside & (expected.refused == "")
+            if not compared.any():
+                raise NoSeriesError("no simulated patient is within the ranges of the series")
+            names, n_members = self.family.similarity.results, series.n_members
+            accuracy = estimate_accuracy(result.select(compared), expected.select(compared), names, n_members, degree)
             improved = best is None or accuracy.tolerance_ratio < _LEAST_IMPROVEMENT * best[1].tolerance_ratio
             if best is None or accuracy.tolerance_ratio < best[1].tolerance_ratio:
                 best = series, accuracy
             degree += _DEGREE_STEP
             if accuracy.within_tolerance or not improved or members_of(self.family.box, degree) > max_members:
                 return best
-
-    def _estimate_accuracy(self, series: PatientSeries, held_out: CohortRun, expected: CohortResult) -> SeriesAccuracy:
-        """Compare a series with simulated patients that it was not fitted to."""
-        result, inside = series.results(held_out.values, held_out.counts)
-        compared = inside & (expected.refused == "")
-        if not compared.any():
-            raise NoSeriesError("no simulated patient is within the ranges of the series")
-        return estimate_accuracy(
-            result.select(compared),
-            expected.select(compared),
-            self.family.similarity.results,
-            series.n_members,
-            series.degree,
-        )
 
     def _simulate_members(
         self, degree: int, pieces: dict[int, Mapping[str, Numbers]], progress: ProgressCallback
@@ -255,12 +231,8 @@ def cover_orientations(
         for name, (low, high) in ranges.items()
     }
 
-    covered = {name: (centre[name], centre[name]) for name in limited}
-    steps = [
-        [(name, end) for name in limited for end in (0, 1)],
-        *([(name, end)] for name in limited for end in (0, 1)),
-    ]
-    for moved_ends in steps:  # all ends together, then each alone
+    covered, ends = {name: (centre[name], centre[name]) for name in limited}, list(product(limited, (0, 1)))
+    for moved_ends in (ends, *([end] for end in ends)):  # all ends together, then each alone
         covered = _extend(similarity, covered, limited, moved_ends)
     return covered
 

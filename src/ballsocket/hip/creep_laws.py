@@ -66,7 +66,6 @@ class KelvinVoigtChain(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Compliances in 1/MPa and retardation times in s of the Kelvin-Voigt elements."""
         return self.compliances, self.times
 
 
@@ -88,7 +87,6 @@ class LogarithmicCreep(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Compliances in 1/MPa and retardation times in s of the Kelvin-Voigt elements."""
         return self.compliances, self.times
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 from math import inf
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy
 
@@ -114,6 +114,8 @@ class Cycle:
     spring: Spring | None = None
     remark: str = ""
 
+    per_year: ClassVar[None] = None  # number of cycles a year, which only a `Mix` states
+
     def __post_init__(self) -> None:
         check_step_count(self.n_steps)
         object.__setattr__(self, "order", parse_rotation_order(self.order))
@@ -176,11 +178,6 @@ class Cycle:
     def activity_cycles(self) -> tuple[Cycle, ...]:
         """Cycles of all activities: this cycle alone, because only a `Mix` has several."""
         return (self,)
-
-    @property
-    def per_year(self) -> None:
-        """Number of cycles a year: None, because only a `Mix` states it."""
-        return None
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:

@@ -42,12 +42,7 @@ _HEADS = (*_UNITS, *_ORTHOLOAD, *_IGNORED_ORTHOLOAD)
 def read_table(path: Path, choice: HeadChoice) -> NumberTable:
     """Read the table of a cycle: an OpenSim file (.mot, .sto), or columns with any separator.
 
-    Raises
-    ------
-    ValueError
-        The file is not a table, has too few or too many rows, or fewer rows than its header states.
-    OSError
-        The file cannot be read.
+    Raises ValueError: no table, or too few or too many rows.
     """
     table = read_columns(path, _HEADS, choice)
     if not _MIN_ROWS <= len(table) < _ROW_LIMIT:
@@ -73,11 +68,7 @@ class HipColumns:
 
 
 def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
-    """Extract the columns of the hip on one side from a table.
-
-    Raises ValueError: a column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of
-    angles.
-    """
+    """Extract the columns of the hip on one side from a table."""
     return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
 
 
@@ -154,10 +145,7 @@ def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, 
 
 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
-    """Combine the columns of several tables of one cycle, interpolated at the times of the first table.
-
-    Raises ValueError: two tables have the same column, or their times do not match.
-    """
+    """Combine the columns of several tables of one cycle, interpolated at the times of the first table."""
     if len(tables) == 1:
         return tables[0]
     columns = dict(tables[0].columns)
@@ -195,20 +183,14 @@ def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
 
 
 def time_column(columns: dict[str, Numbers]) -> str:
-    """Find the name of the column with times or phases: "time" or "phase".
-
-    Raises ValueError: neither or both columns exist.
-    """
+    """Find the name of the column with times or phases: "time" or "phase"."""
     if ("time" in columns) == ("phase" in columns):
         raise ValueError("a column time [s] or phase [%] is needed, and not both")
     return "time" if "time" in columns else "phase"
 
 
 def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict[str, Numbers]:
-    """Interpolate the columns of a table at the times of a reference table.
-
-    Raises ValueError: one table has times and the other has phases, or this one does not cover the other.
-    """
+    """Interpolate the columns of a table at the times of a reference table."""
     name = time_column(columns)
     if name != time_column(reference):
         raise ValueError("one file has a column time and another one phase: they cannot be combined")
@@ -222,10 +204,7 @@ def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict
 
 
 def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
-    """Select the rows of a table between two times, and interpolate rows at both times.
-
-    Raises ValueError: the times are outside the table, or fewer than five rows lie between them.
-    """
+    """Select the rows of a table between two times, and interpolate rows at both times."""
     if begin is None and end is None:
         return columns
     name = time_column(columns)
@@ -240,10 +219,7 @@ def select_time_range(columns: dict[str, Numbers], begin: float | None, end: flo
 
 
 def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
-    """Convert the time column of a table to phases from 0 to 1, and return also the duration in s.
-
-    Raises ValueError: times do not increase, or have a gap.
-    """
+    """Convert the time column of a table to phases from 0 to 1, and return also the duration in s."""
     name = time_column(columns)
     time = columns[name]
     _check_increasing_times(name, time)
@@ -268,8 +244,7 @@ def _check_increasing_times(name: str, time: Numbers) -> None:
 def check_closed(name: str, values: Numbers, closure: float, unit: str, factor: float) -> None:
     """Check that a column ends with its first value, as a closed cycle does; ValueError otherwise.
 
-    `closure` is the allowed difference as a share of the column's range; `factor` converts values to `unit` for the
-    message.
+    The difference may be a share (`closure`) of the column's range; `factor` converts values to `unit` for the message.
     """
     difference, span = abs(values[-1] - values[0]), float(numpy.ptp(values))
     if difference > closure * span:

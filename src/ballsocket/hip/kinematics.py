@@ -22,10 +22,7 @@ _AXIS_NAMES = {
 def parse_rotation_order(text: Any) -> str:
     """Convert an order of rotations, such as "flexion, adduction, rotation", to axis letters such as "xyz".
 
-    Raises
-    ------
-    ValueError
-        `text` does not name the three rotations once each.
+    Raises ValueError: the text does not name the three rotations once each.
     """
     words = text if isinstance(text, list | tuple) else []
     if isinstance(text, str):

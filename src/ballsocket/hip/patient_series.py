@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import ceil, log
 
 import numpy
@@ -134,17 +135,13 @@ class PatientSeries:
         terms = basis(box.scale(numbers), _exponents(box, self.degree))
         at_nodes = (terms @ self.worn.reshape(len(self.worn), -1)).reshape(len(terms), *self.worn.shape[1:])
         unworn = terms @ self.unworn
-        stages = [numpy.matmul(self._weights(exposure + log(count))[:, None, :], at_nodes)[:, 0] for count in counts]
+        low, high = self.family.log_exposures
+        weights = partial(interpolation_weights, low=low, high=high, count=self.family.n_nodes)
+        stages = [numpy.matmul(weights(exposure + log(count))[:, None, :], at_nodes)[:, 0] for count in counts]
         inside = box.contains(numbers) & self._wears_allowed_depth(unworn[:, 0] + exposure + log(counts[-1]), values)
         for count in (counts[0], counts[-1]):
-            inside &= (exposure + log(count) >= self._exposures[0]) & (exposure + log(count) <= self._exposures[1])
+            inside &= (exposure + log(count) >= low - _ROUNDING) & (exposure + log(count) <= high + _ROUNDING)
         return self._table(stages, values), self._contacts(unworn, stages, values), inside
-
-    @property
-    def _exposures(self) -> tuple[float, float]:
-        """Range of the logarithm of the exposure, with a margin for rounding."""
-        low, high = self.family.log_exposures
-        return low - _ROUNDING, high + _ROUNDING
 
     def _wears_allowed_depth(self, log_depth: Numbers, values: Mapping[str, Numbers]) -> Numbers:
         """Return the mask of the patients clearly below the largest allowed wear, by ln of depth over c."""
@@ -152,10 +149,6 @@ class PatientSeries:
         thickness = numpy.minimum(float(joint.liner_thickness), self.family.similarity.socket_radius(clearance))
         mask: Numbers = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
         return mask
-
-    def _weights(self, log_exposure: Numbers) -> Numbers:
-        """Compute the weights of the simulated exposures for those of patients: (patients, exposures)."""
-        return interpolation_weights(log_exposure, *self.family.log_exposures, self.family.n_nodes)
 
     def _table(self, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:
         """Convert the numbers of worn bores (patients, numbers) to results: (patients, reports, results)."""

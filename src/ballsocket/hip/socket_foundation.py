@@ -206,15 +206,10 @@ def neighbours_in_subset(neighbours: Numbers, cells: Numbers) -> Numbers:
 
 
 def contact_shares(level: Numbers, neighbours: Numbers, inset: float) -> Numbers:
-    """Compute the fraction of each cell in contact (loads, cells) from a field that is 0 at contact edges.
+    """Compute the fraction of each cell in contact (loads, cells) from a field (loads, cells) that is positive inside.
 
-    Parameters
-    ----------
-    level : array (loads, cells)
-        Field in mm, positive in the contact. Linear interpolation between two cells gives its zero.
-    neighbours : array (2, 2, cells)
-    inset : float
-        Distance of the edge inside that zero, as a fraction of a cell's width; see `off_axis.edges`.
+    Linear interpolation of the field between two cells gives its zero. The edge lies by `inset`, a fraction of a cell's
+    width, inside that zero; see `off_axis.edges`.
     """
     positive, span = level > 0, numpy.zeros_like(level)
     for pair in neighbours:

@@ -51,21 +51,9 @@ def spring_solver() -> Solver:
 
 
 def newton_step(tangent: tuple[Any, ...], residual: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Solve 3 x 3 equations with a positive symmetric matrix by its factors L D Lᵀ.
+    """Solve 3 x 3 equations with a positive symmetric matrix (xx, xy, xz, yy, yz, zz) by its factors L D Lᵀ.
 
-    Numbers and arrays of any library are allowed.
-
-    Parameters
-    ----------
-    tangent : tuple of 6 numbers or arrays
-        Matrix entries xx, xy, xz, yy, yz, zz in N/mm.
-    residual : tuple of 3 numbers or arrays
-        Unbalanced force in N.
-
-    Returns
-    -------
-    tuple of 3 numbers or arrays
-        Displacement in mm.
+    Numbers and arrays of any library are allowed: stiffness in N/mm, unbalanced force in N, displacement in mm.
     """
     xx, xy, xz, yy, yz, zz = tangent
     fx, fy, fz = residual
@@ -87,20 +75,10 @@ def load_blocks(load_count: int, cell_count: int) -> Iterator[slice]:
 
 
 def solve_in_blocks(contact: SpringContact, displacement: Numbers, pressure: Numbers) -> bool:
-    """Solve a contact in NumPy, in blocks of loads that stay in the processor's cache.
+    """Solve a contact in NumPy, in blocks of loads that stay in the processor's cache; True if all are balanced.
 
-    Parameters
-    ----------
-    contact : SpringContact
-    displacement : array (loads, 3)
-        Initial guess in mm; it is overwritten by the result.
-    pressure : array (loads, cells)
-        Result: pressures in MPa.
-
-    Returns
-    -------
-    bool
-        True if every load is balanced.
+    The initial displacements (loads, 3) in mm are overwritten by the result, and pressures (loads, cells) in MPa
+    filled.
     """
     normals, areas = contact.normals, contact.areas
     to_force = (normals * areas).T.copy()

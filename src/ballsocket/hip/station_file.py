@@ -34,20 +34,10 @@ def read_stations(path: Path, quantity: str, unit: str | None, choice: HeadChoic
 
     The head of one column is `cycles`, or `cycles [Mc]` for millions. In the long form there is a column `station`, and
     a column with the name of the quantity, such as `mass [mg]`. In the wide form every other column is a station, named
-    by its head, such as `A [mg]`. An empty cell is no reading, and a reading of 0 at 0 cycles is left out.
-
-    Parameters
-    ----------
-    path : Path
-    quantity : str
-        Measured quantity, such as "volume" or "mass".
-    unit : str, optional
-        Unit of columns without one in their heads.
-    choice : HeadChoice
-        Columns of the file that get another name, or that are not used.
+    by its head, such as `A [mg]`. `unit` is that of columns without one in their heads. An empty cell is no reading,
+    and a reading of 0 at 0 cycles is left out.
 
     Raises ValueError: a column is missing, unknown or without a unit, or a cell is not a number.
-    Raises OSError: the file cannot be read.
     """
     table = read_cells(path, (*_CYCLES, quantity), choice, texts=(_STATION,))
     try:

@@ -196,13 +196,7 @@ class PatientVariability:
         return stated or self._medians_by_name[name]
 
     def orient_cup(self, values: Mapping[str, float]) -> Cup:
-        """Return the cup of a patient, with the angles in rad among the patient's values.
-
-        Raises
-        ------
-        ValueError
-            An angle that is not allowed.
-        """
+        """Return the cup of a patient, with the angles in rad among the values; ValueError for angles not allowed."""
         cup = self.coarse_simulation.cup
         cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
         orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}

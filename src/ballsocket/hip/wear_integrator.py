@@ -32,43 +32,19 @@ _MARGIN = 0.3  # initial margin of the active cells, relative to the largest ove
 
 @dataclass(kw_only=True, eq=False)
 class WearIntegrator:
-    """Integrator of wear and creep: state of a run, advanced in blocks of cycles.
-
-    Attributes
-    ----------
-    setup : HipSetup
-    cycles : float
-        Number of cycles so far.
-    depth : array (cells,)
-        Worn depth of the socket in mm.
-    ball : array (ball's cells,)
-        Worn depth of the ball in mm; empty for a ball without wear.
-    work : float
-        ∫∫ p v dA dt so far, in N mm.
-    length : float
-        Length of the next block in cycles.
-    steps : int
-        Number of blocks so far.
-    converged : bool
-        True if every contact balanced its load.
-    volume_error : float
-        Estimated error of the worn volume by the blocks, in mm³.
-    margin : float
-        Margin of the active cells around the contacts, relative to the largest overlap.
-    equilibrium : CycleEquilibrium
-        Last solved contacts.
-    """
+    """Integrator of wear and creep: state of a run, advanced in blocks of cycles."""
 
     setup: HipSetup
-    cycles: float = 0.0
-    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))
+    cycles: float = 0.0  # number of cycles so far
+    depth: Numbers = field(default_factory=lambda: numpy.zeros(0))  # (cells,), worn depth of the socket in mm
+    # (ball's cells,), worn depth of the ball in mm; empty for a ball without wear
     ball: Numbers = field(default_factory=lambda: numpy.zeros(0))
-    work: float = 0.0
-    length: float = inf
-    steps: int = 0
-    converged: bool = True
-    volume_error: float = 0.0
-    margin: float = _MARGIN
+    work: float = 0.0  # ∫∫ p v dA dt so far, in N mm
+    length: float = inf  # length of the next block in cycles
+    steps: int = 0  # number of blocks so far
+    converged: bool = True  # True if every contact balanced its load
+    volume_error: float = 0.0  # estimated error of the worn volume by the blocks, in mm³
+    margin: float = _MARGIN  # margin of the active cells around the contacts, relative to the largest overlap
 
     def __post_init__(self) -> None:
         """Initialize the state of the integrator for an unworn bore."""
@@ -199,7 +175,9 @@ class WearIntegrator:
             block = integrate_step(
                 self._compute_change_per_cycle, self._state_vector, self._rate, length, stage_count(length, decay_rate)
             )
-            if self._contact_left_active_cells(block):
+            depth = self.depth + self.creep_depth
+            depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
+            if self._reaches_inactive_cells(depth, 0.0):
                 self.margin *= 2
                 self._update_active_cells()
                 continue
@@ -215,7 +193,8 @@ class WearIntegrator:
         self.cycles = count if length == remaining else self.cycles + length
         if self.setup.creep is not None:
             self._advance_creep_strain(self.setup.creep, length * self.setup.seconds)
-        if self._contact_near_inactive_cells or self.setup.creep is not None:
+        depth = self.depth + self.creep_depth
+        if self.setup.creep is not None or self._reaches_inactive_cells(depth, self.margin / 2):
             self._update_active_cells()
 
     def _store_state_vector(self, state_vector: Numbers) -> None:
@@ -256,19 +235,9 @@ class WearIntegrator:
         mean_error = float(numpy.sqrt(depth_error @ depth_error / max(len(depth_error), 1)))
         return mean_error / allowed_error if allowed_error > 0 else 0.0
 
-    def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
-        """Check if a contact at the end of a block reaches inactive cells."""
-        depth = self.creep_depth
-        depth += self.depth
-        depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
-        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, 0.0)
-        mask[self._active.cells] = False
-        return bool(mask.any())
-
-    @property
-    def _contact_near_inactive_cells(self) -> bool:
-        depth = self.depth + self.creep_depth
-        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
+    def _reaches_inactive_cells(self, depth: Numbers, margin: float) -> bool:
+        """Check if a contact on a bore of a depth (cells,) in mm reaches inactive cells, or comes near to them."""
+        mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, margin)
         mask[self._active.cells] = False
         return bool(mask.any())
 

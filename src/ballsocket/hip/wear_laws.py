@@ -119,10 +119,7 @@ class Archard(WearLaw):
     def of_material(cls, material: str) -> Archard:
         """Create the law with the published wear factor of a material, such as "crosslinked-pe"; see `WEAR_FACTORS`.
 
-        Raises
-        ------
-        ValueError
-            A material that is not known, or without a published wear factor in this package.
+        Raises ValueError: as `wear_factor_of`.
         """
         factor = wear_factor_of(material)
         return cls(coefficient=factor.value, source=factor.description)

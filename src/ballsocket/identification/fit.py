@@ -30,20 +30,17 @@ _EQUAL_COST = 1e-6  # difference of cost that counts as equal
 def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     """Find the best fit of the unknowns: a global search, then least squares from its best points.
 
+    Of equal fits it is the one nearest to the middle of the ranges.
+
     Raises ValueError: the model has no result for all data at any point within the ranges.
     """
     ends = [minimise_misfit(misfit, start) for start in _choose_starting_points(misfit, seed)]
-    best = _choose_best_fit(misfit, ends)
+    least_cost, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
+    lowest = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
+    best = min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
     return FitResult(best.theta, best.cost, best.converged, rivals)
-
-
-def _choose_best_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges."""
-    least_cost, range_middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
-    lowest_ends = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
-    return min(lowest_ends, key=lambda end: float(numpy.max(abs(end.theta - range_middle))))
 
 
 def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:

@@ -100,14 +100,7 @@ class Product:
 
     def summary(self) -> dict[str, Any]:
         """Return the product as a dictionary for JSON."""
-        return {
-            "name": self.name,
-            "exponents": self.exponents,
-            "unit": self.unit,
-            "value": self.value,
-            "low": self.low,
-            "high": self.high,
-        }
+        return {"name": self.name, **vars(self)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,17 +204,17 @@ class Information:
             for index in range_indices
             if not self.intervals[index].closed or width_ratios[unknowns[index].name] >= MAX_WIDTH_RATIO
         }
+        # the range of another unknown limits the band, and shifts it by 10 % or more
         shifted_indices = {
             index
             for index in range_indices
-            if any(self._is_band_shifted(index, limiting_index) for limiting_index in wide_indices - {index})
+            if any(
+                limiting in self.intervals[index].limiting_indices
+                and abs(self._band_vector(limiting)[index]) >= MAX_SHIFT * sqrt(12)
+                for limiting in wide_indices - {index}
+            )
         }
         return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide_indices | shifted_indices)
-
-    def _is_band_shifted(self, index: int, limiting_index: int) -> bool:
-        """Check if the range of another unknown limits the band of an unknown and shifts it by 10 % or more."""
-        is_limited = limiting_index in self.intervals[index].limiting_indices
-        return is_limited and abs(self._band_vector(limiting_index)[index]) >= MAX_SHIFT * sqrt(12)
 
     def _band_vector(self, index: int) -> Numbers:
         """Compute the change of all thetas from the lower to the upper end of one unknown's 95 % band."""
@@ -279,7 +272,12 @@ class Information:
         ):
             return None
         powers = powers / powers[factor_indices[numpy.argmax(abs(powers[factor_indices]))]]
-        exponents = {unknowns[index].name: _round_exponent(float(powers[index])) for index in factor_indices}
+        exponents = {}
+        for index in factor_indices:
+            power = float(powers[index])
+            half_integer = round(2 * power) / 2
+            is_near = abs(power - half_integer) < 0.1 and half_integer
+            exponents[unknowns[index].name] = half_integer if is_near else power
         product = self._product_band(exponents)
         band_widths = [
             abs(self._band_vector(index)[index]) * prior_deviations[index]
@@ -295,25 +293,17 @@ class Information:
         prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
         covariance = numpy.linalg.pinv(self._identifiable_information + prior_information, rcond=1e-9, hermitian=True)
         half_width = self.quantile * float(direction @ covariance @ direction) ** 0.5
-        log_value = self._log_product(exponents, self.theta)
+
+        def log_product(theta: Numbers) -> float:
+            values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
+            return sum(power * log(values[name]) for name, power in exponents.items())
+
+        log_value = log_product(self.theta)
         intervals = [self.intervals[self.transform.names.index(name)] for name in self.unidentifiable]
-        log_ends = [
-            self._log_product(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
-        ]
+        log_ends = [log_product(end.theta) for interval in intervals for end in (interval.low, interval.high)]
         low, high = min(log_value - half_width, *log_ends), max(log_value + half_width, *log_ends)
         units = {unknown.name: unknown.quantity.unit for unknown in self.transform.unknowns}
         unit = " ".join(
             units[name] if power == 1 else f"{units[name]}^{power:.3g}" for name, power in exponents.items()
         )
         return Product(exponents, unit, exp(log_value), exp(low), exp(high))
-
-    def _log_product(self, exponents: Mapping[str, float], theta: Numbers) -> float:
-        """Compute the logarithm of a product of powers of unknowns at a point theta."""
-        values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
-        return sum(power * log(values[name]) for name, power in exponents.items())
-
-
-def _round_exponent(power: float) -> float:
-    """Round an exponent to the nearest multiple of 1/2 if the difference is below 0.1."""
-    half_integer = round(2 * power) / 2
-    return half_integer if abs(power - half_integer) < 0.1 and half_integer else power

@@ -35,11 +35,6 @@ class Trials:
     high: Numbers
 
     @property
-    def half_widths(self) -> Numbers:
-        """Half widths of all 95 % bands, in standard deviations of the priors."""
-        return (self.high - self.low) / 2
-
-    @property
     def coverage(self) -> dict[str, float]:
         """Fraction of 95 % bands that contain the true value, for each unknown by name."""
         covered = (self.low <= self.truth) & (self.truth <= self.high)
@@ -48,7 +43,8 @@ class Trials:
     @property
     def bias(self) -> dict[str, float]:
         """Mean error of the estimates divided by the mean band width, for each unknown by name."""
-        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half_widths.mean(axis=0))
+        half_widths = (self.high - self.low) / 2
+        bias = (self.middle - self.truth).mean(axis=0) / (2 * half_widths.mean(axis=0))
         return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:

@@ -154,12 +154,7 @@ class FilmResult(Record):
         }
 
     def plot(self) -> Any:
-        """Plot a map of the film over the bore, and film and pressure along the motion.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Plot a map of the film, and film and pressure along the motion; return the matplotlib figure."""
         return load_plot("film")(self)
 
     def __repr__(self) -> str:

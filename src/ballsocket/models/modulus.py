@@ -17,8 +17,7 @@ from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_dom
 from ..problem import Joint
 from .table_3 import scaled_modulus, table_formula
 
-Formula = Callable[..., Array]
-"""Function that computes K from R2, L, E, ν and the constants of the modulus."""
+Formula = Callable[..., Array]  # function that computes K from R2, L, E, ν and the constants of the modulus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -318,10 +317,7 @@ def constant(modulus: Array) -> Modulus:
 
 
 def _volume_constraint(contact: Any) -> Array:
-    """Compute (ν - 0.43) a/L, a measure of the volume constraint in a nearly incompressible liner.
-
-    It is 0 for a compressible liner.
-    """
+    """Compute (ν - 0.43) a/L, a measure of the volume constraint in nearly incompressible liners, or 0."""
     excess = contact.joint.liner.poisson - 0.43
     return clip(excess, 0.0, inf) * contact.width_ratio
 

@@ -237,12 +237,8 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
 def save_view(contact: OffAxisContact, path: Path) -> None:
     """Write the view of `cup_view` as PNG; after an error there is no file.
 
-    Raises
-    ------
-    ValueError, ImportError
-        As `cup_view`.
-    OSError
-        A path that cannot be written to.
+    Raises ValueError, ImportError: as `cup_view`.
+    Raises OSError: a path that cannot be written to.
     """
     plotter = cup_view(contact, off_screen=True)
     try:

@@ -23,11 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Record = Mapping[str, Any]
-"""Content of the JSON file of an evidence pack, or a part of it."""
+Record = Mapping[str, Any]  # content of the JSON file of an evidence pack, or a part of it
 
-_LEAST_ERROR = 1e-5
-"""Relative error below which no error bar is written: it is below the digits of the number."""
+_LEAST_ERROR = 1e-5  # relative error below which no error bar is written: it is below the digits of the number
 
 
 def case_text(case: Mapping[str, float]) -> str:
@@ -97,8 +95,7 @@ def named_number(name: str, value: Any) -> str:
 _KEYS: Mapping[str, Quantity] = {
     each.key: each for each in (*QUANTITIES.values(), *PARAMETERS.values(), *NAMES.values())
 }
-_MAX_WRITTEN_CELLS = 150
-"""Cells of a map up to which each contains its number."""
+_MAX_WRITTEN_CELLS = 150  # cells of a map up to which each contains its number
 
 
 def joint_figure(record: Record) -> Figure:

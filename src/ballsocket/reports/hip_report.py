@@ -12,8 +12,7 @@ from ..core.unit_systems import Units
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
 from ..hip.bands_answer import describe_bands
-from ..hip.film import WAVE_NOTE
-from ..hip.hamrock_dowson import CONFORMITY_NOTE
+from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
 from ..hip.history import History
 from ..hip.history_answer import describe_history
 from . import hip_plots
@@ -62,10 +61,7 @@ def hip_report(
 ) -> str:
     """Return the page of a wear simulation as HTML; bands of patients who differ have sections of their own.
 
-    Raises
-    ------
-    ValueError, OSError
-        As `pages.logo_address`, for the logo of the head.
+    Raises ValueError, OSError: as `pages.logo_address`, for the logo of the head.
     """
     answer = describe_history(history)
     sections = answer_sections(answer, units)

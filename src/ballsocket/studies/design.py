@@ -170,7 +170,15 @@ def check_values(design: Design) -> None:
         if isinstance(axis, MaterialAxis):  # checked when they were made
             continue
         if isinstance(axis, SampleAxis):
-            _check_samples(axis)
+            doubtful = [  # only what a distribution allows outside the range of its parameter is drawn
+                name
+                for name, distribution in axis.distributions
+                if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
+            ]
+            for section in axis.sections if doubtful else ():
+                values_in_section = axis.values_in(section)
+                for name in doubtful:
+                    _check_allowed(name, values_in_section[name], "; truncate the distribution", section.start)
             continue
         ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
         for name, values in ends.items():
@@ -178,19 +186,6 @@ def check_values(design: Design) -> None:
     for name, value in design.fixed.items():
         if not isnan(value):  # an unknown yield stress of a material
             _check_allowed(name, numpy.array([value]))
-
-
-def _check_samples(axis: SampleAxis) -> None:
-    """Raise ValueError for a sample outside the range of its parameter; draw only what a distribution allows there."""
-    doubtful = [
-        name
-        for name, distribution in axis.distributions
-        if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
-    ]
-    for section in axis.sections if doubtful else ():
-        values = axis.values_in(section)
-        for name in doubtful:
-            _check_allowed(name, values[name], "; truncate the distribution", section.start)
 
 
 def _check_allowed(name: str, values: Numbers, hint: str = "", start: int = 0) -> None:

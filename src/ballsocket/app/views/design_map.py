@@ -10,13 +10,13 @@ from typing import Any
 import numpy
 
 from ...core.checks import check_names
-from ...core.quantities import JOINT, QUANTITIES
+from ...core.quantities import JOINT, QUANTITIES, SHELL
 from ...files.joint_file import JointFile
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import answer_table
 from ...reports.study_plots import design_map
 from ...studies.limits import Limit, margin_on_plane, relative_margins
-from ...studies.map_answer import map_table
+from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
@@ -68,8 +68,10 @@ def _axis_setting(which: str) -> Setting:
     """Return the parameter of an axis; another one runs over half to twice its present value."""
 
     def field(screen: Screen) -> Field:
-        axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in AXES]
-        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, getattr(screen, which).name)
+        present = getattr(screen, which).name
+        names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
+        axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
+        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present)
 
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         check_names([value], AXES, "among the axes of a map")

@@ -34,7 +34,7 @@ from ..state.screen import Screen
 from ..view import Document, field_places
 from ..widgets.joint_fields import cup_edited, cup_fields
 from ..widgets.reading import Reading, number_text
-from ..widgets.words import distinct_columns, notes_list, percent
+from ..widgets.words import distinct_quantities, notes_list, percent
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
@@ -120,16 +120,17 @@ def _pictures(result: ElementResult, screen: Screen) -> str:
 
 def _numbers(result: ElementResult, screen: Screen) -> str:
     rows = []
-    for column in distinct_columns(screen.reading, result.numbers[CONTACT["max_pressure_angle"].key]):
-        factor = column.factor / column.quantity.written.factor  # the numbers are those of JSON
-        value = result.numbers[column.name] * factor
-        error = result.error.get(column.attribute)
-        unit = column.unit.replace(" ", "\N{NO-BREAK SPACE}")
-        row = [f"{column.title} [{unit}]", number_text(value), percent(error) if error else "–"]
+    for quantity in distinct_quantities(result.numbers[CONTACT["max_pressure_angle"].key]):
+        unit = screen.reading.unit(quantity)
+        factor = unit.factor / quantity.written.factor  # the numbers are those of JSON
+        value = result.numbers[quantity.key] * factor
+        error = result.error.get(quantity.name)
+        unit_text = unit.text.replace(" ", "\N{NO-BREAK SPACE}")
+        row = [f"{quantity.title} [{unit_text}]", number_text(value), percent(error) if error else "–"]
         if result.exact is None:
             row += ["–", "–"]
         else:
-            exact = result.exact[column.name] * factor
+            exact = result.exact[quantity.key] * factor
             row += [number_text(exact), percent(float(relative_deviation(value, exact)), "+")]
         rows.append(row)
     heads = ["quantity", "finite elements", "mesh error", "exact", "difference"]

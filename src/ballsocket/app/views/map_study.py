@@ -92,8 +92,9 @@ def _joint_on(joint: Joint, names: Iterable[str]) -> Joint:
 
 
 def limits_of(screen: Screen) -> tuple[Limit, ...]:
-    """Return the limits on the screen, with the cup on the screen for edge distances."""
-    return tuple(replace(limit, cup=screen.file.cup) for limit in screen.limits)
+    """Return the limits on the screen, with the cup and its load on the screen for edge distances."""
+    cup, direction = screen.file.cup.under_load(screen.file.tilt)
+    return tuple(replace(limit, cup=cup, direction=direction) for limit in screen.limits)
 
 
 def allowed_points(results: Any, screen: Screen) -> Any:

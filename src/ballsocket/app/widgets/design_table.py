@@ -10,7 +10,6 @@ from math import isnan, nan
 from ...comparison import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...contact.verdict import Verdict, range_text
-from ...core.kinds import Unit
 from ...core.quantities import CONTACT, JOINT
 from ...files.joint_file import JointFile
 from ...model_catalogue import OFF_AXIS
@@ -142,12 +141,11 @@ def design_rows(
     rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
     balls = [design.file.joint.ball for design in listed]
     rows.append(("ball", [Cell(text="rigid" if ball is None else ball.name or "custom numbers") for ball in balls]))
-    for column in reading.columns:
-        if column.attribute in names:
-            values = [float(getattr(design.contact, column.attribute, nan)) * column.factor for design in listed]
-            reference = values[list(designs).index(base)]
-            label = f"{column.title}{Unit(column.unit).text_in_brackets}"
-            rows.append((label, [_number(value, reference) for value in values]))
+    for quantity in (CONTACT[name] for name in CONTACT if name in names):
+        unit = reading.unit(quantity)
+        values = [float(getattr(design.contact, quantity.name, nan)) * unit.factor for design in listed]
+        reference = values[list(designs).index(base)]
+        rows.append((f"{quantity.title}{unit.text_in_brackets}", [_number(value, reference) for value in values]))
     return rows
 
 

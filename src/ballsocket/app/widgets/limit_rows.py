@@ -88,7 +88,8 @@ def present_value(file: JointFile, name: str, contact: Contact | None = None) ->
     if name in file.load:
         return float(file.load[name])
     if contact is not None and name == EDGE_DISTANCE:
-        return float(file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle))
+        cup, direction = file.cup.under_load(file.tilt)
+        return float(cup.edge_distance(contact.joint.socket_radius, contact.half_angle, direction))
     if contact is not None and name in CONTACT:
         return float(getattr(contact, name))
     value = nominal_value(file.joint, name) if name in (*JOINT, *PARTS) else None
