@@ -40,8 +40,6 @@ class Model(PressModel):
         Part of the domain that limits the fit of ball and socket: by default a clearance of 0 or more.
     off_axis : bool
         True if a press takes the direction of the load and of the cup: `tilt`, `inclination`, `anteversion`.
-    is_closed_sphere : bool
-        True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher.
     differentiable : bool
         True if JAX can trace a press.
     smooth_step : float
@@ -56,7 +54,6 @@ class Model(PressModel):
 
     fits: ClassVar[tuple[Range, ...]] = (NON_NEGATIVE_CLEARANCE,)
     off_axis: ClassVar[bool] = False
-    is_closed_sphere: ClassVar[bool] = False
     differentiable: ClassVar[bool] = True
     smooth_step: ClassVar[float] = 1e-4
     seconds_a_press: ClassVar[float] = 4e-7
