@@ -5,9 +5,9 @@ import re
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.unit_systems import Units
+from ballsocket.core.unit_systems import Units, joint_sentence
 from ballsocket.reports import study_plots
-from ballsocket.studies.calibration_answer import describe_calibration
+from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit
@@ -36,9 +36,9 @@ def test_numbers_with_units_in_a_sentence_are_converted(metric, imperial):
 
 def test_the_name_of_a_joint_stays():
     joint = bs.joints["hip-36"].replace(name="36 mm, 3 kN")
-    assert Units.IMPERIAL.joint(joint).startswith("36 mm, 3 kN: R1 0.7087 in")
+    assert Units.IMPERIAL.sentence(joint_sentence(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
     title = describe_calibration(bs.calibrate(joint)).title
-    assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.joint(joint)
+    assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(joint_sentence(joint))
 
 
 STUDY = """

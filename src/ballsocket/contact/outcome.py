@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy
 
@@ -56,13 +56,6 @@ class ModelInfo(ABC):
     def remarks(self) -> tuple[Range, ...]:
         """Ranges of contact quantities outside of which a valid result gets a note."""
         return ()
-
-    def numpy_laws(self, joint: Joint, indentation: Array) -> Any:
-        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
-
-        These become infinite or NaN where Python floats raise ArithmeticError.
-        """
-        raise NotImplementedError(f"{self.name} has no laws of a contact")
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -159,10 +152,7 @@ class Outcome(ABC):
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     def _match_load(self, value: Array) -> Array:
-        """Convert values to the type and the shape of the load; a load of one number gives a float.
-
-        Arrays are read-only: a contact is a record, and its quantities are stored.
-        """
+        """Convert values to the type and the shape of the load, a float for one number, or a read-only array."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

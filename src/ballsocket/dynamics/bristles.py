@@ -88,10 +88,9 @@ class Bristles(CoulombCoefficients):
 def bristle_forces(
     centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
 ) -> tuple[Deflections, Deflections, Array]:
-    """Compute friction force, deflection rates and dissipated power of bristles, per unit of normal force.
+    """Compute friction force and dissipated power of bristles per normal force, and the rates of their deflections.
 
-    Friction force and power are divided by the normal force. The friction has three components across the load and
-    one about it, a moment divided by the lever ρ.
+    The friction has three components across the load and one about it, a moment divided by the lever ρ.
     """
     slip_components = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     deflection_x, deflection_y, deflection_z, deflection_arc = deflection

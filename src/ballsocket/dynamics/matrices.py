@@ -53,7 +53,11 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     projection = _weighted_row_sum(translation_rows, slip.push[..., None] * v + slip.mixed[..., None] * b)
     projection = projection + _weighted_row_sum(rotation_rows, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
     projection = projection + _weighted_row_sum(drilling_row, (slip.drill * lever * slip.spin)[..., None])
-    rate_slope = _friction_rate_slope(slip, constants) / slip.speed
+    # derivative of the friction rate N μ(q)/q by the effective slip speed q, over q
+    q = slip.speed
+    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
+    rate_slope = slip.normal * (mu_slope - mu / q) / q / q
     rate = rate + rate_slope[..., None, None] * (projection[..., :, None] * projection[..., None, :])
     rows = xp.concat([normal_block, 0.0 * normal_block], axis=-1)
     contact_matrix = rate + xp.concat([rows, 0.0 * rows], axis=-2)
@@ -140,14 +144,6 @@ def _sum_outer_products(first: Array, second: Array) -> Array:
 
 def _weighted_row_sum(directions: Array, rates: Array) -> Array:
     return arrays.namespace(directions).sum(rates[..., :, None] * directions, axis=-2)
-
-
-def _friction_rate_slope(slip: Sliding, constants: Constants) -> Array:
-    """Compute the derivative of the friction rate N μ(q)/q with respect to the effective slip speed q."""
-    q = slip.speed
-    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
-    mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
-    return slip.normal * (mu_slope - mu / q) / q
 
 
 def _normal_speed(centre: BallCentre, velocity: Vector) -> Array:

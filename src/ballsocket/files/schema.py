@@ -6,12 +6,13 @@ A table of a file is a subclass of `Table`, a key of the table is a field of the
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
 The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
-(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`schema_keys`). A key whose
+(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`inputs`). A key whose
 name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
@@ -45,7 +46,7 @@ def meaning(text: str = "", **shown: str) -> msgspec.Meta:
     return msgspec.Meta(description=text or None, extra=dict(shown))
 
 
-class Value:
+class Value(ABC):
     """Base class of the types of values that msgspec does not read itself."""
 
     kind: ClassVar[Kind] = Kind.NUMBER
@@ -55,15 +56,12 @@ class Value:
     """JSON schema of the accepted values."""
 
     @classmethod
+    @abstractmethod
     def read(cls, name: str, value: Any) -> Self:
         """Convert a value of a file; `name` is its key for messages.
 
-        Raises
-        ------
-        ValueError
-            A value that is not allowed.
+        Raises ValueError: a value that is not allowed.
         """
-        raise NotImplementedError
 
     @classmethod
     def of(cls, kind: Kind) -> type[Self]:

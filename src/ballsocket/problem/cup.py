@@ -306,6 +306,10 @@ class Cup:
         """
         return replace(self, inclination=angle, anteversion=0.0)
 
+    def under_load(self, tilt: float) -> tuple[Cup, Direction]:
+        """Return an upright copy of the cup, and the direction of a load at an angle in rad from its axis, up to π."""
+        return self.tilted(0.0), (sin(tilt), 0.0, cos(tilt))
+
     def load_tilt(self, *, tilt: float | None = None, direction: Array = UP) -> float:
         """Return the angle in rad between a load and the axis of the cup, from a tilt or a direction in the body."""
         return float(self.tilt(direction)) if tilt is None else float(tilt)

@@ -15,16 +15,7 @@ from math import nextafter
 from typing import Any
 
 from ..contact import Contact
-from ..contact.verdict import (
-    EDGE_DISTANCE,
-    Bounded,
-    Verdict,
-    ball_von_mises,
-    bar_text,
-    error_bar,
-    percent,
-    ratio_text,
-)
+from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, ball_von_mises, bar_text, error_bar, percent, ratio_text
 from ..core.answers import Check
 from ..core.quantities import QUANTITIES, STRENGTH, Quantity
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -39,20 +30,10 @@ _PRESSURE, _VON_MISES = "allowable_pressure", "yield_stress"
 
 
 def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tuple[Check, ...]:
-    """List the checks of a single contact in its cup, the highest ratio first.
+    """List the checks of a single contact in its cup, the highest ratio first; empty for a contact without a result.
 
-    Parameters
-    ----------
-    contact : Contact
-        Contact of any model; one along the axis ends at its half angle from the pole.
-    cup : Cup
-    von_mises : float, optional
-        Largest von Mises stress in the liner in MPa, if it is solved for already; by default the `quick_von_mises`.
-
-    Returns
-    -------
-    tuple of Check
-        Empty for a contact without a result.
+    A contact of a model along the axis ends at its half angle from the pole. `von_mises` is the largest von Mises
+    stress in the liner in MPa, if it is solved for already; by default the `quick_von_mises`.
     """
     if contact.status.failed:
         return ()
@@ -82,15 +63,9 @@ def checks_at(
 ) -> tuple[Check, ...]:
     """List the checks of a joint for the numbers of a contact, the highest ratio first.
 
-    Parameters
-    ----------
-    joint : Joint
-    pressure, von_mises : Bounded
-        Largest pressure, and largest von Mises stress in the liner, in MPa.
-    edge : tuple of float and Bounded, optional
-        Angle in rad from the pole of the dome to the end of the bore, and edge distance in mm.
-    trusted : bool
-        True if the numbers lie in the range of their model.
+    It takes the largest pressure and the largest von Mises stress in the liner in MPa; for a rim the angle in rad from
+    the pole of the dome to the end of the bore, and the edge distance in mm; and if the numbers lie in the range of
+    their model.
     """
     rows = list(_material_checks("liner", joint.liner, pressure, von_mises, trusted))
     if joint.ball is not None:

@@ -15,8 +15,7 @@ from ..core.display import Plot, register_plot
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = (".png", ".svg", ".pdf")
-"""Endings of the files that `save` writes."""
+FORMATS = (".png", ".svg", ".pdf")  # endings of the files that `save` writes
 
 
 def check_format(path: Path) -> None:

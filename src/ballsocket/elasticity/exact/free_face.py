@@ -129,8 +129,11 @@ class FreeFace:
         They are the work of the reversed tractions -t of the equator on each function.
         """
         r, w, f, _, _ = self._radial_functions
-        n = numpy.arange(MODES)
-        P, slope = _legendre_at_equator(MODES)
+        n, P = numpy.arange(MODES), numpy.zeros(MODES)  # P_n(0), and slopes P_n'(0)
+        P[0] = 1.0
+        for k in range(2, MODES, 2):
+            P[k] = -(k - 1) / k * P[k - 2]
+        slope = n * numpy.concatenate([[0.0], P[:-1]])
         fields = self.socket.fields(n, r)
         factor = w * r
         corner = _shifted_legendre(numpy.zeros(1), POLAR_TERMS)[0][0]
@@ -173,7 +176,12 @@ class FreeFace:
     @cached_property
     def bore_displacement(self) -> Numbers:
         """Legendre coefficients of the additional radial displacement of the bore, per unit of p_n: (terms, modes)."""
-        return _full_range_matrix() @ self.displacement_coefficients[0, 0]
+        # coefficients of P_n(x) in each polynomial P_k(2x - 1)
+        x, weight = legendre.leggauss(POLAR_TERMS)
+        waves = legendre.legvander(x, POLAR_TERMS - 1)
+        half_range = legendre.legvander(2 * x - 1, POLAR_TERMS - 1)
+        full_range = ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ half_range
+        return full_range @ self.displacement_coefficients[0, 0]
 
 
 def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -198,24 +206,6 @@ def _polar_functions(x: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, Nu
 def _lame_constants(young: Any, poisson: Any) -> tuple[Any, Any]:
     """Compute Lamé's constants λ and G in MPa; G is the shear modulus."""
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
-
-
-def _full_range_matrix() -> Numbers:
-    """Compute the matrix of the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
-    x, weight = legendre.leggauss(POLAR_TERMS)
-    waves = legendre.legvander(x, POLAR_TERMS - 1)
-    return ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ legendre.legvander(
-        2 * x - 1, POLAR_TERMS - 1
-    )
-
-
-def _legendre_at_equator(count: int) -> tuple[Numbers, Numbers]:
-    """Compute the Legendre polynomials and their derivatives at the equator, P_n(0) and P_n'(0)."""
-    P, n = numpy.zeros(count), numpy.arange(count)
-    P[0] = 1.0
-    for k in range(2, count, 2):
-        P[k] = -(k - 1) / k * P[k - 2]
-    return P, n * numpy.concatenate([[0.0], P[:-1]])
 
 
 @lru_cache(maxsize=8)

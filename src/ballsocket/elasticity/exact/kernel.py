@@ -46,12 +46,12 @@ class Intervals:
         square = edge * grid.distance
         square *= square
         weights = _evaluate_polynomial(logarithm_coefficients(a), square)
-        weights *= grid.weights * numpy.log(edge) + grid.log_weights
+        weights *= grid.nodes[1] * numpy.log(edge) + grid.log_weights
         term = _evaluate_polynomial(distance_coefficients(a), square)
         term *= edge * grid.distance_weights
         weights += term
         term = _evaluate_polynomial(smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
-        term *= grid.weights
+        term *= grid.nodes[1]
         weights += term
         weights *= edge * (grid.slope / 2)
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
@@ -84,12 +84,11 @@ class CachedIntervals:
         return even, odd
 
     @cached_property
-    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
-        """Cosines and sines with their integrals computed so far, by their number."""
+    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:  # by their number
         return {}
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
+        """Compute the operators of `Intervals.closed_form_operators` from those of unit coefficients."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
@@ -103,9 +102,8 @@ class CachedIntervals:
             self._cached_waves[count] = _waves_and_integration_matrices(self.half_angle, self.grid, count)
         even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
-        _add_products(
-            (even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]), remainder, operators
-        )
+        waves = even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]
+        _add_products(waves, remainder, operators)
 
 
 def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
@@ -121,8 +119,7 @@ def _waves_and_integration_matrices(
     """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
 
     The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
-    The waves are shorter than the variations of the pressure, so they are
-    integrated at their own points.
+    The waves are shorter than the variations of the pressure, so they are integrated at their own points.
     """
     edge = half_angle[:, None]
     panels = _wave_panels(half_angle, grid, count)
@@ -140,8 +137,8 @@ def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Pane
     """Choose panels that resolve `count` cosines and sines, with points rounded up so that few rules are built."""
     points = grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4
     if points <= _LONGEST_PANEL:
-        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
-    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
+        return _panels_of(panels=1, points=_PANEL_STEP * ceil(points / _PANEL_STEP))
+    return _panels_of(panels=ceil(points / _LONGEST_PANEL), points=_LONGEST_PANEL)
 
 
 def _cosines_and_sines(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -193,9 +190,7 @@ class _Panels:
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-@cache
-def _panels_of(panels: int, points: int) -> _Panels:
-    return _Panels(panels=panels, points=points)
+_panels_of = cache(_Panels)
 
 
 @cache

@@ -80,9 +80,8 @@ class MeshedLoadCurve:
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
-            self._cached_brackets[number, mesh] = ContactBracket(
-                pair=self.pairs(number, mesh), gap=self.gap, low=low, high=high
-            )
+            pair = self.pairs(number, mesh)
+            self._cached_brackets[number, mesh] = ContactBracket(pair=pair, gap=self.gap, low=low, high=high)
         return self._cached_brackets[number, mesh]
 
     def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
@@ -259,15 +258,10 @@ def check_cup(cup: Cup, joint: Joint) -> None:
         if not ground:
             raise ValueError("interface = 'sliding' needs a backing or a fixed outer surface behind the liner")
     chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
-    require(
-        "chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
-    )
-    require(
-        "chamfer",
-        chamfer,
-        chamfer == 0 or chamfer > 1e-3 * liner,
-        "a chamfer must be 0 or above a thousandth of the liner thickness",
-    )
+    leaves = f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
+    require("chamfer", chamfer, chamfer < 0.9 * liner, leaves)
+    allowed = "a chamfer must be 0 or above a thousandth of the liner thickness"
+    require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, allowed)
     require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
@@ -288,13 +282,13 @@ def _make_surface_pair(
     check_memory(size, resolution.order)
     report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
-    angle, compliance = socket_compliance(socket_shape(joint, settings.cup), resolution)
-    surfaces = [ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
+    unit_bodies = [(*socket_compliance(socket_shape(joint, settings.cup), resolution), joint.liner)]
     if joint.ball is not None:
-        angle, compliance = ball_compliance(float(joint.ball.poisson), ball_resolution)
-        surfaces.append(
-            ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young)))
-        )
+        unit_bodies.append((*ball_compliance(float(joint.ball.poisson), ball_resolution), joint.ball))
+    surfaces = [
+        ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(material.young)))
+        for angle, compliance, material in unit_bodies
+    ]
     return SurfacePair(
         surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Any
 
 import numpy
 
@@ -35,10 +35,7 @@ class GapField:
     def overlap(self, displacement: Numbers) -> Numbers:
         """Compute the overlap of ball and undeformed bore in mm, negative in a gap: (batch, rings, meridians).
 
-        Parameters
-        ----------
-        displacement : array (batch, 3)
-            Displacement of the ball's centre from the centre of the bore, in mm.
+        `displacement` (batch, 3) is that of the ball's centre from the centre of the bore, in mm.
         """
         along = numpy.einsum("bk,kij->bij", displacement, self.grid.normals)
         if self.kind is LinearGap:
@@ -65,48 +62,20 @@ class GapField:
         return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along
 
 
-class BoreSize(Protocol):
-    """Sizes of a bore: clearance and radius in mm."""
-
-    @property
-    def clearance(self) -> float: ...
-    @property
-    def socket_radius(self) -> float: ...
-
-
-def initial_displacement(bore: BoreSize, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
+def initial_displacement(bore: Any, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
     """Estimate displacements (n, 3) in mm along the loads, from springs in a full sphere at the largest wear depth.
 
-    Parameters
-    ----------
-    bore : object with a clearance and a socket_radius
-        Radii in mm.
-    modulus : float
-        Foundation modulus in MPa/mm: that of the bore under uniform pressure.
-    depth : array
-        Depth of the worn bore below its sphere, in mm.
-    force, axes : array (n,), array (n, 3)
-        Magnitudes of the loads in N, and unit vectors along them.
+    `bore` has a clearance and a socket_radius in mm. The modulus of the foundation is that of the bore under uniform
+    pressure, in MPa/mm. `depth` is that of the worn bore below its sphere, in mm. The loads have magnitudes (n,) in N
+    and unit vectors (n, 3).
     """
     clearance = max(bore.clearance, 0.0)
     indentation = linear_indentation(bore.socket_radius, clearance, modulus, force)
-    start: Numbers = axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
-    return start
+    return axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
 
 
 _PATH_POINTS = 4  # number of contacts on the way of a ball, at which the work of the load is integrated
 _BATCH_CELLS = 150_000  # number of cells that are solved together: more exceed the processor's cache
-
-
-class Equilibria(Protocol):
-    """Solved balls: displacement (batch, 3), pressure (batch, rings, meridians) and converged (batch,)."""
-
-    @property
-    def displacement(self) -> Numbers: ...
-    @property
-    def pressure(self) -> Numbers: ...
-    @property
-    def converged(self) -> Numbers: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,7 +86,7 @@ class EquilibriumBatch:
     pressure: Numbers  # (batch, rings, meridians), pressure in MPa
     converged: Numbers  # bool (batch,), True where the solver reached its tolerance
 
-    def store(self, indices: Numbers, part: Equilibria) -> None:
+    def store(self, indices: Numbers, part: EquilibriumBatch) -> None:
         """Copy the solved balls of a part to these indices."""
         for name in ("displacement", "pressure", "converged"):
             getattr(self, name)[indices] = getattr(part, name)
@@ -151,14 +120,9 @@ class BoreContact:
             return None
         return replace(self, compliance=compliance, gap=self.gap.on_coarser_grid(compliance.grid))
 
-    def refine(self, fields: Numbers) -> Numbers:
-        """Transfer fields from the cells of the coarser grid to those of this grid: (..., rings, meridians)."""
-        return self.compliance.grid.refine(fields)
-
     def force(self, pressure: Numbers) -> Numbers:
         """Compute the force on the bore in N, (batch, 3), from pressures (batch, rings, meridians)."""
-        force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
-        return force
+        return pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
 
     def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
         """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""
@@ -173,11 +137,6 @@ class BoreContact:
 
         The pressure acts along the normals of the bore, but the overlap of a circular gap grows by less than the
         displacement along them. The difference is small, so that contacts on the coarser grid suffice.
-
-        Parameters
-        ----------
-        displacement : array (batch, 3)
-            Displacement of the ball's centre in mm at the end of the way.
         """
         if self.gap.kind.conservative:
             return numpy.zeros(len(displacement))

@@ -35,10 +35,6 @@ class AxisymmetricOperator:
         transformed = products.reshape(len(self.matrices), rings, 2 * batch).view(waves.dtype).transpose(2, 1, 0)
         return scipy.fft.irfft(transformed, n=meridians)
 
-    def in_single_precision(self) -> AxisymmetricOperator:
-        """Return the operator in single precision."""
-        return AxisymmetricOperator(matrices=self.matrices.astype(numpy.float32))
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UniformOperator:
@@ -49,10 +45,6 @@ class UniformOperator:
     def __call__(self, fields: Numbers) -> Numbers:
         """Apply the operator to fields (batch, rings, meridians)."""
         return fields * self.factor
-
-    def in_single_precision(self) -> UniformOperator:
-        """Return this operator, which has no matrices to convert."""
-        return self
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,14 +60,12 @@ class Compliance:
         """Compute the sum of both surface displacements in mm from pressures in MPa, (batch, rings, meridians)."""
         return self.softness(pressure)
 
-    def displacement_in_single_precision(self, pressure: Numbers) -> Numbers:
-        """Compute the sum of both surface displacements in mm from pressures in MPa, in single precision."""
-        return self.single_precision_softness(pressure)
-
     @cached_property
     def single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
         """Operator from pressures to displacements in single precision."""
-        return self.softness.in_single_precision()
+        if isinstance(self.softness, UniformOperator):
+            return self.softness
+        return AxisymmetricOperator(matrices=self.softness.matrices.astype(numpy.float32))
 
     def pressure(self, displacement: Numbers) -> Numbers:
         """Compute the pressures in MPa, of either sign, that displace all cells by given amounts in mm."""
@@ -110,16 +100,7 @@ def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
 
 
 def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Compliance:
-    """Compute the compliance of bore and ball of one joint on a grid, without a cache.
-
-    Parameters
-    ----------
-    surface : Surface
-    joint : Joint
-        A joint without arrays.
-    cup : Cup
-    grid : Grid
-    """
+    """Compute the compliance of bore and ball of one joint of plain numbers on a grid, without a cache."""
     ball = ball_of(joint)
     if isinstance(surface, Springs) and ball is None:
         modulus = float(surface.modulus(joint))

@@ -72,8 +72,7 @@ def unit_vectors(polar: Numbers, azimuth: Numbers) -> Numbers:
 def polar_angle(direction: Numbers) -> Numbers:
     """Compute the angle in rad between the pole of the dome and directions (3, ...) of any length."""
     x, y, z = direction
-    angle: Numbers = numpy.arctan2(numpy.hypot(x, y), z)
-    return angle
+    return numpy.arctan2(numpy.hypot(x, y), z)
 
 
 def tangents(directions: Numbers) -> tuple[Numbers, Numbers]:

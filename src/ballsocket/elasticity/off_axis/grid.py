@@ -118,8 +118,7 @@ class Grid:
     def _attenuate(self, ring_matrices: Numbers) -> Numbers:
         """Convert matrices between rings to means over the widths of cells."""
         attenuation = numpy.sinc(numpy.arange(self.max_harmonic + 1) / self.meridians) ** 2
-        cells: Numbers = ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
-        return cells
+        return ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
 
     def _missing_compliance(self, cells: Numbers) -> Numbers:
         """Compute the compliance (m, rings) that cells lack from that of waves of two rings; 0 of longer waves."""
@@ -175,11 +174,7 @@ class Grid:
 
         It is bilinear in polar angle and azimuth, and passes the pole in a straight line. The field is constant between
         the last middle and the end of the grid, and 0 beyond.
-
-        Parameters
-        ----------
-        directions : array (directions, 3)
-            Unit vectors in the frame of the grid.
+        Directions (directions, 3) are unit vectors in the frame of the grid.
         """
         from scipy.sparse import csr_matrix  # slow to import
 

@@ -11,27 +11,8 @@ from functools import cache, partial
 from typing import Any, NamedTuple
 
 from ...core.arrays import Array
-from .coupled_search import (
-    COARSE_ITERATIONS,
-    COARSE_ROUNDS,
-    COARSE_TOLERANCE,
-    SENSITIVITY_ITERATIONS,
-    BoreArrays,
-    Lanes,
-    Predictor,
-    advance_lanes,
-    apply_operator,
-    compute_force,
-    make_predictor,
-    measure,
-    newton_step,
-    refine_fields,
-    refine_sensitivity,
-    solve_change,
-    solve_sensitivity,
-    start_coarse,
-    start_lanes,
-)
+from . import coupled_search as search
+from .coupled_search import BoreArrays, Lanes, Predictor
 
 _MAX_ITERATIONS = 30
 
@@ -69,7 +50,7 @@ def differentiable_search() -> Any:
         grids, _, gap, *_ = primals
         grids_change, load_change, gap_change, *_ = tangents
         displacement, pressure = solve(*primals)
-        overlap_change = -gap_change - apply_operator(grids.fine, grids_change.fine.softness, pressure)
+        overlap_change = -gap_change - search.apply_operator(grids.fine, grids_change.fine.softness, pressure)
         changes = _differentiate(grids.fine._replace(gap=gap), pressure > 0, load_change, overlap_change)
         return (displacement, pressure), changes
 
@@ -81,22 +62,22 @@ def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overla
     import jax
     import jax.numpy as xp
 
-    sensitivity = solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
+    sensitivity = search.solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
     areas = bore.areas[:, None]
 
     def deform(change: Array) -> Array:
         """Compute the displacements of touching cells; others are copied."""
-        return xp.where(touching, apply_operator(bore, bore.softness, change * touching), change)
+        return xp.where(touching, search.apply_operator(bore, bore.softness, change * touching), change)
 
     def solve(_: Any, overlap: Array) -> Array:
-        change = solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
+        change = search.solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
         return xp.where(touching, change, overlap)
 
     def solve_transposed(_: Any, values: Array) -> Array:
         return areas * solve(_, values / areas)
 
     fixed = jax.lax.custom_linear_solve(deform, overlap_change * touching, solve, solve_transposed)
-    missing = load_change - compute_force(bore, fixed)
+    missing = load_change - search.compute_force(bore, fixed)
     step = xp.sum(xp.linalg.inv(sensitivity.tangent).transpose(1, 2, 0) * missing, axis=1)
     moved = sum(part * step[axis] for axis, part in enumerate(xp.split(sensitivity.pressure, 3, axis=-1)))
     return step, fixed + moved
@@ -108,11 +89,11 @@ def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Arra
     scale = xp.sqrt(xp.sum(load * load, axis=0))
     fine = grids.fine._replace(gap=gap)
     coarse = grids.coarse._replace(gap=_coarsen(fine, gap))
-    rough, predictor = _search_wide_cells(coarse, start_coarse(coarse, load, scale, start))
-    pressure = refine_fields(fine, rough.pressure)
-    predictor = make_predictor(refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
-    measured = measure(fine, load, rough.displacement, pressure)
-    lanes = start_lanes(load, scale, rough.displacement, pressure, measured)
+    rough, predictor = _search_wide_cells(coarse, search.start_coarse(coarse, load, scale, start))
+    pressure = search.refine_fields(fine, rough.pressure)
+    predictor = search.make_predictor(search.refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
+    measured = search.measure(fine, load, rough.displacement, pressure)
+    lanes = search.start_lanes(load, scale, rough.displacement, pressure, measured)
     lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
     return lanes.displacement, lanes.pressure
 
@@ -134,19 +115,21 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
 
     def is_unfinished(state: tuple[Array, Lanes, Predictor]) -> Array:
         number, lanes, _ = state
-        return (number == 0) | ((number < COARSE_ROUNDS) & ~xp.all(lanes.error <= COARSE_TOLERANCE))
+        return (number == 0) | ((number < search.COARSE_ROUNDS) & ~xp.all(lanes.error <= search.COARSE_TOLERANCE))
 
     def run_round(state: tuple[Array, Lanes, Predictor]) -> tuple[Array, Lanes, Predictor]:
         number, lanes, predictor = state
-        kept = (lanes.error <= COARSE_TOLERANCE) & (number > 0)
-        renewed = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
+        kept = (lanes.error <= search.COARSE_TOLERANCE) & (number > 0)
+        renewed = search.make_predictor(
+            search.solve_sensitivity(bore, lanes.pressure > 0, search.SENSITIVITY_ITERATIONS)
+        )
         predictor = Predictor(
             sensitivity=xp.where(xp.tile(kept, 3), predictor.sensitivity, renewed.sensitivity),
             inverse_tangent=xp.where(kept[:, None, None], predictor.inverse_tangent, renewed.inverse_tangent),
         )
-        measured = measure(bore, lanes.load, lanes.displacement, lanes.pressure)
-        fresh = start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
-        lanes, _ = _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
+        measured = search.measure(bore, lanes.load, lanes.displacement, lanes.pressure)
+        fresh = search.start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
+        lanes, _ = _iterate(bore, fresh, predictor, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)
         return number + 1, lanes, predictor
 
     meridians, rings, count = lanes.pressure.shape
@@ -190,7 +173,7 @@ def _iterate(
 
     def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
         number, lanes = state
-        advanced = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
+        advanced = search.advance_lanes(bore, search.newton_step(bore, lanes, predictor), lanes)
         converged = lanes.error <= tolerance
         return number + 1, jax.tree.map(partial(xp.where, converged), lanes, advanced)
 

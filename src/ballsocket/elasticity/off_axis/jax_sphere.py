@@ -22,37 +22,16 @@ from ...core.validity import check_domain
 from ...models.kinematics import linear_indentation
 from ...problem import Joint, Material
 from ...problem.cup import cup_axes
+from . import coupled_search as search
+from . import patch_measures as measures
 from .bore_contact import BoreContact, make_bore_arrays
-from .coupled_search import (
-    TANGENT_ITERATIONS,
-    BoreArrays,
-    compute_force,
-    measure,
-    solve_sensitivity,
-    start_lanes,
-)
+from .coupled_search import BoreArrays
 from .jax_compliance import LinerCompliance, Operators, differentiable_operators
 from .jax_search import Grids, differentiable_search
 from .lane_solver import coarser_lanes
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
 from .model import Sphere, check_sphere
-from .patch_measures import (
-    CellArrays,
-    Patches,
-    cell_shares,
-    contact_centres,
-    edge_angles,
-    edge_loaded,
-    edge_margins,
-    half_angles,
-    interpolate,
-    largest_pressures,
-    level_table,
-    make_cell_arrays,
-    ray_azimuths,
-    ray_directions,
-    rim_angles,
-)
+from .patch_measures import CellArrays, Patches
 from .ring_matrices import liner_numbers
 
 _MIN_STEP = radians(2.0)
@@ -180,7 +159,7 @@ class JaxSphere:
         fine, coarse = (make_bore_arrays(bore, numpy.float64) for bore in (self._bore, coarser))
         bores = _Bores(
             grids=Grids(fine=fine, coarse=coarse),
-            cells=make_cell_arrays(grid, edges.inset),
+            cells=measures.make_cell_arrays(grid, edges.inset),
             edge_compliance=edges.compliance,
             unbounded=numpy.asarray(float(not edges.bounded)),
             frame=numpy.array(self.model.cup.frame),
@@ -355,7 +334,7 @@ def _press_loads(
     fine = bores.grids.fine._replace(gap=gap)
     start = jax.lax.stop_gradient(_initial_displacement(fine, axes, force, clearance, depth))
     displacement, pressure = differentiable_search()(bores.grids, load, gap, start, tolerance)
-    lanes = start_lanes(load, force, displacement, pressure, measure(fine, load, displacement, pressure))
+    lanes = search.start_lanes(load, force, displacement, pressure, search.measure(fine, load, displacement, pressure))
     fields = pressure.transpose(2, 1, 0)
     half_angle, margin, share = jax.lax.map(
         partial(_measure_outline, bores),
@@ -364,18 +343,18 @@ def _press_loads(
     )
     touching, error, share = jax.lax.stop_gradient((pressure > 0, lanes.error, share.transpose(2, 1, 0)))
     fixed, edge_compliance = jax.lax.stop_gradient((fine, bores.edge_compliance))
-    loaded, largest = edge_loaded(fields), largest_pressures(bores.cells, fields, axes)[0]
+    loaded, largest = measures.edge_loaded(fields), measures.largest_pressures(bores.cells, fields, axes)[0]
     contacts = JaxContacts(
         converged=(error <= tolerance) & touching.any(axis=(0, 1)) & _holds_ball(fine, displacement),
         error=error,
         displacement=displacement.T,
-        force_vector=compute_force(fine, pressure).T,
+        force_vector=search.compute_force(fine, pressure).T,
         indentation=xp.sqrt(xp.sum(displacement * displacement, axis=0)) - clearance,
         max_pressure=xp.where(loaded & (bores.unbounded > 0), xp.inf, largest),
         half_angle=half_angle,
         edge_margin=margin,
         edge_loaded=loaded,
-        stiffness_matrix=solve_sensitivity(fixed, share, TANGENT_ITERATIONS, edge_compliance).tangent,
+        stiffness_matrix=search.solve_sensitivity(fixed, share, search.TANGENT_ITERATIONS, edge_compliance).tangent,
         pressure=fields,
     )
     return _mask_unconverged(contacts)
@@ -423,12 +402,12 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     pressure, remaining, axis = contact
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
-    centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
+    centres, steps = measures.contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
     fixed_level, fixed_centres = jax.lax.stop_gradient((patches.level, centres))
-    edges = edge_angles(bores.cells, fixed_level, fixed_centres, steps)
-    share = cell_shares(bores.cells, patches, fixed_centres, edges)[0]
+    edges = measures.edge_angles(bores.cells, fixed_level, fixed_centres, steps)
+    share = measures.cell_shares(bores.cells, patches, fixed_centres, edges)[0]
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
-    return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0], share
+    return measures.half_angles(bores.cells, patches, edges)[0], measures.edge_margins(bores.cells, patches)[0], share
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
@@ -439,14 +418,14 @@ def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges
     import jax
     import jax.numpy as xp
 
-    table, azimuths = level_table(level), ray_azimuths(level)
+    table, azimuths = measures.level_table(level), measures.ray_azimuths(level)
 
     def level_at(angle: Array) -> Array:
-        return interpolate(cells, table, ray_directions(centres[:, None], angle, azimuths))
+        return measures.interpolate(cells, table, measures.ray_directions(centres[:, None], angle, azimuths))
 
     value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))
     fixed_value, fixed_slope = jax.lax.stop_gradient((value, slope))
-    rim = rim_angles(cells, centres)
+    rim = measures.rim_angles(cells, centres)
     moves = (edges < rim) & (edges > 0) & (fixed_slope < 0)
     moved = edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
     return xp.where(edges < rim, moved, rim)

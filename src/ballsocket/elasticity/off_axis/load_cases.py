@@ -215,8 +215,7 @@ def _interpolate_rim_contact(
     from scipy.interpolate import make_interp_spline  # slow to import
 
     spline = make_interp_spline(numpy.log(load[nodes]), solved, k=min(3, len(nodes) - 1))
-    tilts: Numbers = spline(numpy.log(load))
-    return tilts
+    return spline(numpy.log(load))
 
 
 def _spread_nodes(positions: Numbers) -> Numbers:
@@ -235,12 +234,7 @@ def _solve_rim_contact(
 ) -> Numbers:
     """Find the tilts in rad at which the level at the rim is 0, by the Illinois method.
 
-    Parameters
-    ----------
-    states : ContactStates or ContactSummaries
-    load, azimuth : array (n,)
-    high, high_level : array (n,)
-        Tilts in rad at which the rim is loaded, and the levels there in mm.
+    The rim is loaded at the tilts `high` in rad, with the levels `high_level` in mm.
     """
 
     def solve_tilted(indices: Numbers, tilt: Numbers) -> ContactStates:
@@ -278,15 +272,11 @@ def _solve_rim_contact(
         touching = numpy.minimum(tilt + trial_margin, high[active])
         root[active] = numpy.where(free & (trial_margin < TILT_TOLERANCE), touching, interpolated)
         active = active[abs(root[active] - tilt) > TILT_TOLERANCE]
-    return numpy.where(filled, _overhang_angles(axial), root)
-
-
-def _overhang_angles(states: ContactStates) -> Numbers:
-    """Compute the angle in rad by which the undeformed overlap extends beyond the bore, as a negative number."""
-    distance = numpy.linalg.norm(states.equilibrium.displacement, axis=1)
+    # a contact that fills the bore has the angle by which its undeformed overlap extends beyond, as a negative tilt
+    distance = numpy.linalg.norm(axial.equilibrium.displacement, axis=1)
     cosine = states.bore.gap.clearance / numpy.where(distance > 0, distance, 1e-300)
-    angle = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
-    return numpy.minimum(angle, -_POLE_TILT)
+    overhang = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
+    return numpy.where(filled, numpy.minimum(overhang, -_POLE_TILT), root)
 
 
 _BLOCK_LOADS = 512  # number of loads whose fields are in memory at once while summaries are computed
@@ -295,18 +285,10 @@ _SUMMARY_NUMBERS = 100  # number of values per load at the peak of a summary
 
 
 def check_contact_memory(*shapes: tuple[int, ...]) -> None:
-    """Check that the numbers of all contacts fit into the memory, before loads and directions are combined.
-
-    Parameters
-    ----------
-    *shapes : tuple of int
-        Shapes of loads and directions. Shapes that do not broadcast are refused elsewhere.
-
-    Raises ValueError: the memory is too small.
-    """
+    """Raise ValueError unless the numbers of all contacts of these loads and directions fit into the memory."""
     try:
         count = math.prod(numpy.broadcast_shapes(*shapes))
-    except ValueError:
+    except ValueError:  # refused elsewhere
         return
     check_memory(f"{count_text(count)} contacts", 8 * _SUMMARY_NUMBERS * count)
 

@@ -74,8 +74,7 @@ class Preload:
     @cached_property
     def equilibrium(self) -> OffAxisContact:
         """Contact of the ball in equilibrium without a load."""
-        contact: OffAxisContact = self.model.press(self.joint, force=0.0)  # type: ignore[assignment]
-        return contact
+        return self.model.press(self.joint, force=0.0)  # type: ignore[return-value]
 
     def displace(self, displacement: Array) -> OffAxisContact:
         """Solve the contacts of the ball at displacements from the centre of the bore.
@@ -85,8 +84,7 @@ class Preload:
         displacement : array (..., 3)
             Displacements of the ball's centre in mm, in the body's frame.
         """
-        contact: OffAxisContact = self.model.press(self.joint, displacement=displacement)  # type: ignore[assignment]
-        return contact
+        return self.model.press(self.joint, displacement=displacement)  # type: ignore[return-value]
 
     def separation_displacement(self, direction: Array) -> float:
         """Compute the displacement in mm from equilibrium at which the ball first loses contact in any cell.
@@ -277,8 +275,7 @@ def pull_out(model: Sphere, joint: Joint, friction: float = 0.0) -> PullOut:
 
 def _contact_outwards(model: Sphere, joint: Joint, displacements: Numbers) -> OffAxisContact:
     opening = numpy.array(model.cup.opening)
-    contact: OffAxisContact = model.press(joint, displacement=displacements[:, None] * opening)  # type: ignore[assignment]
-    return contact
+    return model.press(joint, displacement=displacements[:, None] * opening)  # type: ignore[return-value]
 
 
 def _pulling_forces(contact: OffAxisContact, displacements: Numbers, friction: float) -> Numbers:
@@ -289,8 +286,7 @@ def _pulling_forces(contact: OffAxisContact, displacements: Numbers, friction: f
     outward = -radius * grid.centroids[2] - displacements[:, None, None]
     across = radius * numpy.hypot(grid.centroids[0], grid.centroids[1])
     normal = (outward + friction * across) / numpy.hypot(outward, across)
-    forces: Numbers = radius**2 * (pressure * grid.areas * normal).sum(axis=(1, 2))
-    return forces
+    return radius**2 * (pressure * grid.areas * normal).sum(axis=(1, 2))
 
 
 def _utilisation_at(contact: OffAxisContact, step: int) -> float:

@@ -20,11 +20,11 @@ from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
 from ..targets import ExportJob
+from ..time_steps import TimeStepAdvice
 from ..tunable import TUNABLES
 from .variables import STEP, STOP, UNITS, Variable, start_inputs, variables
 
-_ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
-"""Fixed date of all files, so that equal elements give equal archives."""
+_ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
 
 
 _CAPABILITIES = {
@@ -244,6 +244,10 @@ class Fmu:
         Identifier of the model: letters, digits and _.
     version : int
         Version of FMI, 2 or 3.
+    beyond : str
+        What follows an indentation beyond the range of the law, as in `CElement`.
+    mass : float
+        Mass of the ball in kg, for the advice on time steps.
 
     Raises
     ------
@@ -254,10 +258,12 @@ class Fmu:
     element: ForceElement | PreloadedElement
     name: str = "ballsocket"
     version: int = 3
+    beyond: str = "extend"
+    mass: float = 1.0
 
     def __post_init__(self) -> None:
         require("FMI version", self.version, self.version in STANDARDS, "2 or 3")
-        CElement(element=self.element, name=self.name)
+        CElement(element=self.element, name=self.name, beyond=self.beyond)
 
     @property
     def standard(self) -> Standard:
@@ -279,10 +285,21 @@ class Fmu:
         parts = (*self._job.program_texts().values(), *numbers, self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
+    @property
+    def time_steps(self) -> TimeStepAdvice:
+        """Time steps for a host program, up to the largest valid indentation."""
+        return self._job.time_steps
+
     @cached_property
     def _job(self) -> ExportJob:
         """Export of the element to C, up to its largest valid indentation."""
-        return ExportJob(element=self.element, name=self.name, depth=self.element.valid_depth)
+        return ExportJob(
+            element=self.element,
+            name=self.name,
+            depth=self.element.valid_depth,
+            beyond=self.beyond,
+            mass=self.mass,
+        )
 
     @cached_property
     def _numbers(self) -> dict[str, str]:

@@ -94,10 +94,8 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "a file is needed, but this is a folder", str(path))
     with write_atomically(path) as draft:  # raises an error at once if the file cannot be written
-        stored: dict[str, Numbers] = {}
         with _process_pool(workers) as pool:
-            for name, spec in _TABLE_SPECS.items():
-                stored[name] = spec.fit(pool.map)
+            stored = {name: spec.fit(pool.map) for name, spec in _TABLE_SPECS.items()}
         with draft.open("wb") as stream:
             numpy.savez_compressed(stream, allow_pickle=False, **stored)
     return check_tables(path, points=points, workers=workers)
@@ -120,16 +118,6 @@ def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 # Sampled functions: each takes ν, R2/L and returns an array (points of the ball ..., functions, angles)
-
-
-def _poisson_at(coordinate: Numbers) -> Numbers:
-    low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
-    return (1 - numpy.exp((high + low - coordinate * (high - low)) / 2)) / 2
-
-
-def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
-    scale = chebyshev.ball_scale(poisson, ratio)
-    return float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
 
 
 def _solve_state(
@@ -177,11 +165,11 @@ def _sample_ball_change(
 ) -> Numbers:
     """Sample the change of a function by balls of several shares and ν, divided by the coordinate of the share."""
     angle = half_angle_at(chebyshev_points(angles), liner[1])
-    rigid = function(_solve_state(liner, angle, points))
+    rigid, scale = function(_solve_state(liner, angle, points)), chebyshev.ball_scale(*liner)
 
     def function_change(coordinate: float, ball_poisson: float) -> Numbers:
-        """Compute the change of the function by an elastic ball, divided by (1 + coordinate)/2."""
-        state = _solve_state(liner, angle, points, _ball_share_at(coordinate, *liner), ball_poisson)
+        share = float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
+        state = _solve_state(liner, angle, points, share, ball_poisson)
         return (function(state) - rigid) * (2 / (1 + coordinate))
 
     return numpy.array(
@@ -204,7 +192,8 @@ class _TableSpec:
 
         `map_function` applies a function to all liners.
         """
-        poisson = _poisson_at(chebyshev_points(self.counts[0]))
+        low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
+        poisson = (1 - numpy.exp((high + low - chebyshev_points(self.counts[0]) * (high - low)) / 2)) / 2
         ratio = chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1]))
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))
