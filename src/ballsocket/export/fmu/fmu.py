@@ -136,7 +136,6 @@ def _add_units_and_logs(root: Element) -> Element:
 
 
 def _variable_attributes(variable: Variable) -> dict[str, str]:
-    """Return the XML attributes that describe a variable."""
     parameter = variable.causality == "parameter"
     attributes = {
         "name": variable.name,
@@ -149,7 +148,6 @@ def _variable_attributes(variable: Variable) -> dict[str, str]:
 
 
 def _unit_and_start_attributes(variable: Variable) -> dict[str, str]:
-    """Return the unit and the start value of a variable as XML attributes."""
     return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
 
 
@@ -160,7 +158,6 @@ def _dependency_attributes(inputs: Iterable[int], tag: str) -> dict[str, str]:
 
 
 def _xml_bytes(root: Element) -> bytes:
-    """Convert an XML element to the indented text of a file, as bytes."""
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
