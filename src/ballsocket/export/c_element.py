@@ -34,6 +34,7 @@ BEYOND = {
     "stop": ContactState.THROUGH_WALL.sentence,
 }
 """What an exported element says of an indentation beyond the range of its law, by what it does there."""
+
 Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
 
 
