@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, ClassVar, Protocol
 
 import numpy
 
@@ -55,6 +55,9 @@ class Laws(Protocol):
 
 class PressModel(ModelInfo):
     """Base class of models whose result is a `Contact`."""
+
+    is_closed_sphere: ClassVar[bool] = False
+    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
 
     @abstractmethod
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:

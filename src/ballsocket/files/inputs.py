@@ -105,8 +105,9 @@ _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 
 _PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
 
+_LENGTHS = {name: canonical(name) for name in LENGTHS}
 _RIVALS = (
-    *([name for name in LENGTHS if canonical(name) == length] for length in dict.fromkeys(map(canonical, LENGTHS))),
+    *([name for name in LENGTHS if _LENGTHS[name] == length] for length in dict.fromkeys(_LENGTHS.values())),
     tuple(LOADS),
     ("tilt", "direction"),
 )
