@@ -176,7 +176,6 @@ def ball_von_mises(joint: Joint, pressure: Bounded) -> Bounded:
 def _compare_with_material_strengths(
     body: str, material: Material, pressure: Bounded, von_mises: Bounded
 ) -> Iterator[StrengthUse]:
-    """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
         yield StrengthUse(part=body, strength=name, stress=Bounded(*map(float, stress)), allowed=float(strength))
