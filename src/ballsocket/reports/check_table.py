@@ -6,14 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..contact.verdict import bar_text, percent
-from ..core.answers import Check as Check
+from ..core.answers import Check
 from ..core.quantities import QUANTITIES, Quantity
-from ..design_checks import checks_at as checks_at
-from ..design_checks import checks_of as checks_of
-from ..design_checks import sorted_checks as sorted_checks
-from ..design_checks import unchecked_text as unchecked_text
-from ..design_checks import verdict_of as verdict_of
-from ..design_checks import wear_check as wear_check
 from .pages import render_part
 
 Writer = Callable[[Quantity, float], str]
