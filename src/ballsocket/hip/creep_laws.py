@@ -87,12 +87,7 @@ class LogarithmicCreep(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        return self.compliances, self.times
-
-    @property
-    def compliances(self) -> tuple[float, ...]:
-        """Compliance of each Kelvin-Voigt element in 1/MPa."""
-        return (_STRAIN_PER_DECADE,) * _N_DECADES
+        return (_STRAIN_PER_DECADE,) * _N_DECADES, self.times
 
     @property
     def times(self) -> tuple[float, ...]:

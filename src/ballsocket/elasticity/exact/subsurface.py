@@ -75,10 +75,8 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
         angles, depths = _refine_points_around(angles, int(i)), _refine_points_around(depths, int(j))
-        maximum = Peak(
-            von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
-        )
-    return maximum
+    depth, angle = float(depths[_HALF_INTERVALS]), float(angles[_HALF_INTERVALS])
+    return Peak(von_mises=float(values[i, j]), depth=depth, angle=angle)
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
@@ -132,9 +130,11 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
 
 def largest_von_mises(state: AbelState, reachable: Numbers) -> Numbers:
     """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others."""
-    return _evaluate_contacts(
-        lambda contact: find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises, state, reachable
-    )
+
+    def peak(contact: AbelState) -> float:
+        return find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises
+
+    return _evaluate_contacts(peak, state, reachable)
 
 
 def _evaluate_contacts(peak: Callable[[AbelState], float], state: AbelState, mask: Numbers) -> Numbers:

@@ -139,10 +139,7 @@ class Harmonics:
         return constant, linear, quadratic
 
     def _element_matrices(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute the element stiffness matrices of the powers 0, 1 and 2 of m.
-
-        They integrate the energy density 2G (|ε|² - tr²/3) + K tr².
-        """
+        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements, for the powers 0, 1 and 2 of m."""
         elements = numpy.arange(self._block.elements.shape[1])
         points, weights = element_quadrature(self._block.order)
         gradients = self.elastic.gradients(elements, points)

@@ -50,10 +50,9 @@ class MeshedLoadCurve:
         touching = load > 0
         loads = load[touching].tolist()
         numbers = [self._mesh_class(kind, value) for value in loads]
+        pairs = list(zip(loads, numbers, strict=True))
         fine, *coarse = (
-            MeshedStates(
-                solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True))
-            )
+            MeshedStates(solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in pairs))
             for mesh in (FINE, COARSE)[: self.meshes]
         )
         reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
@@ -169,16 +168,8 @@ class MeshedStates(PeakPressure):
 
 
 _SAFETY = 2.0  # factor on Richardson's error estimate
-_MIN_ERRORS = {
-    "force": 0.03,
-    "indentation": 0.03,
-    "half_angle": 0.7,
-    "max_pressure": 0.2,
-    "pole_pressure": 0.2,
-    "stiffness": 1.0,
-    "energy": 0.07,
-    "pressure_integral": 0.02,
-}
+_MIN_ERRORS = {"force": 0.03, "indentation": 0.03, "half_angle": 0.7, "max_pressure": 0.2, "pole_pressure": 0.2}
+_MIN_ERRORS |= {"stiffness": 1.0, "energy": 0.07, "pressure_integral": 0.02}
 """Observed errors of random contacts against the exact solution, over the square of relative element size.
 
 They hold for biquadratic elements; bilinear ones had three times the errors. test_fem.py draws new contacts and
@@ -235,15 +226,12 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
 
     thickness, order = float(joint.liner_thickness), settings.order
 
-    def make_resolution(spacing: Spacing, class_index: int, mesh: int) -> Resolution:
-        coarse = spacing.coarse(class_limits[class_index], radius, thickness, order)
-        return coarse if mesh == COARSE else replace(coarse, halvings=1)
-
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        socket, ball = (
-            make_resolution(spacing, class_index, mesh) for spacing in (settings.spacing, settings.ball_spacing)
-        )
-        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * class_limits[class_index], widest))
+        limit = class_limits[class_index]
+        spacings = settings.spacing, settings.ball_spacing
+        coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
+        socket, ball = (part if mesh == COARSE else replace(part, halvings=1) for part in coarse)
+        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(

@@ -338,12 +338,8 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
     """Compute the Newton steps in mm, (3, lanes), towards the loads that the converged pressures will balance."""
     xp = arrays.namespace(lanes.pressure)
     count = lanes.pressure.shape[-1]
-    missing = xp.stack(
-        [
-            integrate(bore, predictor.sensitivity[..., axis * count : (axis + 1) * count], lanes.residual)
-            for axis in range(len(bore.tether))
-        ]
-    )
+    parts = [predictor.sensitivity[..., axis * count :][..., :count] for axis in range(len(bore.tether))]
+    missing = xp.stack([integrate(bore, part, lanes.residual) for part in parts])
     # (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA: what the pressures will still add on their own is not asked of the ball
     imbalance = lanes.imbalance - bore.scale * missing
     step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)

@@ -57,10 +57,7 @@ class SphericalBlock:
 
     @cached_property
     def number(self) -> Numbers:
-        """Number of the node at each polar angle, azimuth and radius; 0 where there is no node.
-
-        Nodes in the middle of edges are included.
-        """
+        """Number of the node at each polar angle, azimuth and radius, also in the middle of edges; 0 without a node."""
         shape = tuple(2 * len(corners) - 1 for corners in (self.polar, self.azimuth, self.radius))
         i, j, k = numpy.indices(shape)
         used = (i % 2 + j % 2 + k % 2) <= 1
@@ -245,10 +242,7 @@ class TiltedDeck(InputDeck):
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
-    """Yield the lines of a body's elements, sorted by type and layer.
-
-    `set_name` returns the name of the set of a layer of elements.
-    """
+    """Yield the lines of a body's elements, sorted by type and layer, in the set that `set_name` gives a layer."""
     previous = None
     for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda element: (element[1], element[2][2])):
         header = f"*ELEMENT, TYPE={kind}, ELSET={set_name(k)}"

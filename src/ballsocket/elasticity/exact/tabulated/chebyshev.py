@@ -105,10 +105,7 @@ class ChebyshevTable:
         return self.coefficients_of_polynomials(polynomials)
 
     def coefficients_of_polynomials(self, polynomials: list[Array]) -> Array:
-        """Compute the coefficients from the Chebyshev polynomials (orders, joints or 1) of the coordinates.
-
-        There may be more orders than this table has.
-        """
+        """Compute the coefficients from Chebyshev polynomials (orders or more, joints or 1) of the coordinates."""
         first, second, *ball = (values[:count, ...] for values, count in zip(polynomials, self.counts, strict=False))
         matrix, products = contract_factors(convert_like(self.liner, first), first, second)
         if ball:

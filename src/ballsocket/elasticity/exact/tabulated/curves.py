@@ -133,10 +133,7 @@ def shift_state(state: TabulatedState, shift: Array) -> TabulatedState:
 
 
 def contact_quantities(state: TabulatedState, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε).
-
-    The units are mm, N, MPa, N/mm and mm.
-    """
+    """Compute d in mm, F in N, p0 in MPa, dF/dd in N/mm and the slope dd/d(ln ε) in mm."""
     growth = 1 / (1 - state.opening)
     reach, outer = scale.clearance * growth, state.opening * state.opening_rate * growth
     modulus = reach / scale.compliance
