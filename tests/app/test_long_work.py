@@ -19,10 +19,9 @@ from ballsocket.app.session import Page
 from ballsocket.app.solving import heavy, solved_curve
 from ballsocket.app.state.screen import START
 from ballsocket.app.state.use import Use
-from ballsocket.app.views.contact.view import Press
-from ballsocket.app.views.cup.worker import bore_of, orientation_key
-from ballsocket.app.views.gait.worker import gait_key
-from ballsocket.app.views.wear.worker import wear_key
+from ballsocket.app.views.contact import Press
+from ballsocket.app.views.hip_runs import gait_key, wear_key
+from ballsocket.app.views.real_cup import bore_of, orientation_key
 from ballsocket.comparison import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile
@@ -150,7 +149,7 @@ def until_the_end(run):
 
 
 def judging(force, **cup):
-    from ballsocket.app.views.finite_elements.worker import run_finite_elements
+    from ballsocket.app.views.finite_elements import run_finite_elements
 
     return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
 

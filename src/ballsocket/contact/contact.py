@@ -56,6 +56,9 @@ class Laws(Protocol):
 class PressModel(ModelInfo):
     """Base class of models whose result is a `Contact`."""
 
+    is_closed_sphere: ClassVar[bool] = False
+    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
+
     @abstractmethod
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
         """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.

@@ -73,23 +73,22 @@ def plain_number(value: float, digits: int = 4) -> str:
     return f"{value:.0f}" if large else f"{value + 0.0:.{digits}g}"
 
 
+_LEFT = " style='text-align:left'"
+
+
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return an HTML table of texts, the first column on the left."""
-    align = " style='text-align:left'"
-    cells = "".join(f"<th{'' if number else align}>{escape(text)}</th>" for number, text in enumerate(heads))
-    body = "".join(
-        "<tr>"
-        + "".join(f"<td{'' if number else align}>{escape(text)}</td>" for number, text in enumerate(row))
-        + "</tr>"
-        for row in rows
-    )
-    return f"<table><tr>{cells}</tr>{body}</table>"
+
+    def row(tag: str, texts: Sequence[str]) -> str:
+        cells = (f"<{tag}{'' if number else _LEFT}>{escape(text)}</{tag}>" for number, text in enumerate(texts))
+        return f"<tr>{''.join(cells)}</tr>"
+
+    return f"<table>{row('th', heads)}{''.join(row('td', texts) for texts in rows)}</table>"
 
 
 def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     """Return names and values in two columns below a title, as HTML."""
-    align = "style='text-align:left'"
-    body = "".join(f"<tr><td {align}>{escape(name)}</td><td {align}>{escape(text)}</td></tr>" for name, text in rows)
+    body = "".join(f"<tr><td{_LEFT}>{escape(name)}</td><td{_LEFT}>{escape(text)}</td></tr>" for name, text in rows)
     return f"<b>{escape(title)}</b><table>{body}</table>"
 
 

@@ -12,8 +12,7 @@ from ..core.checks import check_number, require
 from ..core.display import finite_or_none
 from ..lubrication import Lubricant
 
-CYCLES = 300
-"""Default number of uninterrupted cycles from a flooded bore."""
+CYCLES = 300  # default number of uninterrupted cycles from a flooded bore
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -266,11 +266,6 @@ class WearFit:
     specimens: Mapping[str, Numbers]
 
     @property
-    def law_name(self) -> str:
-        """Name of the wear law, such as "archard"."""
-        return str(getattr(self.simulation.wear, "name", type(self.simulation.wear).__name__))
-
-    @property
     def unit(self) -> str:
         """Unit of the coefficient, such as mm³/(N m)."""
         field = coefficient_field(self.simulation.wear)

@@ -72,10 +72,6 @@ def read_measured(
     heads : HeadChoice
         Columns of the file that get another name, or that are not used.
 
-    Returns
-    -------
-    tuple of Measured
-
     Raises
     ------
     ValueError

@@ -81,13 +81,7 @@ class Unknown:
 def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
     """List all unknowns of an identification: free numbers, and machine errors with ranges.
 
-    Parameters
-    ----------
-    free : mapping of str to two ends or a distribution
-        Names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
-    machines : iterable of Machine
-    model : Model
-        Model that must have the free numbers of a model.
+    Free are names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
 
     Raises ValueError: a name that is not known or is stated twice; a number that the model does not have; ends that are
     not allowed.

@@ -113,12 +113,8 @@ def jax_derivatives(
 
     The first call compiles. Parameters and results are those of `finite_differences`.
 
-    Raises
-    ------
-    ValueError
-        A model that JAX cannot trace; an unknown name; no load.
-    ImportError
-        JAX is not installed.
+    Raises ValueError: a model that JAX cannot trace; an unknown name; no load.
+    Raises ImportError: JAX is not installed.
     """
     names = _check_arguments(quantities, at)
     if not model.differentiable:
