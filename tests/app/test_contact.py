@@ -29,7 +29,7 @@ from ballsocket.core.unit_systems import Units
 from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
-from ballsocket.reports.check_table import checks_html
+from ballsocket.reports.pages import checks_html
 from ballsocket.reports.section_plots import gap_factor
 
 from ..extent import either

@@ -18,8 +18,7 @@ from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_
 from ballsocket.core.unit_systems import Units
 from ballsocket.design_checks import checks_at, checks_of, verdict_of, wear_check
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
-from ballsocket.reports.check_table import checks_html
-from ballsocket.reports.pages import table, write_page
+from ballsocket.reports.pages import checks_html, table, write_page
 from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_sections
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.studies import tolerance

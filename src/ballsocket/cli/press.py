@@ -169,17 +169,15 @@ class PressedJoint:
         for result in summary["results"] if friction.friction is not None else ():
             contact = comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
-        pull_out = None if pulled is None else pulled.summary()
-        preload = {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth}
         verdict, reason = design_verdict(self.answer)
-        judged = {"model": self.answer.leading, "verdict": verdict.word, "reason": reason}
         further = {
-            "verdict": judged,
+            "verdict": {"model": self.answer.leading, "verdict": verdict.word, "reason": reason},
             "assumptions": list(self.answer.assumptions),
-            "preload": preload,
+            "preload": {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth},
             "orientation": self.orientation,
+            "pull_out": None if pulled is None else pulled.summary(),
         }
-        return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:

@@ -182,7 +182,7 @@ class Input:
         """Words that the key allows, or the names that it knows; empty for other keys."""
         return choices_in(self.type)
 
-    @property
+    @cached_property
     def meaning(self) -> str:
         """Meaning of the key."""
         return meaning_of(self.key, self.type)

@@ -29,10 +29,10 @@ from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .check_table import checks_html
 from .pages import (
     HEAD_TEXTS,
     answer_table,
+    checks_html,
     letterhead,
     logo_address,
     render_page,

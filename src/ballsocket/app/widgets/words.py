@@ -20,7 +20,7 @@ from ...design_checks import checks_of, unchecked_text, verdict_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
-from ...reports.check_table import checks_html
+from ...reports.pages import checks_html
 from ...reports.style import line_of
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
