@@ -124,9 +124,7 @@ def _from_bits(context: Any, bits: Any) -> Any:
     return types.float64(types.uint64), lambda _, builder, __, values: builder.bitcast(values[0], ir.DoubleType())
 
 
-_ROUND = 6755399441055744.0
-"""Number 1.5·2^52: a sum with it is rounded to an integer, which its lowest bits hold."""
-
+_ROUND = 6755399441055744.0  # number 1.5·2^52: a sum with it is rounded to an integer, which its lowest bits hold
 _ROUND_BITS = 0x4338000000000000
 _EXPONENT_BIAS = 1023
 _LOG2_E = 1 / math.log(2)
@@ -201,8 +199,7 @@ def log1p(x):  # type: ignore[no-untyped-def]
     return x if (rounded == 0.0) | (x == math.inf) else value
 
 
-_HALF_PI = (1.5707963267341256, 6.077100506506192e-11)
-"""π/2 in two parts; the first has zeros at its end."""
+_HALF_PI = (1.5707963267341256, 6.077100506506192e-11)  # π/2 in two parts; the first has zeros at its end
 
 
 @inline_formula

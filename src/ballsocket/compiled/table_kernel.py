@@ -22,8 +22,7 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
 from .overloads import VECTOR_FUNCTIONS, as_row, compile_loop, inline_formula, pick_element, vector_formula
 
-LANES = 128
-"""Number of contacts in an inner loop; their values stay in the cache."""
+LANES = 128  # number of contacts in an inner loop; their values stay in the cache
 
 
 def copy_inputs(inputs: Any, first: int, lanes: int, rows: Numbers) -> None:
@@ -181,20 +180,14 @@ class _EvaluatedCurve(NamedTuple):
     pole_slope: float
 
 
-_LOAD, _LOAD_SCALE, _RATIO, _OPENING, _FORCE, _CLEARANCE, _AREA, _COMPLIANCE = range(8)
-"""Rows of the inputs."""
-
-_ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS, _SHIFT = range(8, 14)
-"""Rows of the results."""
-
+_LOAD, _LOAD_SCALE, _RATIO, _OPENING, _FORCE, _CLEARANCE, _AREA, _COMPLIANCE = range(8)  # rows of the inputs
+_ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS, _SHIFT = range(8, 14)  # rows of the results
 _OUTPUT_COUNT = 6
 
 _X, _ROOT, _WIDENING, _VALUES, _SLOPES, _WAVES = 14, 15, 16, 17, 20, 23
 """Rows of coordinate, unknown, its derivative, three functions, three slopes and four Chebyshev polynomials."""
 
-_TERMS = 27
-"""First row of twelve coefficients."""
-
+_TERMS = 27  # first row of twelve coefficients
 _ROW_COUNT = 39
 
 

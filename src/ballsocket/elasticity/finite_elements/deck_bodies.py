@@ -21,8 +21,7 @@ _RING_THICKNESS = 0.05  # meshed part of a rigid ball, over its radius
 _ANGLE_TOLERANCE = 1e-9  # rad
 
 
-TYPES = {1: "CAX4", 2: "CAX8R"}
-"""Names of bilinear and biquadratic elements in CalculiX and Abaqus."""
+TYPES = {1: "CAX4", 2: "CAX8R"}  # names of bilinear and biquadratic elements in CalculiX and Abaqus
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
