@@ -17,13 +17,12 @@ from ...core.checks import require
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
 from ...problem.gaps import CircularGap, Gap, LinearGap
-from .bodies import ball_compliance, socket_compliance
+from .bodies import ContactSurface, SurfacePair, ball_compliance, socket_compliance
 from .load_search import ContactBracket, Solved, is_pressed, stiffness, work
 from .mesh import Resolution, socket_shape
 from .pair_contact import FullContact, partial_contact
 from .progress import report_progress
 from .spacing import Spacing, Uniform, check_memory, mesh_size
-from .surfaces import ContactSurface, SurfacePair
 
 FINE, COARSE = 0, 1  # indices of the two meshes
 _STRIDE = 4  # number of classes whose contacts one coarse mesh resolves
