@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections import UserDict
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
@@ -31,11 +32,8 @@ _MODELS = {
 }
 """Module and class of each model that presses in milliseconds or less, by its name."""
 
-JUDGE = "fem"
-"""Name of the finite-element model; slow, therefore not in the catalogue."""
-
-OFF_AXIS = "sphere"
-"""Name of the elastic solution for loads in any direction; slow, therefore not in the catalogue."""
+JUDGE = "fem"  # name of the finite-element model; slow, therefore not in the catalogue
+OFF_AXIS = "sphere"  # name of the elastic solution for loads in any direction; slow, therefore not in the catalogue
 
 _SLOW_MODELS = {
     JUDGE: "elasticity.finite_elements.model:FiniteElement",
@@ -53,33 +51,15 @@ def _load_model(entry: str) -> Any:
 SomeInfo = TypeVar("SomeInfo", bound=ModelInfo)
 
 
-class Models(MutableMapping[str, SomeInfo]):
+class Models(UserDict[str, SomeInfo]):
     """Models by name; the module of a model is imported when the model is first used."""
 
     def __init__(self, entries: Mapping[str, str]) -> None:
-        self._entries: NamedItems[Any] = NamedItems("model", entries)
+        self.data: NamedItems[Any] = NamedItems("model", entries)
 
     def __getitem__(self, name: str) -> SomeInfo:
-        entry = self._entries[name]
+        entry = self.data[name]
         return _load_model(entry) if isinstance(entry, str) else entry
-
-    def __setitem__(self, name: str, model: SomeInfo) -> None:
-        self._entries[name] = model
-
-    def __delitem__(self, name: str) -> None:
-        del self._entries[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._entries
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
-
-    def __len__(self) -> int:
-        return len(self._entries)
-
-    def __repr__(self) -> str:
-        return repr(self._entries)
 
     def _repr_html_(self) -> str:
         return NamedItems("model", self)._repr_html_()
@@ -103,10 +83,7 @@ reference = catalogue["exact"]
 def named_model(name: Any) -> Model:
     """Return a model by its name.
 
-    Raises
-    ------
-    ValueError
-        A name that is not known; the message suggests the nearest one.
+    Raises ValueError: a name that is not known; the message suggests the nearest one.
     """
     return named_models[known_name("model", name, named_models)]
 
@@ -117,10 +94,7 @@ SomeModel = TypeVar("SomeModel", bound=Model)
 def with_gap(model: SomeModel, name: str | None) -> SomeModel:
     """Return a model with the gap of a name, "linear" or "circular"; None leaves the model as it is.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, or a model that has one gap only.
+    Raises ValueError: an unknown name, or a model that has one gap only.
     """
     if name is None:
         return model

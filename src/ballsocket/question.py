@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import degrees, pi
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -25,38 +26,21 @@ if TYPE_CHECKING:
     from .elasticity.off_axis.model import Sphere
     from .elasticity.off_axis.preload import PullOut
 
-DEFAULT_MODEL = "hess-forsbach"
-"""Name of the model that solves a load along the axis of the cup without a request."""
+DEFAULT_MODEL = "hess-forsbach"  # name of the model that solves a load along the axis of the cup without a request
 
 
 @dataclass(frozen=True, kw_only=True)
 class PressQuestion:
-    """Joint under one load, and the wanted results.
+    """Joint under one load, and the wanted results."""
 
-    Parameters
-    ----------
-    file : JointFile
-        Joint, load, cup and direction of the load, as they are stated.
-    models : mapping of str to Model
-        Requested models by name; empty for the default.
-    sphere : Sphere
-        The model `sphere`, where it is requested or the default; by default that of the catalogue.
-    exact : Model, optional
-        Solution with which the others are compared; None without a comparison.
-    gap : str, optional
-        Name of the gap of the models that have a choice.
-    pull_out : float, optional
-        Coefficient of friction of the ball while it is pulled out of its cup; None without a pull-out force.
-    """
+    file: JointFile  # joint, load, cup and direction of the load, as they are stated
+    models: Mapping[str, Model] = field(default_factory=dict)  # requested models by name; empty for the default
+    sphere: Sphere | None = None  # the model `sphere`, by default that of the catalogue
+    exact: Model | None = reference  # solution with which the others are compared
+    gap: str | None = None  # name of the gap of the models that have a choice
+    pull_out: float | None = None  # coefficient of friction while the ball is pulled out of its cup, if it is
 
-    file: JointFile
-    models: Mapping[str, Model] = field(default_factory=dict)
-    sphere: Sphere | None = None
-    exact: Model | None = reference
-    gap: str | None = None
-    pull_out: float | None = None
-
-    @property
+    @cached_property
     def chosen(self) -> dict[str, Model]:
         """Models that solve the question, by name: the requested ones, or the default one."""
         needs_sphere = self.pull_out is not None or real_cup_reason(self.file)
@@ -67,33 +51,15 @@ class PressQuestion:
 
 @dataclass(frozen=True, kw_only=True)
 class PressAnswer:
-    """Results of a question.
+    """Results of a question."""
 
-    Attributes
-    ----------
-    file : JointFile
-        Joint, load, cup and direction that were solved, with what was assumed.
-    assumptions : tuple of str
-        Sentences on what was assumed.
-    models : tuple of str
-        Names of the requested models, or of the default one.
-    comparison : Comparison
-        Contacts of these models and of the exact solution.
-    seconds : dict of str to float
-        Time of each press in s.
-    wear_depth_to_loosen : float or None
-        Uniform wear of the bore in mm that ends a preload; None without a preload.
-    pulled : PullOut or None
-        Largest force while the ball is pulled out; None without a request.
-    """
-
-    file: JointFile
-    assumptions: tuple[str, ...]
-    models: tuple[str, ...]
-    comparison: Comparison
-    seconds: dict[str, float]
-    wear_depth_to_loosen: float | None
-    pulled: PullOut | None
+    file: JointFile  # joint, load, cup and direction that were solved, with what was assumed
+    assumptions: tuple[str, ...]  # sentences on what was assumed
+    models: tuple[str, ...]  # names of the requested models, or of the default one
+    comparison: Comparison  # contacts of these models and of the exact solution
+    seconds: dict[str, float]  # time of each press
+    wear_depth_to_loosen: float | None  # uniform wear of the bore in mm that ends a preload
+    pulled: PullOut | None  # largest force while the ball is pulled out
 
     @property
     def leading(self) -> str:
@@ -106,12 +72,7 @@ class PressAnswer:
 def complete(file: JointFile) -> tuple[JointFile, dict[str, str]]:
     """Assume what the description of a preloaded joint leaves open: rest without a load, and a cup that holds the ball.
 
-    Returns
-    -------
-    JointFile
-        The same for a joint with a clearance.
-    dict of str to str
-        A sentence on each assumption, by the name of the number.
+    The result has a sentence on each assumption, by the name of the number. A joint with a clearance remains the same.
     """
     if file.joint.clearance >= 0:
         return file, {}
@@ -134,11 +95,12 @@ def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
         return "the ball is preloaded"
     if file.tilt > AXIAL_TILT:
         return f"the load is tilted {degrees(file.tilt):.3g}° against the axis of the cup"
-    radius = float(file.joint.socket_radius)
+    radius, (cup, direction) = float(file.joint.socket_radius), file.cup.under_load(file.tilt)
     near_rim = (
         contact is not None
         and not contact.status.failed
-        and file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius)
+        and cup.edge_distance(radius, float(contact.half_angle), direction)
+        < min(float(file.joint.liner_thickness), radius)
     )
     return "the contact ends near the rim of the cup" if near_rim else ""
 
@@ -151,11 +113,8 @@ def every_model(file: JointFile) -> dict[str, Model]:
 def answer(question: PressQuestion) -> PressAnswer:
     """Press a joint by the requested models and by the exact solution.
 
-    Raises
-    ------
-    ValueError
-        None of the requested models has a result for such a joint; no load; a pull-out force without the model
-        `sphere`, or without an arc of cover.
+    Raises ValueError: none of the requested models has a result for such a joint; no load; a pull-out force without the
+    model `sphere`, or without an arc of cover.
     """
     file, assumptions = complete(question.file)
     models = question.chosen

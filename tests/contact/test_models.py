@@ -64,11 +64,6 @@ def test_a_wrapper_presses_as_the_wrapped_model():
     assert wrapped.press(HIP, force=1.0).model is wrapped
 
 
-def test_a_model_info_without_a_contact_has_no_laws():
-    with pytest.raises(NotImplementedError, match="pin-in-hole has no laws of a contact"):
-        bs.PinInHole().numpy_laws(HIP, 0.1)
-
-
 NARROW = bs.Cup(arc_of_cover=radians(60.0))
 
 
@@ -110,9 +105,11 @@ def test_finite_elements_agree_at_the_limit_of_validity():
 
 
 def test_tilt_brings_the_rim_closer_to_the_contact():
-    for tilt, valid in ((0.0, True), (45.0, False)):
-        cup = bs.Cup(arc_of_cover=radians(170.0), inclination=radians(tilt))
-        assert bs.Exact().in_cup(cup).press(HIP, force=3000.0).valid is valid
+    for arc, tilt, valid in ((170.0, 0.0, True), (170.0, 45.0, False), (340.0, 95.0, True), (340.0, 140.0, False)):
+        model = bs.Exact().in_cup(bs.Cup(arc_of_cover=radians(arc)), tilt=radians(tilt))
+        assert model.press(HIP, force=3000.0).valid is valid
+        cup = bs.Cup(arc_of_cover=radians(arc), inclination=radians(min(tilt, 90.0)))
+        assert tilt > 90.0 or bs.Exact().in_cup(cup).press(HIP, force=3000.0).valid is valid
 
 
 def test_a_sliding_liner_is_valid_only_for_finite_elements():

@@ -10,7 +10,8 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import Spring, iso_14242_1, iso_14242_4
-from ballsocket.hip.rim import Microseparation, RimDistance, SpringLoadedBall, rim_distance
+from ballsocket.hip.microseparation import Microseparation, SpringLoadedBall
+from ballsocket.hip.rim import RimDistance, rim_distance
 
 from .hips import hip, socket_force
 

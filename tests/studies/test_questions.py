@@ -21,8 +21,7 @@ from ballsocket.studies.distributions import Normal, Rectangular, check_nominal,
 from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, joint_dimension, limited_quantities, margin_on_plane, verdicts
-from ballsocket.studies.optimisation import optimise
-from ballsocket.studies.pareto_front import pareto
+from ballsocket.studies.optimisation import optimise, pareto
 from ballsocket.studies.run import default_model
 from ballsocket.studies.task import OUTCOMES
 from ballsocket.studies.variance_shares import sensitivity

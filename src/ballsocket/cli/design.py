@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import pi
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -24,26 +23,17 @@ from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit, limited_quantities
-from ..studies.map_answer import describe_map, map_summary
 from ..studies.optimisation import optimise as find_optimum
-from ..studies.optimum_answer import describe_front, describe_optimum, front_summary
+from ..studies.optimisation import pareto
 from ..studies.parameters import LOADS
-from ..studies.pareto_front import pareto
 from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity_answer import describe_sensitivity, index_table, sensitivity_summary
+from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
-from .options import (
-    GapName,
-    JointName,
-    JointOptions,
-    ModelName,
-    OutputOptions,
-    expand_groups,
-    needed_load,
-)
+from .options import GapName, JointName, JointOptions, ModelName, OutputOptions, expand_groups, needed_load
 from .root import app, print_message
 
 _POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."
@@ -65,10 +55,7 @@ class PressOptions:
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
 
-        Raises
-        ------
-        ValueError
-            The requested model has no result for any of these joints.
+        Raises ValueError: the requested model has no result for any of these joints.
         """
         if self.model is None:
             model = default_model(file.joint, ends) if self.gap is None else reference
@@ -294,17 +281,14 @@ def _default_points(model: Model) -> int:
 
 def _limits(phrases: list[str] | None, file: JointFile) -> list[Limit]:
     """Parse limits from text; distances from the edge are for the cup and the load's direction of a file."""
-    cup = file.cup.tilted(min(file.tilt, pi / 2))
-    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
+    cup, direction = file.cup.under_load(file.tilt)
+    return [replace(parse_limit(phrase), cup=cup, direction=direction) for phrase in phrases or []]
 
 
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     """Return pairs of name and value as a dictionary.
 
-    Raises
-    ------
-    ValueError
-        A name occurs twice.
+    Raises ValueError: a name occurs twice.
     """
     values: dict[str, Any] = {}
     for name, value in pairs:

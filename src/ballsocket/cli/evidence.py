@@ -65,8 +65,7 @@ def evidence(
         raise typer.Exit(_LIMIT_NOT_KEPT)
 
 
-_LIMIT_NOT_KEPT = 1
-"""Exit status with --strict if a limit is not kept, or if that is not known."""
+_LIMIT_NOT_KEPT = 1  # exit status with --strict if a limit is not kept, or if that is not known
 
 
 def _gather(question: Question, out: Path, engine: Engine, as_json: bool) -> Record:

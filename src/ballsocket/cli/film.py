@@ -27,14 +27,7 @@ from ..reports.terminal import print_answer
 from ..version import __version__
 from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model
-from .options import (
-    GapName,
-    JointName,
-    JointOptions,
-    OutputOptions,
-    expand_groups,
-    needed_load,
-)
+from .options import GapName, JointName, JointOptions, OutputOptions, expand_groups, needed_load
 from .root import app, fail
 
 
@@ -84,8 +77,7 @@ class FilmInputs(Table, frozen=True, kw_only=True):
         return rate * across / numpy.linalg.norm(across)
 
 
-_NEARLY_PARALLEL = 0.99
-"""Cosine of the angle between load and x above which the rotation is about y."""
+_NEARLY_PARALLEL = 0.99  # cosine of the angle between load and x above which the rotation is about y
 
 
 @app.command()
@@ -111,12 +103,7 @@ def film(
     output.check()
     file = joint_options.read(joint)
     films = [
-        compute_film(
-            contact,
-            spin=inputs.spin_of(contact),
-            lubricant=inputs.lubricant(),
-            method=inputs.method,
-        )
+        compute_film(contact, spin=inputs.spin_of(contact), lubricant=inputs.lubricant(), method=inputs.method)
         for contact in _contacts(model, gap, file, rings)
     ]
     output.print(
@@ -132,16 +119,11 @@ def film(
 def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: RingTable) -> list[Contact]:
     """Press the joint by the requested models.
 
-    Raises
-    ------
-    typer.Exit
-        A model has no result.
+    Raises typer.Exit: a model has no result.
     """
     load = needed_load(file)
     question = PressQuestion(
-        file=file,
-        models={model.name: model for model in map(requested_model, names or ())},
-        sphere=rings.model(),
+        file=file, models={model.name: model for model in map(requested_model, names or ())}, sphere=rings.model()
     )
     contacts = []
     for chosen in question.chosen.values():

@@ -21,9 +21,9 @@ from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
     from ..hip.bands import Bands
-    from ..hip.comparison_answer import HipRun
     from ..hip.config import HipFile
     from ..hip.history import History
+    from ..hip.history_answer import HipRun
 
 
 @app.command()
@@ -67,9 +67,8 @@ def hip(
     Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
     from ..hip.bands_answer import describe_bands
-    from ..hip.comparison_answer import HipRun, describe_hips
     from ..hip.config import read_hip
-    from ..hip.history_answer import describe_history
+    from ..hip.history_answer import HipRun, describe_hips, describe_history
     from ..reports.figure_files import check_format, save
     from ..reports.hip_comparison import comparison_figure, write_table
     from ..reports.hip_report import hip_report

@@ -25,8 +25,7 @@ from ..reports.accuracy_results import print_table_3
 from ..reports.figure_files import check_format, save
 from ..reports.style import in_units
 from ..reports.terminal import print_answer
-from ..studies.calibration import FORCES, Form
-from ..studies.calibration_answer import describe_calibration
+from ..studies.calibration import FORCES, Form, describe_calibration
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, UnitSystem

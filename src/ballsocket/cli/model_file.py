@@ -31,8 +31,7 @@ _TRIAL_STEP, _TRIAL_TOLERANCE = 1e-3, 0.01
 """Relative step of the derivatives of the trial press, and their allowed relative error."""
 
 
-_LOADED: dict[str, Path] = {}
-"""Model files that this process has imported, by module name."""
+_LOADED: dict[str, Path] = {}  # model files that this process has imported, by module name
 
 _FOLDERS: set[Path] = set()
 """Their folders, which are part of `sys.path` for worker processes and for other modules of the user."""
@@ -46,11 +45,8 @@ def is_model_file(text: str) -> bool:
 def requested_model(text: str) -> Model:
     """Return the model of an option `--model`: a name, or FILE.py:NAME.
 
-    Raises
-    ------
-    ValueError
-        An unknown name; a model file that does not exist, fails, or has no such model; a model file in a process that
-        serves others.
+    Raises ValueError: an unknown name; a model file that does not exist, fails, or has no such model; a model file in a
+    process that serves others.
     """
     return load_model(text) if is_model_file(text) else named_model(text)
 
@@ -61,10 +57,7 @@ def load_model(text: str) -> Model:
     The name belongs to a model, to a class or function that makes one without arguments, to a foundation modulus, or
     to a function that computes the modulus K in MPa/mm of a joint.
 
-    Raises
-    ------
-    ValueError
-        See `requested_model`.
+    Raises ValueError: see `requested_model`.
     """
     if is_restricted():
         raise ValueError(f"model {shown(text)} is not allowed: only the command line of a user runs a model file")

@@ -102,10 +102,7 @@ def study(
 def _choose_plot(study_file: StudyFile, path: Path) -> Callable[..., Figure]:
     """Return the plot of a study, before it runs.
 
-    Raises
-    ------
-    ValueError
-        Another file format, or a study without two axes.
+    Raises ValueError: another file format, or a study without two axes.
     """
     check_format(path)
     axes = [axis.name for axis in study_file.design.axes if len(axis) > 1]
@@ -127,9 +124,9 @@ def _progress_bar(store: str | Path | None) -> Iterator[Listener]:
     def update(state: StudyProgress) -> None:
         """Update the bar, which starts with the first finished block."""
         progress.start()
-        progress.update(
-            task, description="pressing", completed=state.n_done, total=state.n_points, state=_progress_text(state)
-        )
+        remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
+        text = f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"
+        progress.update(task, description="pressing", completed=state.n_done, total=state.n_points, state=text)
         latest[:] = [state]
 
     try:
@@ -149,8 +146,3 @@ def _stop(progress: Progress) -> None:
     """Stop a progress bar that started; one that never started would print an empty line."""
     if progress.live.is_started:
         progress.stop()
-
-
-def _progress_text(state: StudyProgress) -> str:
-    remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
-    return f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"

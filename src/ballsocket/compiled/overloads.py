@@ -125,6 +125,7 @@ def _from_bits(context: Any, bits: Any) -> Any:
 
 
 _ROUND = 6755399441055744.0  # number 1.5·2^52: a sum with it is rounded to an integer, which its lowest bits hold
+
 _ROUND_BITS = 0x4338000000000000
 _EXPONENT_BIAS = 1023
 _LOG2_E = 1 / math.log(2)

@@ -182,12 +182,14 @@ class _EvaluatedCurve(NamedTuple):
 
 _LOAD, _LOAD_SCALE, _RATIO, _OPENING, _FORCE, _CLEARANCE, _AREA, _COMPLIANCE = range(8)  # rows of the inputs
 _ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS, _SHIFT = range(8, 14)  # rows of the results
+
 _OUTPUT_COUNT = 6
 
 _X, _ROOT, _WIDENING, _VALUES, _SLOPES, _WAVES = 14, 15, 16, 17, 20, 23
 """Rows of coordinate, unknown, its derivative, three functions, three slopes and four Chebyshev polynomials."""
 
 _TERMS = 27  # first row of twelve coefficients
+
 _ROW_COUNT = 39
 
 

@@ -16,8 +16,7 @@ from ..core.quantities import LOADS
 from ..core.validity import Status, is_missing
 from ..problem import Joint
 from ..problem.presets import joints
-from .contact import Contact, Laws
-from .outcome import ModelInfo
+from .contact import Contact, Laws, PressModel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,10 +32,7 @@ class SolverResult:
 
 
 def check_joint(joint: Any) -> None:
-    """Check that `joint` is a Joint; raise TypeError otherwise.
-
-    If it is the name of a preset, the message suggests that preset.
-    """
+    """Raise TypeError unless `joint` is a Joint; the message suggests the preset with such a name."""
     if isinstance(joint, Joint):
         return
     is_preset = isinstance(joint, str) and normalise_name(joint) in joints
@@ -51,10 +47,7 @@ def select_and_check_load(**loads: Array | None) -> tuple[str, Array]:
 
 
 def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
-    """Broadcast a load to the common shape of the load and the strengths of the joint's materials.
-
-    Stresses can then be compared with the strengths point by point.
-    """
+    """Broadcast a load to the common shape with the strengths of the materials, for a comparison point by point."""
     if all(map(arrays.is_plain_number, strengths)):
         return load
     return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
@@ -74,14 +67,8 @@ def _check_shapes(shapes: set[tuple[int, ...]]) -> None:
 def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
     """Convert the numbers of a joint and a load to arrays of one library and data type.
 
-    The `parameters` of a model count for the choice of the library; they are not returned.
-
-    Returns
-    -------
-    bool
-        True if all numbers are plain.
-    Joint, array
-        The joint and the load of arrays.
+    The result is true if all numbers are plain, the joint, and the load. The `parameters` of a model count for the
+    choice of the library; they are not returned.
 
     Raises ValueError: arrays whose shapes do not broadcast.
     """
@@ -106,7 +93,7 @@ _BY_SEVERITY = (
 
 
 def make_contact(
-    model: ModelInfo,
+    model: PressModel,
     contact_type: type[Contact],
     joint: Joint,
     kind: str,
@@ -117,20 +104,8 @@ def make_contact(
 ) -> Contact:
     """Build a `Contact` of arrays from a solver's result: determine the status, and set failed points to NaN.
 
-    Parameters
-    ----------
-    model : ModelInfo
-    contact_type : type
-        Class of the contact.
-    joint : Joint
-    kind : str
-        "force", "indentation" or "half_angle".
-    load : array
-    points : array of bool
-        Points inside the domain of the model.
-    result : SolverResult
-    plain : bool
-        True if the contact must consist of Python numbers.
+    `kind` is "force", "indentation" or "half_angle". The mask `points` is true inside the domain of the model. If
+    `plain`, the contact consists of Python numbers.
     """
     xp = arrays.namespace(load)
     operands = (load, result.force, result.indentation, *joint.numbers())
@@ -152,7 +127,7 @@ def make_contact(
 
 
 def make_scalar_contact(
-    model: ModelInfo, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
+    model: PressModel, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
 ) -> Contact:
     """Build a `Contact` of Python numbers from a solver's result; set the numbers of a failed result to NaN.
 

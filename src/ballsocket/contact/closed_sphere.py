@@ -16,11 +16,8 @@ from typing import Any
 from ..core.arrays import Array, clip, exp, log
 from ..core.validity import Range, Remark
 
-NOTED_CHANGE = 0.01
-"""Relative difference above which a note reports it."""
-
-MAX_CHANGE = 0.15
-"""Largest relative difference of indentation or largest pressure for which the closed sphere is valid."""
+NOTED_CHANGE = 0.01  # relative difference above which a note reports it
+MAX_CHANGE = 0.15  # largest relative difference of indentation or largest pressure for which the closed sphere is valid
 
 POISSON_RANGE, THICKNESS_RATIO_RANGE, MAX_MODULUS_RATIO = (0.0, 0.499), (0.2, 20.0), 0.02
 """Fitted ranges of Poisson's ratio and R2/L of the liner, and the largest fitted E/E_ball."""
@@ -28,8 +25,7 @@ POISSON_RANGE, THICKNESS_RATIO_RANGE, MAX_MODULUS_RATIO = (0.0, 0.499), (0.2, 20
 MIN_HALF_ANGLE, MAX_HALF_ANGLE = radians(3.0), radians(83.0)
 """Fitted range of half angles; beyond its ends the estimate is constant."""
 
-BALL_FACTOR = 2.1
-"""Ratio of the largest change by the half ball to the change of the indentation."""
+BALL_FACTOR = 2.1  # ratio of the largest change by the half ball to the change of the indentation
 
 
 def polynomial_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
@@ -62,10 +58,7 @@ def _fitted_change(name: str, degree: int, contact: Any) -> Array:
 
 
 def hemisphere_indentation_change(contact: Any) -> Array:
-    """Estimate the relative increase of indentation if a hemisphere replaces the closed sphere.
-
-    The force is the same.
-    """
+    """Estimate the relative increase of indentation at equal force if a hemisphere replaces the closed sphere."""
     return _fitted_change("indentation", 5, contact) + contact.joint.modulus_ratio * _fitted_change("ball", 4, contact)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
@@ -18,8 +19,9 @@ from ..core.kinds import Unit
 from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
+from ..problem import Joint
 from . import describe, strength
-from .outcome import Outcome
+from .outcome import ModelInfo, Outcome
 from .stress_ratio import von_mises_ratio
 
 if TYPE_CHECKING:
@@ -49,6 +51,17 @@ class Laws(Protocol):
     @property
     def pressure_integral(self) -> Array: ...
     def pressure(self, angle: Array) -> Array: ...
+
+
+class PressModel(ModelInfo):
+    """Base class of models whose result is a `Contact`."""
+
+    @abstractmethod
+    def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
+        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
+
+        These become infinite or NaN where Python floats raise ArithmeticError.
+        """
 
 
 def _quantity_property(name: str) -> Any:
@@ -83,7 +96,7 @@ class Contact(Outcome):
         Axial load F in N; approach d of the centres from first touch in mm.
     status : Status or array of int
         Success, or the reason of the failure, of each point.
-    model : ModelInfo
+    model : PressModel
         The model that computed the contact.
     joint : Joint
         The joint that was pressed.
@@ -91,6 +104,7 @@ class Contact(Outcome):
         Closed forms bound to joint and indentation, or a solution, which give the other quantities.
     """
 
+    model: PressModel
     laws: Laws
     force: Array
     indentation: Array
@@ -347,7 +361,6 @@ class Contact(Outcome):
 
     @staticmethod
     def _check_friction(coefficient: Array, axis_angle: float) -> Array:
-        """Check a coefficient of friction and the angle of an axis in rad, and return the coefficient."""
         if isinstance(coefficient, tuple | list):
             raise TypeError(
                 f"coefficient must be a number or an array, got the {type(coefficient).__name__} {shown(coefficient)}"
@@ -359,10 +372,7 @@ class Contact(Outcome):
         return coefficient
 
     def _evaluate(self, read_quantity: Callable[[Laws], Array]) -> Array:
-        """Evaluate one quantity from the formulas or the solution of the contact; set failed points to NaN.
-
-        NumPy numbers replace Python floats where these raise ArithmeticError.
-        """
+        """Evaluate one quantity of the laws, with NumPy numbers where Python floats raise; NaN at failed points."""
 
         def evaluate_quantity() -> Array:
             try:
@@ -416,17 +426,14 @@ class Contact(Outcome):
         return describe.to_html(self)
 
 
-ELASTIC = strength.ElasticLimit()
-"""Range of the utilisation in which the result of a material with a strength is valid."""
+ELASTIC = strength.ElasticLimit()  # range of the utilisation in which the result of a material with a strength is valid
 
-_EDGE_ARC = 1e-5
-"""Distance from the edge at which the rise of the pressure is read, relative to the half angle."""
+_EDGE_ARC = 1e-5  # distance from the edge at which the rise of the pressure is read, relative to the half angle
 
 _EDGE_TOLERANCE = 0.1
 """Allowed difference of the pressure ratio at double distance from 2 (springs) or from the root of 2 (elastic)."""
 
-_UNIT_TOLERANCE = 1e-10
-"""Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""
+_UNIT_TOLERANCE = 1e-10  # tolerance of the square of (x² + y² + z² - 1) of a unit vector
 
 
 def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:

@@ -6,18 +6,14 @@ from math import radians
 
 from ..core.arrays import Array, exp, log, log1p, sqrt
 
-LIMIT = radians(85.0)
-"""Largest half angle in rad of the exact solution and its tables."""
+LIMIT = radians(85.0)  # largest half angle in rad of the exact solution and its tables
 
 ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
 """Scales of the coordinates of ε and R2/L; tables are valid for the scales they were built with."""
 
 
 def angle_root(angle: Array, ratio: Array) -> Array:
-    """Compute the half angle's coordinate from 0 to 1, the square root of a scaled logarithm.
-
-    It is accurate for tiny angles too.
-    """
+    """Compute the half angle's coordinate from 0 to 1, the root of a scaled logarithm, accurate for tiny angles too."""
     scale = ANGLE_SCALE * (1 + ratio)
     return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
 

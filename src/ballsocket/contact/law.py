@@ -13,8 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.lazy import cached_property
 
-PolynomialPieces = Sequence[Sequence[float]]
-"""Coefficients of each piece of a curve, the highest power first."""
+PolynomialPieces = Sequence[Sequence[float]]  # coefficients of each piece of a curve, the highest power first
 
 
 class ForceLaw(Protocol):
@@ -94,28 +93,16 @@ def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
     return (force, stiffness) if math.isfinite(force + stiffness) else (math.nan, math.nan)
 
 
-_DEGREE = 9
-"""Degree of the polynomial of a piece."""
-
-_PIECE_COUNTS = (24, 48, 96)
-"""Numbers of pieces that are tried in turn."""
-
-_SERIES_TOLERANCE = 1e-11
-"""Largest last term of ln F of a curve with enough pieces."""
-
-_END_TOLERANCE = 1e-6
-"""Relative tolerance of the deepest indentation that has a load."""
+_DEGREE = 9  # degree of the polynomial of a piece
+_PIECE_COUNTS = (24, 48, 96)  # numbers of pieces that are tried in turn
+_SERIES_TOLERANCE = 1e-11  # largest last term of ln F of a curve with enough pieces
+_END_TOLERANCE = 1e-6  # relative tolerance of the deepest indentation that has a load
 
 
 def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
     """Fit a `CurveLaw` to computed forces; increase the number of pieces until ln F has converged (F in N).
 
-    Parameters
-    ----------
-    force : function
-        Loads in N of indentations in mm, NaN where there is none.
-    shallowest, deepest : float
-        Ends of the curve in mm. It ends earlier if the loads do.
+    The function returns loads in N of indentations in mm, NaN where there is none; the curve ends where the loads end.
 
     Raises TypeError: a load at the shallowest indentation that is not above 0.
     """
@@ -147,10 +134,7 @@ def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: 
 
 
 def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, high: float, piece_count: int) -> Numbers:
-    """Compute the Chebyshev coefficients (pieces, terms) of ln F over ln d, force F in N, indentation d in mm.
-
-    Adjacent pieces are continuous.
-    """
+    """Compute the Chebyshev coefficients (pieces, terms) of ln F (N) over ln d (mm), with continuous pieces."""
     nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
     piece_positions = (numpy.arange(piece_count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / piece_count
     depths = low * numpy.exp(math.log(high / low) * numpy.append(piece_positions, 1.0))
@@ -163,7 +147,6 @@ def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, hig
 
 @cache
 def _chebyshev_to_power_matrix() -> Numbers:
-    """Compute the matrix that converts coefficients of Chebyshev polynomials to those of powers of x."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import partial
-from math import pi
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -16,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
-from ..problem.cup import Cup, Interface
+from ..problem.cup import UP, Cup, Direction, Interface
 from .assembly import (
     SolverResult,
     as_arrays,
@@ -26,12 +25,11 @@ from .assembly import (
     make_scalar_contact,
     select_and_check_load,
 )
-from .contact import Contact, Laws
+from .contact import Contact, Laws, PressModel
 from .law import CurveLaw, ForceLaw, fit_curve_law
-from .outcome import ModelInfo
 
 
-class Model(ModelInfo):
+class Model(PressModel):
     """Base class of contact models: `press` computes the `Contact` of a joint under one load.
 
     Attributes that are equal for all instances of a model are class variables.
@@ -108,7 +106,8 @@ class Model(ModelInfo):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        if self._can_press_with_floats(joint, value):
+        all_plain = all(map(arrays.is_plain_number, (*joint.numbers(), value)))
+        if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
             try:
                 return self._press_with_floats(joint, kind, float(value))
             except ArithmeticError:
@@ -120,12 +119,6 @@ class Model(ModelInfo):
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
 
-    def _can_press_with_floats(self, joint: Joint, load: Array) -> bool:
-        """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""
-        plain_parameters = (type(number) in (float, int) for number in self.parameters)
-        all_numbers_plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
-        return self.accepts_floats and all_numbers_plain and all(plain_parameters)
-
     def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact:
         """Compute the contact of a joint of Python floats, which is faster than arrays."""
         float_joint = joint.with_floats()
@@ -134,10 +127,6 @@ class Model(ModelInfo):
         return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
-        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
-
-        These become infinite or NaN where Python floats raise ArithmeticError.
-        """
         _, array_joint, d = as_arrays(joint, indentation)
         with numpy.errstate(all="ignore"):
             return self._solve(array_joint, "indentation", d).laws
@@ -207,8 +196,11 @@ class Model(ModelInfo):
         OutsideDomainError
             A load at an angle to the axis of the cup, of a model with a rim for axial loads only.
         """
-        tilted = cup.tilted(min(cup.load_tilt(**aim), pi / 2)) if aim else cup
-        return self if tilted == Cup() else RimLimited(model=self, cup=tilted)
+        if aim:
+            cup, direction = cup.under_load(cup.load_tilt(**aim))
+        else:
+            direction = UP
+        return self if cup == Cup() and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.
@@ -256,15 +248,7 @@ _Delegation: Any = type(
 
 @dataclass(frozen=True, kw_only=True)
 class ModelWrapper(_Delegation, Model):
-    """Base class of models that wrap another model.
-
-    Delegates every attribute it does not override to the wrapped model.
-
-    Parameters
-    ----------
-    model : Model
-        The wrapped model.
-    """
+    """Base class of models that wrap another model: every attribute that it does not override is the wrapped one."""
 
     model: Model
 
@@ -279,15 +263,11 @@ class ModelWrapper(_Delegation, Model):
 class RimLimited(ModelWrapper):
     """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
 
-    Parameters
-    ----------
-    model : Model
-        Model without a rim.
-    cup : Cup
-        Cup that is loaded upwards in its frame.
+    `direction` is that of the force on the cup, in the body.
     """
 
     cup: Cup
+    direction: Direction = UP
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -296,7 +276,10 @@ class RimLimited(ModelWrapper):
         The rim must be one liner thickness or more away.
         """
         rim_range = Range(
-            quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
+            quantity=partial(_relative_rim_distance, self.cup, self.direction),
+            symbol="distance to the rim over L",
+            low=1.0,
+            why=_RIM,
         )
         sliding_liner = NeverValid(
             why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
@@ -311,7 +294,7 @@ class RimLimited(ModelWrapper):
 _RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"
 
 
-def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
+def _relative_rim_distance(cup: Cup, direction: Direction, contact: Contact) -> Array:
     """Compute the distance from contact edge to rim, divided by the liner thickness.
 
     R2 replaces a larger thickness.
@@ -321,4 +304,4 @@ def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
     """
     joint = contact.joint
     L, R2 = joint.liner_thickness, joint.socket_radius
-    return cup.edge_distance(R2, contact.half_angle) / where(L < R2, L, R2)
+    return cup.edge_distance(R2, contact.half_angle, direction) / where(L < R2, L, R2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy
 
@@ -26,6 +26,9 @@ class ModelInfo(ABC):
 
     planar: ClassVar[bool] = False
     """True if the contact is a flat circle whose pressure has one direction, False if it acts along the radius."""
+
+    is_closed_sphere: ClassVar[bool] = False
+    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
 
     @property
     @abstractmethod
@@ -56,13 +59,6 @@ class ModelInfo(ABC):
     def remarks(self) -> tuple[Range, ...]:
         """Ranges of contact quantities outside of which a valid result gets a note."""
         return ()
-
-    def numpy_laws(self, joint: Joint, indentation: Array) -> Any:
-        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
-
-        These become infinite or NaN where Python floats raise ArithmeticError.
-        """
-        raise NotImplementedError(f"{self.name} has no laws of a contact")
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -113,7 +109,6 @@ class Outcome(ABC):
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
-        """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property
@@ -159,10 +154,7 @@ class Outcome(ABC):
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     def _match_load(self, value: Array) -> Array:
-        """Convert values to the type and the shape of the load; a load of one number gives a float.
-
-        Arrays are read-only: a contact is a record, and its quantities are stored.
-        """
+        """Convert values to the type and the shape of the load, a float for one number, or a read-only array."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

@@ -11,16 +11,7 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import (
-    Array,
-    all_true,
-    logical_not,
-    namespace,
-    safe_divisor,
-    stop_gradient,
-    where,
-    without_gradients,
-)
+from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where, without_gradients
 
 Increasing = Callable[..., tuple[Array, Array]]
 """Increasing function: x, ... -> (value, slope), both of the shape of x."""
@@ -38,31 +29,13 @@ def increasing_root(
 ) -> Array:
     """Solve law(x) = target for x, element by element, by Newton's method within brackets.
 
-    Each element has its own bracket [low, high].
+    The law is an increasing function x, *arguments -> (value, slope), both of the shape of x. Each element has its own
+    bracket low <= start <= high; the result is the nearest end of the bracket where there is no root.
 
-    Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed_newton_step`. It stops after `steps`
-    evaluations, or once no element moves by more than `tolerance` times its value. The error is then of the order of
-    the squared tolerance. Inside `jax.jit` it is a `lax.while_loop`, or unrolled steps if `steps` is small; inside
-    `torch.compile` and `vmap` of PyTorch it takes all steps. Automatic differentiation gives the derivatives of the
-    root by the implicit function theorem, of all orders in traced JAX, up to the third elsewhere.
-
-    Parameters
-    ----------
-    law : callable
-        Increasing function: x, *arguments -> (value, slope), both of the shape of x.
-    target, low, high, start : array
-        Value, bracket and first x; broadcastable, low <= start <= high.
-    arguments : tuple
-        Further arguments of the law.
-    steps : int
-        Largest number of evaluations.
-    tolerance : float
-        Relative step below which an element has converged.
-
-    Returns
-    -------
-    array
-        The root, or the nearest end of the bracket where there is none.
+    Newton's method with the slope, see `bracketed_newton_step`, stops after `steps` evaluations, or once no element
+    moves by more than `tolerance` times its value. The error is then of the order of the squared tolerance. Inside
+    `jax.jit` it is a `lax.while_loop`, or unrolled steps if `steps` is small; inside `torch.compile` and `vmap` of
+    PyTorch it takes all steps. Automatic differentiation gives the derivatives of the root, see `implicit_root`.
     """
     if type(start) is float:
         return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
@@ -83,19 +56,9 @@ def increasing_root(
 def implicit_root(residual: Increasing, solve: Callable[[Array], Array], start: Array) -> Array:
     """Solve residual(x) = 0 with a solver, and give the root its derivatives by the implicit function theorem.
 
-    Parameters
-    ----------
-    residual : callable
-        Increasing function: x -> (value, slope), both of the shape of x.
-    solve : callable
-        Function that computes the root from a first x; nobody differentiates through it.
-    start : array
-        First x.
-
-    Returns
-    -------
-    array
-        The root. Its derivatives are those of all orders in traced JAX, up to the third elsewhere.
+    The residual is an increasing function x -> (value, slope), both of the shape of x. `solve` computes the root from a
+    first x; nobody differentiates through it. The root has derivatives of all orders in traced JAX, up to the third
+    elsewhere.
     """
     if namespace(start) is numpy:
         return solve(start)
@@ -163,12 +126,8 @@ def bracketed_newton_step(
     """Compute one Newton step of x towards law(x) = target within a bracket, and narrow the bracket.
 
     A step out of the bracket is replaced by the middle of the bracket, or by its upper end while that is `fresh`, that
-    is, not yet evaluated.
-
-    Returns
-    -------
-    array, five times
-        x, low, high, fresh, and the mask of the elements that moved by more than the tolerance.
+    is, not yet evaluated. The result is x, low, high, fresh, and the mask of the elements that moved by more than the
+    tolerance.
     """
     value, slope = law(x, *arguments)
     difference = value - target
@@ -185,10 +144,7 @@ def bracketed_newton_step(
 def _iterate_until_converged(
     iteration_step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], max_steps: int
 ) -> Array:
-    """Repeat an iteration step until all elements have converged; return the first item of the state.
-
-    The last item of the state is the mask of unconverged elements.
-    """
+    """Repeat a step until its last item, the mask of unconverged elements, is false; return the first item."""
     is_traced = all_true(state[-1]) is None
     if is_traced and max_steps > _MAX_UNROLLED_STEPS and array_api_compat.is_jax_array(state[0]):
         return _jax_while_loop(iteration_step, state, max_steps)
@@ -223,31 +179,17 @@ def _jax_while_loop(
 _PROFILE_POSITIONS = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])
 """Polar angles of a profile over the half angle; a peak of less than 1e-6 between the first two counts as the pole."""
 
-_REFINEMENTS = 4
-"""Number of refinements of the interval that holds the largest pressure."""
-
-_INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)
-"""Positions in an interval of a refinement."""
+_REFINEMENTS = 4  # number of refinements of the interval that holds the largest pressure
+_INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)  # positions in an interval of a refinement
 
 
 def find_peak_pressure(
     pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Find the largest pressure in MPa of each contact, and the polar angle of this pressure in rad.
+    """Find the largest pressure in MPa of each contact, and its polar angle in rad: two arrays (contacts,).
 
-    Parameters
-    ----------
-    pressure : function
-        Pressure in MPa at angles in rad (angles, contacts).
-    pole, edge : array (contacts,)
-        Pressure at the pole in MPa, and half angle in rad.
-    noise : float
-        Relative excess over the pressure at the pole that is ignored.
-
-    Returns
-    -------
-    array (contacts,), array (contacts,)
-        Largest pressure in MPa and its angle in rad.
+    The function returns the pressure in MPa at angles in rad (angles, contacts). `pole` is the pressure in MPa at the
+    pole, `edge` the half angle in rad, and `noise` a relative excess over the pressure at the pole that is ignored.
     """
     values = numpy.vstack([pole, pressure(edge * _PROFILE_POSITIONS[1:-1, None]), 0.0 * edge])
     largest_index = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)

@@ -31,8 +31,7 @@ TABLE_ERROR = 0.005
 _RIM_ERRORS, _RIM_REACH = (0.04, 0.35), 0.9
 """Errors below and above at the rim, for ν of 0.5, and the arc over the thickness that leaves 37 % of them."""
 
-_CUT_ERROR = 0.5
-"""Relative error below the axial stress where the contact reaches the rim."""
+_CUT_ERROR = 0.5  # relative error below the axial stress where the contact reaches the rim
 
 _AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15, 0.3
 """Errors beyond the table: over -ν below 0, for ν above 0.4993, R2/L above 20.5, and, not measured, ε above 85°."""
@@ -40,8 +39,7 @@ _AUXETIC_ERROR, _INCOMPRESSIBLE_ERROR, _THIN_ERROR, _WIDE_ERROR = 1.2, 0.2, 0.15
 _BALL_ERRORS = (0.02, 0.05, 0.01)
 """Errors by an elastic ball: over E/E_ball (R2/L)^1.5/sqrt(1 - 2ν), at most over R2/L; over E/E_ball up to 1."""
 
-_BACKING_ERROR = 0.5
-"""Error by an elastic backing over the ratio E/E_backing of a backing that counts as rigid."""
+_BACKING_ERROR = 0.5  # error by an elastic backing over the ratio E/E_backing of a backing that counts as rigid
 
 _SAFE_STRAIN = 5e-4
 """Largest elastic strain of a ball without a yield stress; above it a note appears (annealed aluminium)."""
@@ -95,15 +93,11 @@ def bounded_von_mises(contact: Any, von_mises: Array) -> Bounded:
 def rim_errors(joint: Joint, edge_distance: Array) -> tuple[Array, Array]:
     """Compute the relative errors, below and above, of the stress of the axial contact near the rim of a cup.
 
+    `edge_distance` is the arc in mm from the edge of the contact to the rim.
+
     Finite elements of 235 axial and 332 tilted contacts have 99 % of the stresses within. A contact that reaches the
     rim has up to twice the stress, so no bound above, and down to half of it. A quarter of the thickness around the
     corners of the rim is omitted, where the stress is unbounded.
-
-    Parameters
-    ----------
-    joint : Joint
-    edge_distance : float or array
-        Arc in mm from the edge of the contact to the rim.
     """
     L, R2, (low, high) = joint.liner_thickness, joint.socket_radius, _RIM_ERRORS
     near = exp(-edge_distance / (_RIM_REACH * where(L < R2, L, R2)))
@@ -115,18 +109,8 @@ def rim_errors(joint: Joint, edge_distance: Array) -> tuple[Array, Array]:
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     """Compute the ratio of largest von Mises stress to yield stress, for liner or ball, whichever is larger.
 
-    Parameters
-    ----------
-    joint : Joint
-    von_mises : float or array
-        Largest von Mises stress in the liner in MPa.
-    pressure : float or array
-        Largest pressure in MPa.
-
-    Returns
-    -------
-    float or array
-        NaN if neither material has a yield stress.
+    It takes the largest von Mises stress in the liner and the largest pressure, in MPa. The ratio is NaN if neither
+    material has a yield stress.
     """
     stressed_parts = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, joint_ball_stress_ratio(joint)))
     ratios = [
@@ -144,10 +128,7 @@ def joint_ball_stress_ratio(joint: Joint) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticLimit(Range):
-    """Range of the ratio of von Mises to yield stress in which linear elasticity is valid.
-
-    Contacts without a yield stress count as inside.
-    """
+    """Range of the von Mises stress over the yield stress, if there is one, in which linear elasticity is valid."""
 
     quantity: str | Callable[[Any], Array] = "utilisation"
     high: float = MAX_ELASTIC_UTILISATION
@@ -199,10 +180,7 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
 def _exceeded_strength_remarks(
     body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
-    """Yield a mask of acceptable points and a note for each strength of a material that is exceeded.
-
-    Its von Mises stress is at most `upper_bound`.
-    """
+    """Yield acceptable points and a note for each exceeded strength; von Mises stresses are at most `upper_bound`."""
     for name, strength in material.strengths.items():
         is_pressure_limit = name == "allowable_pressure"
         if all_true(logical_not((pressure if is_pressure_limit else upper_bound) > strength)):

@@ -20,20 +20,15 @@ from ..core.arrays import log as ln
 from ..problem import elementwise_maximum
 from .coordinates import LIMIT, RATIO_SHIFT, angle_root
 
-POISSON = (0.0, 0.4993)
-"""Range of Poisson's ratio in the table."""
-
-MAX_THICKNESS_RATIO = 20.5
-"""Largest R2/L in the table; the smallest is 0, a massive socket."""
+POISSON = (0.0, 0.4993)  # range of Poisson's ratio in the table
+MAX_THICKNESS_RATIO = 20.5  # largest R2/L in the table; the smallest is 0, a massive socket
 
 NODES = (25, 25, 33)
 """Numbers of nodes of ν, R2/L and the half angle ε, equally spaced in their coordinates from 0 to 1."""
 
-MAX_AXIAL_POISSON = 0.44
-"""Largest ν for which the stress on the axis decides at all half angles and R2/L of the table."""
+MAX_AXIAL_POISSON = 0.44  # largest ν for which the stress on the axis decides at all half angles and R2/L of the table
 
-_AROUND = range(4)
-"""Nodes of a cubic polynomial: one before the cell, its two ends, and one behind it."""
+_AROUND = range(4)  # nodes of a cubic polynomial: one before the cell, its two ends, and one behind it
 
 
 def poisson_at(coordinate: Numbers) -> Numbers:
@@ -62,12 +57,8 @@ def _padded_table() -> Numbers:
 def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
     """Interpolate the ratio of largest von Mises stress to largest pressure; cubic between the nodes of the table.
 
-    Beyond the table the nearest ν and ε hold; a thinner liner has the ratio at the same contact radius over thickness.
-
-    Parameters
-    ----------
-    half_angle, poisson, thickness_ratio : float or array
-        ε in rad, Poisson's ratio of the liner, R2/L.
+    It depends on the half angle ε in rad, Poisson's ratio of the liner, and R2/L. Beyond the table the nearest ν and ε
+    hold; a thinner liner has the ratio at the same contact radius over thickness.
     """
     thicker = where(thickness_ratio > MAX_THICKNESS_RATIO, MAX_THICKNESS_RATIO / safe_divisor(thickness_ratio), 1.0)
     ratio = thickness_ratio * thicker

@@ -17,17 +17,11 @@ from typing import Any
 import array_api_compat
 import numpy
 
-Array = Any
-"""A Python number or an array of any library that follows the array API standard."""
+Array = Any  # a Python number or an array of any library that follows the array API standard
+Numbers = numpy.ndarray  # a NumPy array, in code that accepts no other library: solvers, studies and files
 
-Numbers = numpy.ndarray
-"""A NumPy array, in code that accepts no other library: solvers, studies and files."""
-
-_DOUBLE_EPSILON = float(numpy.finfo(float).eps)
-"""Relative rounding error of double precision."""
-
-_NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)
-"""Types whose array library is NumPy."""
+_DOUBLE_EPSILON = float(numpy.finfo(float).eps)  # relative rounding error of double precision
+_NUMPY_TYPES = (float, int, numpy.ndarray, numpy.generic)  # types whose array library is NumPy
 
 
 def is_plain_number(value: Any) -> bool:
@@ -170,14 +164,8 @@ def map_jax_blocks(
 ) -> tuple[Array, ...]:
     """Apply a function to rows inside `jax.jit`, block by block in one loop, so that one block is compiled.
 
-    Parameters
-    ----------
-    function : callable
-        Function of as many rows, arrays (1,) or (n,), that returns arrays (..., n).
-    rows : sequence of array
-        Arrays (1,) or (contacts,); the last one has the shape (contacts,).
-    stored_numbers : int
-        Number of values that the function stores for each contact.
+    The function takes as many rows, arrays (1,) or (n,), and returns arrays (..., n). Of the given rows, (1,) or
+    (contacts,), the last one has the shape (contacts,). The function stores `stored_numbers` values for each contact.
     """
     import jax
 
@@ -205,10 +193,7 @@ _JAX_BLOCK_BYTES = 2**30
 
 
 def safe_divisor(x: Array) -> Array:
-    """Replace zero and negative elements by 1, to avoid a division by zero.
-
-    The numerator must be 0 at these elements.
-    """
+    """Replace zero and negative elements, at which the numerator must be 0, by 1 to avoid a division by zero."""
     return where(x > 0, x, 1.0)
 
 
@@ -353,10 +338,7 @@ def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def integral(integrand: Callable[[float], Array], points: int) -> Array:
-    """Integrate a function over [0, 1] by Gauss-Legendre quadrature.
-
-    The values of the function may be arrays of any library.
-    """
+    """Integrate a function with values of any array library over [0, 1] by Gauss-Legendre quadrature."""
     nodes, weights = gauss_legendre(points)
     return weighted_sum([integrand(node) for node in nodes], weights)
 
@@ -380,10 +362,7 @@ def to_numpy(x: Array) -> numpy.ndarray:
 
 
 def to_list(x: Array) -> Any:
-    """Convert an array to nested lists for JSON.
-
-    None replaces NaN, and the text "inf" replaces infinity.
-    """
+    """Convert an array to nested lists for JSON, with None for NaN and the text "inf" for infinity."""
     values = to_numpy(x)
     if values.dtype == bool:
         return values.tolist()

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 from .arrays import all_true, logical_not
 
-_ESTIMATE_WIDTH = 0.06
-"""Width of an error bar, relative to its value, above which a number is named as an estimate."""
+_ESTIMATE_WIDTH = 0.06  # width of an error bar, relative to its value, above which a number is named as an estimate
 
 
 class Verdict(IntEnum):

@@ -17,35 +17,18 @@ from .display import html_list
 
 Value = TypeVar("Value")
 
-_MAX_TEXT_LENGTH = 1000
-"""Largest number of characters of a text."""
-
-_MAX_LIST_LENGTH = 200
-"""Largest number of characters of a list of names in a message."""
-
-_MAX_SHOWN_LENGTH = 60
-"""Largest number of characters of a value in a message."""
-
-_PREVIEW_LENGTH = 40
-"""Number of characters of a longer value in a message."""
+_MAX_TEXT_LENGTH = 1000  # largest number of characters of a text
+_MAX_LIST_LENGTH = 200  # largest number of characters of a list of names in a message
+_MAX_SHOWN_LENGTH = 60  # largest number of characters of a value in a message
+_PREVIEW_LENGTH = 40  # number of characters of a longer value in a message
 
 
 def require(name: str, value: Array, valid: Array, allowed: str) -> None:
     """Check that all elements of a value are allowed; raise ValueError otherwise.
 
-    The message has the first element for which `valid` is false.
+    The message has the name, the first element for which the mask `valid` is false, and the description `allowed`.
 
     Traced values (inside `jax.jit`) are not checked.
-
-    Parameters
-    ----------
-    name : str
-        Name of the value in the message.
-    value : number or array
-    valid : bool or array of bool
-        Mask of the allowed elements.
-    allowed : str
-        Description of the allowed values.
     """
     if all_true(valid) is not False:
         return
@@ -151,7 +134,6 @@ def _has_real_numbers(value: Any) -> bool:
 
 
 def _format_type_error(name: str, value: Any) -> str:
-    """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
     for kind in type(value).__mro__:
         text = _REJECTED_ARRAYS.get(kind.__name__, text)
@@ -192,30 +174,21 @@ def select_load(**loads: Any) -> tuple[str, Any]:
 
 
 def needs(extra: str, *modules: str) -> None:
-    """Check that the modules of an optional extra are installed; raise ImportError otherwise.
-
-    The message has the command to install them.
-    """
+    """Raise ImportError with the command that installs an optional extra unless its modules are installed."""
     for module in modules:
         if find_spec(module) is None:
             raise ImportError(f'{module} is not installed: pip install "ballsocket[{extra}]"', name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
-    """Check that all names are known; raise ValueError for the first unknown name.
-
-    `where` completes the message.
-    """
+    """Raise ValueError for the first name that is not known; `where` completes the message."""
     for name in names:
         if not isinstance(name, str) or name not in known:
             raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """Format a hint for an unknown name, such as "; did you mean 'exact'?".
-
-    It has the most similar known name, or else all known names.
-    """
+    """Format a hint for an unknown name: the most similar known name, "; did you mean 'exact'?", or all of them."""
     names = list(known)
     close = closest(name, names)
     if close:
@@ -244,14 +217,7 @@ def normalise_name(text: str) -> str:
 def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
     """Return the known name that matches a name, regardless of capitals, spaces, hyphens and underscores.
 
-    Parameters
-    ----------
-    kind : str
-        Kind of the named item, for the message.
-    name : object
-    known : iterable of str
-
-    Raises ValueError: an unknown name; the message suggests the most similar one.
+    Raises ValueError: an unknown name; the message has the `kind` of the named item and suggests the most similar name.
     """
     names = list(known)
     for candidate in (name, normalise_name(name)) if isinstance(name, str) else ():
@@ -261,13 +227,7 @@ def known_name(kind: str, name: Any, known: Iterable[str]) -> str:
 
 
 class NamedItems(dict[str, Value]):
-    """Dictionary of named items whose KeyError suggests the most similar name.
-
-    Parameters
-    ----------
-    kind : str
-        Kind of the items, for the message.
-    items : mapping of str to item
+    """Dictionary of named items whose KeyError has their kind and suggests the most similar name.
 
     Examples
     --------
@@ -316,8 +276,7 @@ def check_filled(name: str, text: str, meaning: str = "") -> str:
     return str(text)
 
 
-_MAX_INTEGER = (1 << 53) - 1
-"""Largest whole number up to which a float represents every whole number exactly."""
+_MAX_INTEGER = (1 << 53) - 1  # largest whole number up to which a float represents every whole number exactly
 
 
 def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INTEGER) -> int:

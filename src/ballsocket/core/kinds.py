@@ -31,50 +31,50 @@ class Unit:
         return f" [{self.text}]" if self.text else ""
 
 
-PLAIN = Unit("")
-"""Unit of a plain number."""
+PLAIN = Unit("")  # unit of a plain number
 
 PERCENT = Unit("%", 100.0)
-MILLIMETRES, NANOMETRES = Unit("mm"), Unit("nm", 1e6)
+MILLIMETRES, MICROMETRES, NANOMETRES = Unit("mm"), Unit("µm", 1e3), Unit("nm", 1e6)
 NEWTONS, MEGAPASCALS, NEWTON_METRES = Unit("N"), Unit("MPa"), Unit("N m", 1e-3)
 CUBIC_MILLIMETRES = Unit("mm³")
 MILLIONS = Unit("million", 1e-6)
 
 
 class Kind(StrEnum):
-    """Physical kind of a number, such as a length or a force, which determines its units."""
+    """Physical kind of a number, such as a length or a force, with its internal unit and an example for messages.
 
-    LENGTH = "length"
-    FORCE = "force"
-    MODULUS = "modulus"
-    ANGLE = "angle"
-    NUMBER = "number"
-    AREA = "area"
-    STIFFNESS = "stiffness"
-    ENERGY = "energy"
-    FOUNDATION = "foundation modulus"
-    COMPLIANCE = "compliance"
-    FREQUENCY = "frequency"
-    MASS = "mass"
-    SURFACE_ENERGY = "surface energy"
-    EDGE_COEFFICIENT = "edge coefficient"
-    VISCOSITY = "viscosity"
-    ROTATION_RATE = "rotation rate"
-    SPEED = "speed"
-    VOLUME = "volume"
-    CYCLES = "number of cycles"
-    TIME = "time"
-    DURATION = "duration"
+    The unit is in the spelling of the CF conventions, such as "mm2" or "1".
+    """
 
-    @property
-    def unit(self) -> str:
-        """Internal unit in the spelling of the CF conventions, such as "mm2" or "1"."""
-        return _KINDS[self][0]
+    unit: str
+    example: str
 
-    @property
-    def example(self) -> str:
-        """Example of an input with a unit, for messages: "a length, such as '16 mm'"."""
-        return _KINDS[self][1]
+    def __new__(cls, name: str, unit: str = "", example: str = "") -> Self:
+        kind = str.__new__(cls, name)
+        kind._value_, kind.unit, kind.example = name, unit, example
+        return kind
+
+    LENGTH = "length", "mm", "a length, such as '16 mm'"
+    FORCE = "force", "N", "a force, such as '3 kN'"
+    MODULUS = "modulus", "MPa", "a pressure, stress or modulus, such as '12 MPa'"
+    ANGLE = "angle", "rad", "an angle, such as '40 deg'"
+    NUMBER = "number", "1", "a number, such as 0.4"
+    AREA = "area", "mm2", "an area, such as '8 cm^2'"
+    STIFFNESS = "stiffness", "N/mm", "a stiffness, such as '60 kN/mm'"
+    ENERGY = "energy", "N mm", "an energy, such as '50 N*mm'"
+    FOUNDATION = "foundation modulus", "MPa/mm", "a foundation modulus, such as '280 MPa/mm'"
+    COMPLIANCE = "compliance", "mm/N", "a compliance, such as '5 um/kN'"
+    FREQUENCY = "frequency", "Hz", "a frequency, such as '120 Hz'"
+    MASS = "mass", "kg", "a mass, such as '2 kg'"
+    SURFACE_ENERGY = "surface energy", "N/mm", "an energy per area, such as '0.05 J/m^2'"
+    EDGE_COEFFICIENT = "edge coefficient", "MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"
+    VISCOSITY = "viscosity", "Pa s", "a viscosity, such as '2.5 mPa s'"
+    ROTATION_RATE = "rotation rate", "rad/s", "a rotation rate, such as '1.5 rad/s'"
+    SPEED = "speed", "mm/s", "a speed, such as '0.1 m/s'"
+    VOLUME = "volume", "mm3", "a volume, such as '80 mm^3'"
+    CYCLES = "number of cycles", "1", "a number of cycles, such as 5e6"
+    TIME = "time", "years", "a time in years, such as 5"
+    DURATION = "duration", "s", "a time, such as '1.1 s'"
 
     @property
     def written(self) -> Unit:
@@ -92,29 +92,6 @@ class Kind(StrEnum):
         return _TYPED.get(self, self.unit)
 
 
-_KINDS = {
-    Kind.LENGTH: ("mm", "a length, such as '16 mm'"),
-    Kind.FORCE: ("N", "a force, such as '3 kN'"),
-    Kind.MODULUS: ("MPa", "a pressure, stress or modulus, such as '12 MPa'"),
-    Kind.ANGLE: ("rad", "an angle, such as '40 deg'"),
-    Kind.NUMBER: ("1", "a number, such as 0.4"),
-    Kind.AREA: ("mm2", "an area, such as '8 cm^2'"),
-    Kind.STIFFNESS: ("N/mm", "a stiffness, such as '60 kN/mm'"),
-    Kind.ENERGY: ("N mm", "an energy, such as '50 N*mm'"),
-    Kind.FOUNDATION: ("MPa/mm", "a foundation modulus, such as '280 MPa/mm'"),
-    Kind.COMPLIANCE: ("mm/N", "a compliance, such as '5 um/kN'"),
-    Kind.FREQUENCY: ("Hz", "a frequency, such as '120 Hz'"),
-    Kind.MASS: ("kg", "a mass, such as '2 kg'"),
-    Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
-    Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
-    Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
-    Kind.SPEED: ("mm/s", "a speed, such as '0.1 m/s'"),
-    Kind.VOLUME: ("mm3", "a volume, such as '80 mm^3'"),
-    Kind.CYCLES: ("1", "a number of cycles, such as 5e6"),
-    Kind.TIME: ("years", "a time in years, such as 5"),
-    Kind.DURATION: ("s", "a time, such as '1.1 s'"),
-    Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
-}
 _WRITTEN = {
     Kind.ANGLE: Unit("°", degrees(1.0)),
     Kind.NUMBER: Unit(""),

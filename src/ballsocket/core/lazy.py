@@ -30,11 +30,7 @@ else:
 def imported_names(package: str, names_by_module: Mapping[str, str]) -> Callable[[str], Any]:
     """Return the function `__getattr__` of a package that imports its names on first use.
 
-    Parameters
-    ----------
-    package : str
-    names_by_module : mapping of str to str
-        Names, separated by spaces, by the module of the package that defines them.
+    The table has names, separated by spaces, by the module of the package that defines them.
     """
     modules = {name: module for module, names in names_by_module.items() for name in names.split()}
 

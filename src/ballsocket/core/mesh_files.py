@@ -14,11 +14,8 @@ from .arrays import Numbers
 from .checks import needs
 from .input_files import open_input, resolve_input
 
-_HEADER_BYTES = 2**16
-"""Number of bytes in which the header of a file ends."""
-
-_MAX_BYTES = 200_000_000
-"""Largest size of a mesh file."""
+_HEADER_BYTES = 2**16  # number of bytes in which the header of a file ends
+_MAX_BYTES = 200_000_000  # largest size of a mesh file
 
 
 def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:

@@ -16,25 +16,24 @@ from .arrays import Array, all_true
 from .checks import check_numeric, degrees_hint, first_invalid, require
 from .kinds import MILLIONS, Kind, Unit
 
+Limits = dict[str, Any]  # arguments `allows` and `allowed` of a `Quantity`
 
+
+# named functions: other processes receive quantities
 def _is_not_nan(x: Array) -> Array:
     return x == x
-
-
-_MIN_THICKNESS = 1e-300
-"""Smallest thickness in mm; ratios to a smaller one overflow."""
 
 
 def _is_positive(x: Array) -> Array:
     return (x > 0) & (x < inf)
 
 
-def _is_positive_or_infinite(x: Array) -> Array:
-    return x > _MIN_THICKNESS
-
-
 def _is_not_negative(x: Array) -> Array:
     return (x >= 0) & (x < inf)
+
+
+def _is_thickness(x: Array) -> Array:
+    return x > 1e-300  # ratios to a smaller one overflow
 
 
 def _is_below_quarter_turn(x: Array) -> Array:
@@ -49,8 +48,17 @@ def _is_poisson_ratio(x: Array) -> Array:
     return (x > -1) & (x <= 0.5)
 
 
-def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
-    """Make the arguments `allows` and `allowed` of a `Quantity` for angles between two limits in degrees."""
+def _positive(subject: str, remark: str = "") -> Limits:
+    """Allow positive finite numbers; `subject` has their unit, such as "a radius (mm)"."""
+    return {"allows": _is_positive, "allowed": f"{subject} is above 0 and finite{remark}"}
+
+
+def _not_negative(subject: str, remark: str = "") -> Limits:
+    return {"allows": _is_not_negative, "allowed": f"{subject} is 0 or more and finite{remark}"}
+
+
+def _angle(subject: str, low: float, high: float) -> Limits:
+    """Allow angles between two limits in degrees."""
     minimum, maximum = radians(low), radians(high)
     allowed = f"{subject} is {low:g} to {high:g} degrees, which are {minimum:.4g} to {maximum:.4g} radians"
     return {"allows": lambda x: (x >= minimum) & (x <= maximum), "allowed": allowed}
@@ -127,10 +135,7 @@ class Quantity:
         return label[:1].upper() + label[1:]
 
     def head(self, unit: Unit | None = None) -> str:
-        """Format a column head of symbol and unit, such as "pmax [MPa]".
-
-        The unit is `shown` by default.
-        """
+        """Format a column head of symbol and unit, by default `shown`, such as "pmax [MPa]"."""
         return f"{self.symbol}{(unit or self.shown).text_in_brackets}".strip()
 
     def label(self, unit: Unit | None = None) -> str:
@@ -169,27 +174,16 @@ def _make_quantity_table(*quantities: Quantity) -> Mapping[str, Quantity]:
     return MappingProxyType({quantity.name: quantity for quantity in quantities})
 
 
-def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
-    """Make the quantities of one body, such as "liner_young": its elastic constants and its yield stress.
-
-    `symbols` are those of E, ν and σy.
-    """
-    return _make_quantity_table(
-        *(
-            replace(quantity, name=f"{body}_{quantity.name}", symbol=symbol, title=f"{quantity.title} of the {body}")
-            for quantity, symbol in zip((*MATERIAL.values(), STRENGTH["yield_stress"]), symbols, strict=True)
-        )
-    )
-
+_PRELOADED = "; a preloaded joint has an interference instead"
 
 # fmt: off
 CONTACT = _make_quantity_table(
-    Quantity("force", "F", "normal force", Kind.FORCE, "Force along the axis of the load.", allows=_is_not_negative,
-             allowed="a force (N) is 0 or more and finite"),
+    Quantity("force", "F", "normal force", Kind.FORCE, "Force along the axis of the load.",
+             **_not_negative("a force (N)")),
     Quantity("indentation", "d", "indentation", Kind.LENGTH,
              "Approach of the centres of ball and socket from first touch; with finite elements the path of the "
              "ball's equator, which contains the ball's own compression. The paper writes δ as well.",
-             Unit("µm", 1e3), allows=_is_not_negative, allowed="an indentation (mm) is 0 or more and finite"),
+             Unit("µm", 1e3), **_not_negative("an indentation (mm)")),
     Quantity("half_angle", "ε", "half angle", Kind.ANGLE,
              "Polar angle from the axis of the load to the edge of the contact, at the centre of the socket.",
              allows=_is_below_quarter_turn, allowed="a half angle (rad) is 0 or more and below pi/2"),
@@ -238,70 +232,67 @@ DERIVED = _make_quantity_table(
 
 JOINT = _make_quantity_table(
     Quantity("ball_radius", "R1", "ball radius", Kind.LENGTH, "Radius of the ball, the femoral head.",
-             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
+             **_positive("a radius (mm)")),
     Quantity("head_diameter", "2 R1", "head diameter", Kind.LENGTH, "Twice the radius of the ball.",
-             allows=_is_positive, allowed="a diameter (mm) is above 0 and finite"),
+             **_positive("a diameter (mm)")),
     Quantity("socket_radius", "R2", "socket radius", Kind.LENGTH, "R1 + c, inner radius of the liner.",
-             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
+             **_positive("a radius (mm)")),
     Quantity("clearance", "c", "radial clearance", Kind.LENGTH,
              "R2 - R1, half of the diametral clearance that implant papers usually quote. The paper writes ΔR.",
-             allows=_is_not_negative,
-             allowed="a radial clearance (mm) is 0 or more and finite; a preloaded joint has an interference instead"),
+             **_not_negative("a radial clearance (mm)", _PRELOADED)),
     Quantity("diametral_clearance", "2 c", "diametral clearance", Kind.LENGTH,
-             "Difference of the diameters, twice the radial clearance.", allows=_is_not_negative,
-             allowed="a diametral clearance (mm) is 0 or more; a preloaded joint has an interference instead"),
+             "Difference of the diameters, twice the radial clearance.",
+             **_not_negative("a diametral clearance (mm)", _PRELOADED)),
     Quantity("liner_thickness", "L", "liner thickness", Kind.LENGTH,
              "Thickness of the elastic layer between the socket's surface and its backing; `inf` is a massive socket.",
-             allows=_is_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive socket"),
+             allows=_is_thickness, allowed="a thickness (mm) is above 0; inf is a massive socket"),
     Quantity("outer_radius", "Ro", "outer radius", Kind.LENGTH,
              "Outer radius of the liner, R2 + L, or of a shell of finite thickness right behind it.",
-             allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
-    Quantity("outer_diameter", "2 Ro", "outer diameter", Kind.LENGTH, "Twice the outer radius.", allows=_is_positive,
-             allowed="a diameter (mm) is above 0 and finite"),
+             **_positive("a radius (mm)")),
+    Quantity("outer_diameter", "2 Ro", "outer diameter", Kind.LENGTH, "Twice the outer radius.",
+             **_positive("a diameter (mm)")),
 )
 """The dimensions of a joint."""
 
 FIT = _make_quantity_table(
     Quantity("interference", "-c", "interference", Kind.LENGTH,
              "Excess R1 - R2 of the ball's radius over the socket's in a preloaded joint, in place of a clearance.",
-             allows=_is_positive,
-             allowed="an interference (mm) is above 0 and finite; a ball of the socket's radius has clearance 0"),
+             **_positive("an interference (mm)", "; a ball of the socket's radius has clearance 0")),
 )
 """Alternative to the clearance for a joint that is preloaded without a load."""
 
 SHELL = _make_quantity_table(
     Quantity("shell_thickness", "Ls", "shell thickness", Kind.LENGTH,
              "Thickness of the layer of finite thickness right behind the liner.",
-             allows=_is_positive, allowed="the thickness of a shell (mm) is above 0 and finite"),
+             **_positive("the thickness of a shell (mm)")),
 )
 """Dimension of a shell behind the liner."""
 
 MATERIAL = _make_quantity_table(
     Quantity("young", "E", "Young's modulus", Kind.MODULUS, "Stress over strain of a bar in tension.",
-             allows=_is_positive, allowed="Young's modulus (MPa) is above 0 and finite"),
+             **_positive("Young's modulus (MPa)")),
     Quantity("poisson", "ν", "Poisson's ratio", Kind.NUMBER,
-             "Lateral contraction over extension of a bar in tension; 0.5 is incompressible.", allows=_is_poisson_ratio,
-             allowed="Poisson's ratio lies above -1, up to 0.5"),
+             "Lateral contraction over extension of a bar in tension; 0.5 is incompressible.",
+             allows=_is_poisson_ratio, allowed="Poisson's ratio lies above -1, up to 0.5"),
 )
 """Elastic constants of a material."""
 
 LINEARITY = _make_quantity_table(
     Quantity("proportional_limit", "σp", "proportional limit", Kind.MODULUS,
              "Stress up to which strain is proportional to stress. Above it the secant modulus is lower than E.",
-             allows=_is_positive, allowed="a proportional limit (MPa) is above 0 and finite"),
+             **_positive("a proportional limit (MPa)")),
 )
 """Optional proportional limit of a material."""
 
 STRENGTH = _make_quantity_table(
     Quantity("yield_stress", "σy", "yield stress", Kind.MODULUS,
              "Von Mises stress at which a material begins to yield. Optional; contacts are compared with it.",
-             allows=_is_positive, allowed="a yield stress (MPa) is above 0 and finite"),
+             **_positive("a yield stress (MPa)")),
     Quantity("fatigue_limit", "σf", "fatigue limit", Kind.MODULUS,
-             "Von Mises stress that a material endures in cyclic loading.", allows=_is_positive,
-             allowed="a fatigue limit (MPa) is above 0 and finite"),
+             "Von Mises stress that a material endures in cyclic loading.", **_positive("a fatigue limit (MPa)")),
     Quantity("allowable_pressure", "pa", "allowable pressure", Kind.MODULUS,
-             "Contact pressure allowed by the manufacturer of a material or by a design rule.", allows=_is_positive,
-             allowed="an allowable pressure (MPa) is above 0 and finite"),
+             "Contact pressure allowed by the manufacturer of a material or by a design rule.",
+             **_positive("an allowable pressure (MPa)")),
 )
 """Strengths of a material; each is optional."""
 
@@ -328,22 +319,22 @@ FIELD = _make_quantity_table(
 LAYER = _make_quantity_table(
     Quantity("thickness", "", "thickness", Kind.LENGTH,
              "Thickness of a layer behind the liner; `inf` is a massive body.",
-             allows=_is_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive body"),
+             allows=_is_thickness, allowed="a thickness (mm) is above 0; inf is a massive body"),
 )
 """Dimension of a layer behind the liner."""
 
 CUP = _make_quantity_table(
     Quantity("arc_of_cover", "", "arc of cover", Kind.ANGLE, "Angle from rim to rim of the cup; 180° is a hemisphere.",
-             **_angle_limits("an arc of cover", 40.0, 340.0)),
+             **_angle("an arc of cover", 40.0, 340.0)),
     Quantity("chamfer", "", "chamfer", Kind.LENGTH,
              "Width of the 45° chamfer of the rim's inner edge, along the bore and in depth.",
-             allows=_is_not_negative, allowed="a chamfer (mm) is 0 or more and finite"),
+             **_not_negative("a chamfer (mm)")),
     Quantity("inclination", "", "inclination", Kind.ANGLE,
              "Radiographic inclination of the cup: angle between the axes of body and cup in the frontal view.",
-             **_angle_limits("an inclination", 0.0, 90.0)),
+             **_angle("an inclination", 0.0, 90.0)),
     Quantity("anteversion", "", "anteversion", Kind.ANGLE,
              "Radiographic anteversion of the cup: angle between the cup's axis and the frontal plane.",
-             **_angle_limits("an anteversion", -90.0, 90.0)),
+             **_angle("an anteversion", -90.0, 90.0)),
 )
 """Rim and orientation of a cup."""
 
@@ -373,16 +364,20 @@ WEAR = _make_quantity_table(
 
 AIM = _make_quantity_table(
     Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Angle between the load and the axis of the cup.",
-             **_angle_limits("a tilt", 0.0, 180.0)),
+             **_angle("a tilt", 0.0, 180.0)),
     Quantity("azimuth", "", "azimuth", Kind.ANGLE,
              "Direction of a tilted load around the axis of the cup, from the direction of its tilt.",
-             **_angle_limits("an azimuth", 0.0, 360.0)),
+             **_angle("an azimuth", 0.0, 360.0)),
 )
 """Direction of a load relative to the axis of the cup."""
 # fmt: on
 
-PARTS = MappingProxyType(
-    {**_make_body_quantities("liner", ("E", "ν", "σy")), **_make_body_quantities("ball", ("E1", "ν1", "σy1"))}
+PARTS = _make_quantity_table(
+    *(
+        replace(quantity, name=f"{body}_{quantity.name}", symbol=symbol, title=f"{quantity.title} of the {body}")
+        for body, symbols in (("liner", ("E", "ν", "σy")), ("ball", ("E1", "ν1", "σy1")))
+        for quantity, symbol in zip((*MATERIAL.values(), STRENGTH["yield_stress"]), symbols, strict=True)
+    )
 )
 """Moduli and yield stresses of liner and ball."""
 
@@ -393,21 +388,7 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """Quantities of a short table of contacts."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {
-        **CONTACT,
-        **BEARING,
-        **JOINT,
-        **FIT,
-        **SHELL,
-        **MATERIAL,
-        **STRESS_LIMITS,
-        **PARTS,
-        **LAYER,
-        **CUP,
-        **AIM,
-        **FIELD,
-        **DERIVED,
-        **WEAR,
-    }
+    {**CONTACT, **BEARING, **JOINT, **FIT, **SHELL, **MATERIAL, **STRESS_LIMITS, **PARTS, **LAYER, **CUP, **AIM}
+    | {**FIELD, **DERIVED, **WEAR}
 )
 """All quantities by name."""

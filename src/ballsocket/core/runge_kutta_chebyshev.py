@@ -16,12 +16,10 @@ import numpy
 
 from .arrays import Numbers
 
-Rate = Callable[[Numbers], Numbers]
-"""Function from values to their rate of change per unit of length."""
+Rate = Callable[[Numbers], Numbers]  # function from values to their rate of change per unit of length
 
 _DAMPING = 2 / 13
-_STABILITY = 1.54
-"""Stability constant β: a step h with s stages is stable up to h ρ = ((s - 1)² - 1)/β."""
+_STABILITY = 1.54  # stability constant β: a step h with s stages is stable up to h ρ = ((s - 1)² - 1)/β
 
 _MAX_STAGES = 60
 
@@ -37,15 +35,7 @@ class ChebyshevStep:
 
 
 def stage_count(length: float, spectral_radius: float) -> int:
-    """Compute the number of stages that makes a step stable, from 2 to 60.
-
-    Parameters
-    ----------
-    length : float
-        Length of the step.
-    spectral_radius : float
-        Largest decay rate of the process.
-    """
+    """Compute the number of stages, 2 to 60, for a stable step; `spectral_radius` is the largest decay rate."""
     return min(max(2, 1 + int(sqrt(1 + _STABILITY * length * spectral_radius)) + 1), _MAX_STAGES)
 
 
@@ -75,16 +65,7 @@ def _stage_coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
 def integrate_step(rate: Rate, values: Numbers, slope: Numbers, length: float, stages: int) -> ChebyshevStep:
     """Integrate a differential equation over one Runge-Kutta-Chebyshev step, with an error estimate.
 
-    Parameters
-    ----------
-    rate : function
-        Function from values to their rate of change.
-    values, slope : array
-        Values and their rate of change at the beginning.
-    length : float
-        Length of the step.
-    stages : int
-        Number of stages; see `stage_count`.
+    `values` and `slope` are the values and their rate of change at the beginning; `stages` as of `stage_count`.
     """
     (_, _, first_mu_tilde, _), *further_stages = _stage_coefficients(stages)
     previous, current = values, values + first_mu_tilde * length * slope

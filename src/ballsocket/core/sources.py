@@ -167,5 +167,4 @@ def _read_field(entry: str, name: str) -> str:
     return text.replace("{", "").replace("}", "")
 
 
-_LETTERS = {r"{\ss}": "ß", r"{\"o}": "ö"}
-"""Letters in LaTeX notation of the bibliography."""
+_LETTERS = {r"{\ss}": "ß", r"{\"o}": "ö"}  # letters in LaTeX notation of the bibliography

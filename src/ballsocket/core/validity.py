@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import partial
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
@@ -15,25 +16,27 @@ from .quantities import QUANTITIES
 
 
 class Status(IntEnum):
-    """Outcome of a press: success, or the reason of its failure.
+    """Outcome of a press: success, or the reason of its failure, with a sentence that describes it.
 
     Arrays of results have the integer codes.
     """
 
-    OK = 0
-    OUTSIDE_DOMAIN = 1
-    NOT_REACHED = 2
-    NOT_CONVERGED = 3
-    BEYOND_EQUATOR = 4
-    AT_RIM = 5
-    NOT_ROUND = 6
-    NO_JOINT = 7
-    DISLOCATED = 8
+    sentence: str
 
-    @property
-    def sentence(self) -> str:
-        """Message that describes this status."""
-        return _SENTENCES[self]
+    def __new__(cls, code: int, sentence: str = "") -> Self:
+        status = int.__new__(cls, code)
+        status._value_, status.sentence = code, sentence
+        return status
+
+    OK = 0, "solved"
+    OUTSIDE_DOMAIN = 1, "the model has no formula for this joint"
+    NOT_REACHED = 2, "the model does not reach this load"
+    NOT_CONVERGED = 3, "the iteration did not converge"
+    BEYOND_EQUATOR = 4, "the contact circle would pass the socket's equator (half angle above 90 degrees)"
+    AT_RIM = 5, "the contact fills the socket and reaches its rim"
+    NOT_ROUND = 6, "the contact is not a single round patch around the pole, as the model assumes"
+    NO_JOINT = 7, "invalid geometry: liner thickness or clearance would be negative"
+    DISLOCATED = 8, "dislocated: the load pushes the ball out of its bore"
 
     @property
     def failed(self) -> bool:
@@ -41,16 +44,7 @@ class Status(IntEnum):
         return self in _FAILED
 
 
-_FAILED = frozenset(
-    (
-        Status.OUTSIDE_DOMAIN,
-        Status.NOT_REACHED,
-        Status.NOT_CONVERGED,
-        Status.NOT_ROUND,
-        Status.NO_JOINT,
-        Status.DISLOCATED,
-    )
-)
+_FAILED = frozenset(Status) - {Status.OK, Status.BEYOND_EQUATOR, Status.AT_RIM}
 
 
 def is_missing(status: Array) -> Array:
@@ -61,33 +55,14 @@ def is_missing(status: Array) -> Array:
     return mask
 
 
-_SENTENCES = {
-    Status.OK: "solved",
-    Status.OUTSIDE_DOMAIN: "the model has no formula for this joint",
-    Status.NOT_REACHED: "the model does not reach this load",
-    Status.NOT_CONVERGED: "the iteration did not converge",
-    Status.BEYOND_EQUATOR: "the contact circle would pass the socket's equator (half angle above 90 degrees)",
-    Status.AT_RIM: "the contact fills the socket and reaches its rim",
-    Status.NOT_ROUND: "the contact is not a single round patch around the pole, as the model assumes",
-    Status.NO_JOINT: "invalid geometry: liner thickness or clearance would be negative",
-    Status.DISLOCATED: "dislocated: the load pushes the ball out of its bore",
-}
-
-
 class OutsideDomainError(ValueError):
     """Error raised if no point of a press lies in the domain of the model."""
 
 
-class _AttributePath:
-    """Function that reads an attribute such as "joint.clearance"; `torch.compile` traces no `attrgetter`."""
-
-    def __init__(self, path: str) -> None:
-        self._names = path.split(".")
-
-    def __call__(self, owner: Any) -> Any:
-        for name in self._names:
-            owner = getattr(owner, name)
-        return owner
+def _read_attributes(names: list[str], owner: Any) -> Any:
+    for name in names:  # `torch.compile` traces no `attrgetter`
+        owner = getattr(owner, name)
+    return owner
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +95,7 @@ class Range:
     @cached_property
     def quantity_of(self) -> Callable[[Any], Array]:
         """Function that reads or computes the quantity from a contact."""
-        return self.quantity if callable(self.quantity) else _AttributePath(self.quantity)
+        return self.quantity if callable(self.quantity) else partial(_read_attributes, self.quantity.split("."))
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
@@ -163,22 +138,13 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
-    """Measured accuracy of a model relative to the elastic solution at equal force.
-
-    It applies inside the validity of the model.
+    """Measured accuracy of a model relative to the elastic solution at equal force, inside its validity.
 
     `ballsocket.evidence.validity` measures it: 99 % of the points lie within it, and all within 1.3 times as much.
-
-    Parameters
-    ----------
-    within : float
-        Largest relative difference.
-    quantities : tuple of str
-        Names of the attributes of a `Contact`.
     """
 
-    within: float
-    quantities: tuple[str, ...] = ("indentation", "max_pressure")
+    within: float  # largest relative difference
+    quantities: tuple[str, ...] = ("indentation", "max_pressure")  # names of the attributes of a `Contact`
 
     def __str__(self) -> str:
         return f"within {100 * self.within:g} % in {' and '.join(QUANTITIES[name].symbol for name in self.quantities)}"
@@ -212,14 +178,7 @@ class _UnloadedContact(NamedTuple):
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Check which joints lie in the domain of a model or modulus: return a mask, true for these joints.
 
-    The mask is true for an empty array of joints.
-
-    Parameters
-    ----------
-    domain : tuple of Range
-    joint : Joint
-    name : str
-        Name of the model or modulus for the message.
+    The mask is true for an empty array of joints. The message has the `name` of the model or modulus.
 
     Raises OutsideDomainError: no point is inside one of the ranges.
     """
@@ -243,11 +202,7 @@ SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )
 RIGID_BALL = Range(quantity="joint.modulus_ratio", high=0.02, why="the model takes the ball as rigid")
-RIGID_BACKING = Range(
-    quantity="joint.backing_ratio",
-    high=0.01,
-    why="the model takes the liner's backing as rigid",
-)
+RIGID_BACKING = Range(quantity="joint.backing_ratio", high=0.01, why="the model takes the liner's backing as rigid")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -296,22 +251,17 @@ def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
     )
 
 
-def _largest_young(contact: Any) -> Array:
-    """Return the largest Young's modulus of liner, ball and backing in MPa."""
-    return _largest(contact.joint, "young")
-
-
-def largest_poisson(contact: Any) -> Array:
-    """Return the largest Poisson's ratio of liner, ball and backing."""
-    return _largest(contact.joint, "poisson")
-
-
-def _largest(joint: Any, name: str) -> Array:
+def _largest(name: str, contact: Any) -> Array:
+    """Return the largest elastic constant of liner, ball and backing: "young" in MPa, or "poisson"."""
+    joint = contact.joint
     largest = getattr(joint.liner, name)
     for part in (joint.ball, *(layer.material for layer in joint.backing)):
         if part is not None:
             largest = where(getattr(part, name) > largest, getattr(part, name), largest)
     return largest
+
+
+largest_poisson = partial(_largest, "poisson")  # of liner, ball and backing of a contact
 
 
 def _largest_strength(contact: Any) -> Array:
@@ -329,7 +279,7 @@ UNIT_REMARKS = (
         why="R1 is below 0.1 mm, as if lengths were in metres: give lengths in mm, moduli in MPa and forces in N",
     ),
     Remark(
-        quantity=_largest_young,
+        quantity=partial(_largest, "young"),
         symbol="E",
         high=2e6,
         why="a Young's modulus is above 2 million MPa, as if it were in pascals (diamond has 1.1 million MPa): give "

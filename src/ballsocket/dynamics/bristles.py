@@ -88,10 +88,9 @@ class Bristles(CoulombCoefficients):
 def bristle_forces(
     centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
 ) -> tuple[Deflections, Deflections, Array]:
-    """Compute friction force, deflection rates and dissipated power of bristles, per unit of normal force.
+    """Compute friction force and dissipated power of bristles per normal force, and the rates of their deflections.
 
-    Friction force and power are divided by the normal force. The friction has three components across the load and
-    one about it, a moment divided by the lever ρ.
+    The friction has three components across the load and one about it, a moment divided by the lever ρ.
     """
     slip_components = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     deflection_x, deflection_y, deflection_z, deflection_arc = deflection
@@ -115,10 +114,15 @@ def bristle_forces(
         bristles.stiffness * bend + damping * change + bristles.viscous * slip_rate
         for bend, change, slip_rate in states
     )
+
+    def dot_product(first: Deflections, second: Deflections) -> Array:
+        x, *others = (a * b for a, b in zip(first, second, strict=True))
+        return sum(others, x)
+
     dissipated = (
-        bristles.stiffness * _dot_product(losses, tangential_deflection)
-        + damping * _dot_product(deflection_rates, slip_components)
-        + bristles.viscous * _dot_product(slip_components, slip_components)
+        bristles.stiffness * dot_product(losses, tangential_deflection)
+        + damping * dot_product(deflection_rates, slip_components)
+        + bristles.viscous * dot_product(slip_components, slip_components)
     )
     touching = slip.normal > 0.0
     released_rate = tuple(
@@ -154,11 +158,4 @@ def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array,
         sqrt(squared_speed),
         (by_slip_and_tilt, by_slip_and_tilt, by_slip_and_tilt, by_spin),
         where(by_slip_and_tilt < by_spin, by_slip_and_tilt, by_spin),
-    )
-
-
-def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
-    return sum(
-        (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
-        first_deflection[0] * second_deflection[0],
     )

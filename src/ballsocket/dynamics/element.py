@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from math import inf
 from typing import Any
 
@@ -47,7 +47,6 @@ _PARTS: dict[str, Any] = {
 }
 """Types of the parts of a force element by their names."""
 
-_CURVE_QUANTITIES = ("half_angle", "max_pressure")
 _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
@@ -120,7 +119,12 @@ class ForceElement(OneLine):
         if is_plain_number(self.joint.clearance) and self.joint.clearance < 0:
             raise ValueError(f"interference = {self.joint.interference:g}: a preloaded joint needs a PreloadedElement")
         smoothing = check_number("smoothing", self.smoothing)
-        potential = self._elastic_energy()
+        if not isinstance(self.model, AdhesiveSocket):
+            potential = potential_of(self.model, self.joint)
+        elif self.friction or self.cup or self.smoothing or self.lubricant:
+            raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
+        else:
+            potential = adhesion_potential(self.model, self.joint)
         clearance = float(self.joint.clearance)
         valid = 0.0 <= smoothing <= clearance
         require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
@@ -132,13 +136,6 @@ class ForceElement(OneLine):
         named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
         smoothing = [f"smoothing {self.smoothing:g} mm"] if self.smoothing else []
         return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named, *smoothing])
-
-    def _elastic_energy(self) -> Potential:
-        if not isinstance(self.model, AdhesiveSocket):
-            return potential_of(self.model, self.joint)
-        if self.friction or self.cup or self.smoothing or self.lubricant:
-            raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
-        return adhesion_potential(self.model, self.joint)
 
     @cached_property
     def stretch(self) -> float:
@@ -267,8 +264,8 @@ class ForceElement(OneLine):
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
         """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
-        half_angle, pressure = (fit_quantity_curve(self.model, self.joint, name) for name in _CURVE_QUANTITIES)
-        return half_angle, pressure
+        model, joint = self.model, self.joint
+        return fit_quantity_curve(model, joint, "half_angle"), fit_quantity_curve(model, joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""
@@ -294,24 +291,16 @@ def components(value: Any, name: str = "a state") -> Vector:
         ) from error
 
 
-def as_array_like(position: Any, value: Any) -> Any:
-    """Convert a tuple or list to an array of the position's library and data type."""
-    if type(value) not in _SEQUENCES:
-        return value
-    like = to_common_arrays(position)[0]
-    return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
-
-
 def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vector, Vector]:
-    """Split states of a ball, arrays (..., 3), into components in arrays of the position's library.
-
-    Raises ValueError: a vector without three components.
-    """
-    names = ("position", "velocity", "spin")
-    axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-    position = check_vectors("position", position, axes[0])
-    states = [as_array_like(position, value) for value in (position, velocity, spin)]
-    r, v, w = (split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+    """Split states of a ball, arrays (..., 3), into components in arrays of the position's library."""
+    position = check_vectors("position", position, "x, y, z (mm)")
+    vectors = [position]
+    for name, axes, value in (("velocity", "x, y, z (mm/s)", velocity), ("spin", "x, y, z (rad/s)", spin)):
+        if type(value) in _SEQUENCES:
+            like = to_common_arrays(position)[0]
+            value = arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
+        vectors.append(check_vectors(name, value, axes))
+    r, v, w = ((vector[..., 0], vector[..., 1], vector[..., 2]) for vector in to_common_arrays(*vectors))
     return r, v, w
 
 
@@ -328,11 +317,6 @@ def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[s
         "stribeck_speed": friction.stribeck_speed,
         "viscous": friction.viscous,
     }
-
-
-def split_components(value: Any) -> Vector:
-    """Split an array (..., 3) into its three components."""
-    return value[..., 0], value[..., 1], value[..., 2]
 
 
 @dataclass
@@ -378,12 +362,10 @@ class ValidityMonitor:
 
     def _exceeds_validity_range(self, contact: Contact) -> bool:
         """Check if a contact is invalid for a reason other than its small size."""
-        return not contact.valid and not all(
-            map(partial(_is_satisfied_by_larger_contact, contact), contact._validity_ranges)
-        )
 
+        def holds_for_larger_contact(limit: Range) -> bool:
+            increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
+            is_below = increases_with_size and bool(limit.quantity_of(contact) < limit.low)
+            return is_below or bool(limit.holds(contact))
 
-def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:
-    """Check if a contact, or a larger contact, lies inside a range."""
-    increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
-    return bool(limit.holds(contact)) or (increases_with_size and bool(limit.quantity_of(contact) < limit.low))
+        return not contact.valid and not all(map(holds_for_larger_contact, contact._validity_ranges))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy
 
 from ..core import arrays
-from ..core.arrays import Array, Numbers, sqrt, to_list, where
+from ..core.arrays import Array, sqrt, to_list, where
 from ..core.checks import shown
 from . import reaction as formulas
 from .ball_centre import BallCentre, Constants, Vector
@@ -52,8 +52,7 @@ _SENTENCES = {
 }
 
 
-OVERFLOW_GUARD = 1e8
-"""Factor whose product with the sum of squares of a state must not overflow."""
+_OVERFLOW_GUARD = 1e8  # factor whose product with the sum of squares of a state must not overflow
 
 
 class LoadedElement(Protocol):
@@ -170,18 +169,12 @@ class Load(NamedTuple):
         return squeeze_pressure(self.centre, self.velocity, self.element.constants)
 
     @property
+    @_without_warnings
     def tangent(self) -> Any:
         """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3)."""
-        if type(self.force) is tuple:
-            return self._tangent_rows
-        with numpy.errstate(all="ignore"):
-            return join_matrix(self._tangent_rows)
-
-    @property
-    def _tangent_rows(self) -> Any:
-        """Rows of the tangent stiffness matrix in N/mm, as tuples of components."""
-        xx, yy, zz, xy, yz, zx = formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
-        return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
+        return tangent_matrix(
+            type(self.force), formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
+        )
 
     @property
     def damping_matrix(self) -> Any:
@@ -200,7 +193,8 @@ class Load(NamedTuple):
     @_without_warnings
     def status(self) -> ContactState | Array:
         """State of the contact (free, contact, at the rim, ...): a `ContactState`, or an array of its codes."""
-        return contact_state_of(self.centre, self.contact, self._is_finite_state, self.element.constants)
+        state = *self.position, *self.velocity, *self.spin, *_vector_components(self.deflection_rate, 4)
+        return contact_state_of(self.centre, self.contact, is_finite_state(state), self.element.constants)
 
     def summary(self) -> dict[str, Any]:
         """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; missing numbers are None."""
@@ -217,17 +211,18 @@ class Load(NamedTuple):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on states with contact at the rim or without a load, with their positions."""
-        return describe_contact_states(self)
-
-    @property
-    def _is_finite_state(self) -> Array:
-        """True if all numbers of the state are finite and small enough to square."""
-        deflection_rates = self.deflection_rate
-        rate_components = (
-            deflection_rates if type(deflection_rates) is tuple else (deflection_rates[..., axis] for axis in range(4))
-        )
-        state = *self.position, *self.velocity, *self.spin, *rate_components
-        return arrays.isfinite(OVERFLOW_GUARD * sum((part * part for part in state), 0.0))
+        codes, notes = numpy.atleast_1d(arrays.to_numpy(self.status)).ravel(), []
+        for state in list(ContactState)[ContactState.AT_RIM :]:
+            indices = numpy.flatnonzero(codes == state)
+            if len(indices):
+                x, y, z, d = (
+                    float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[indices[0]])
+                    for values in (*self.position, self.indentation)
+                )
+                count = "" if codes.size == 1 else f"{len(indices)} of {codes.size}: "
+                values = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
+                notes.append(f"{count}{state.sentence}; {values}, the limit is {self.element.wall:.6g} mm")
+        return tuple(notes)
 
 
 def describe_load(force: Any, moment: Any, energy: Any) -> str:
@@ -247,10 +242,7 @@ def _to_json_value(value: Any) -> Any:
 def contact_state_of(
     centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants
 ) -> ContactState | Array:
-    """Determine the state of the contact (free, contact, at the rim, ...), as `ContactState` or array of codes.
-
-    `is_finite` is False for states that are not finite.
-    """
+    """Determine the state of the contact: a `ContactState`, or an array of codes; `is_finite` masks the states."""
     d, rim_margin = centre.indentation, contact.rim_margin
     none = 0.0 * where(is_finite, d, 0.0)
     touching = d > -constants.smoothing
@@ -263,48 +255,26 @@ def contact_state_of(
     )
     code = where(touching & (rim_margin <= -1.0), none + float(ContactState.OVER_RIM), code)
     code = where(is_finite, code, none + float(ContactState.NO_NUMBER))
-    if type(code) is float:
-        return ContactState(int(code))
-    xp = arrays.namespace(code)
-    return xp.astype(code, xp.int8)
-
-
-def describe_contact_states(load: Load) -> tuple[str, ...]:
-    """Describe contacts at the rim and states without a load in sentences, with their first positions."""
-    codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
-    return tuple(_describe_state(load, codes, state) for state in list(ContactState)[2:] if (codes == state).any())
-
-
-def _describe_state(load: Load, codes: Numbers, state: ContactState) -> str:
-    indices = numpy.flatnonzero(codes == state)
-    x, y, z, d = (
-        float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[indices[0]])
-        for values in (*load.position, load.indentation)
-    )
-    count_text = "" if codes.size == 1 else f"{len(indices)} of {codes.size}: "
-    values = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
-    return f"{count_text}{state.sentence}; {values}, the limit is {load.element.wall:.6g} mm"
+    return to_contact_state(code)
 
 
 def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     """Add friction force, moment and dissipated power of bristles to a load, and return the sum."""
-    centre, constants = load.centre, load.element.constants
+    centre, constants, kind = load.centre, load.element.constants, type(load.force)
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
     slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
     force, rate, dissipated = bristle_forces(centre, slip, _split_deflections(load, deflection), bristles)
-    N, R1, direction = slip.normal, constants.ball_radius, centre[1:4]
-    friction_force = [-N * part for part in force[:3]]
+    N, R1, (nx, ny, nz) = slip.normal, constants.ball_radius, centre[1:4]
+    fx, fy, fz = (-N * part for part in force[:3])
     drilling_moment = -N * sqrt(slip.lever_squared) * force[3]
-    lever_force = _cross_product(direction, friction_force)
-    kind = type(load.force)
+    (gx, gy, gz), (mx, my, mz) = _vector_components(load.force), _vector_components(load.moment)
     return load._replace(
-        force=join_vector(kind, *(a + b for a, b in zip(_vector_components(load.force), friction_force, strict=True))),
+        force=join_vector(kind, gx + fx, gy + fy, gz + fz),
         moment=join_vector(
             kind,
-            *(
-                moment + R1 * a + drilling_moment * component
-                for moment, a, component in zip(_vector_components(load.moment), lever_force, direction, strict=True)
-            ),
+            mx + R1 * (ny * fz - nz * fy) + drilling_moment * nx,
+            my + R1 * (nz * fx - nx * fz) + drilling_moment * ny,
+            mz + R1 * (nx * fy - ny * fx) + drilling_moment * nz,
         ),
         deflection_rate=join_vector(kind, *rate),
         bristle_dissipation=N * dissipated,
@@ -323,9 +293,25 @@ def _split_deflections(load: Load, deflection: Any) -> Deflections:
     return a, b, c, d
 
 
-def _vector_components(packed: Any) -> Any:
-    return packed if type(packed) is tuple else [packed[..., axis] for axis in range(3)]
+def _vector_components(packed: Any, count: int = 3) -> Any:
+    return packed if type(packed) is tuple else [packed[..., axis] for axis in range(count)]
 
 
-def _cross_product(a: Any, b: Any) -> Any:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+def is_finite_state(components: Any) -> Array:
+    """Check if all numbers of a state are finite and small enough to square."""
+    return arrays.isfinite(_OVERFLOW_GUARD * sum((part * part for part in components), 0.0))
+
+
+def to_contact_state(code: Array) -> ContactState | Array:
+    """Convert a floating-point code to a `ContactState`, or an array of codes to integers."""
+    if type(code) is float:
+        return ContactState(int(code))
+    xp = arrays.namespace(code)
+    return xp.astype(code, xp.int8)
+
+
+def tangent_matrix(kind: type, components: tuple[Array, ...]) -> Any:
+    """Join the components xx, yy, zz, xy, yz, zx of a tangent stiffness to rows of tuples, or to arrays (..., 3, 3)."""
+    xx, yy, zz, xy, yz, zx = components
+    rows = (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
+    return rows if kind is tuple else join_matrix(rows)

@@ -19,14 +19,11 @@ from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
-Slopes = tuple[Array, Array, Array]
-"""Energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm."""
+Slopes = tuple[Array, Array, Array]  # energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm
 
 
 class Potential(Protocol):
-    """Elastic energy of a joint and its two derivatives as functions of the indentation in mm, 0 or more.
-
-    The indentation is a number or an array.
+    """Elastic energy of a joint and its two derivatives at an indentation in mm, 0 or more: a number or an array.
 
     `deepest` is the largest indentation in mm with a result.
     """
@@ -83,10 +80,10 @@ class CurvePotential:
 
     def __call__(self, indentation: Array) -> Slopes:
         curve = self.curve
-        ends = curve.shallowest, curve.deepest, curve.first, curve.density
         if type(indentation) is float:
+            ends = curve.shallowest, curve.deepest, curve.first, curve.density
             return energy_derivatives_of_number(indentation, *ends, self._coefficient_rows)
-        return energy_derivatives_of_array(indentation, *ends, curve.pieces)
+        return energy_derivatives_of_array(indentation, curve)
 
 
 def energy_derivatives_of_number(
@@ -117,14 +114,12 @@ def energy_derivatives_of_number(
 _MIN_INDENTATION = 1e-150  # smallest indentation in mm whose energy does not underflow in an intermediate result
 
 
-def energy_derivatives_of_array(
-    indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
-) -> Slopes:
+def energy_derivatives_of_array(indentation: Array, curve: CurveLaw) -> Slopes:
     """Evaluate a fitted energy curve at an array of indentations in mm: energy, force and stiffness."""
-    xp = arrays.namespace(indentation)
-    coefficient_table = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
+    xp, shallowest, deepest, density = arrays.namespace(indentation), curve.shallowest, curve.deepest, curve.density
+    coefficient_table = xp.asarray(curve.pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
-    piece_position = (log(clip(d, shallowest, deepest)) - first) * density
+    piece_position = (log(clip(d, shallowest, deepest)) - curve.first) * density
     piece_index = xp.astype(
         clip(xp.floor(arrays.stop_gradient(piece_position)), 0.0, coefficient_table.shape[0] - 1.0), xp.int64
     )
@@ -147,10 +142,7 @@ def energy_derivatives_of_array(
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law.
-
-    Raises TypeError, ValueError: the errors of `model.law(joint)`.
-    """
+    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law."""
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
         return SpringPotential(springs=law)
@@ -191,10 +183,7 @@ _GAUSS_NODES = 16  # number of Gauss points between two indentations
 
 @dataclass(frozen=True, kw_only=True)
 class AdhesionPotential:
-    """Elastic energy of an adhesive socket as a function of d + u_c, where u_c is the distance at separation.
-
-    The energy is zero at separation, and negative at first touch.
-    """
+    """Elastic energy of an adhesive socket over d + u_c, zero at separation (d = -u_c) and negative at first touch."""
 
     model: AdhesiveSocket
     joint: Joint
@@ -207,7 +196,6 @@ class AdhesionPotential:
 
     @cached_property
     def _separation_energy(self) -> float:
-        """Elastic energy of the adhesive joint in N mm at the separation of the ball."""
         return float(self.model.energy(self.joint, -self.stretch))
 
     def __call__(self, indentation: Array) -> Slopes:
@@ -226,15 +214,11 @@ def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential
     gradually.
     """
     model.law(joint)  # raises for arrays and for joints outside the domain
-    float_joint = joint.with_floats()
-    adhesion_number = float(model.adhesion_number(float_joint))
-    require(
-        "the adhesion number",
-        adhesion_number,
-        adhesion_number < 1.0,
-        "it must be below 1; otherwise the entire hemisphere sticks, and the rim determines the separation",
-    )
-    return AdhesionPotential(model=model, joint=float_joint, deepest=float_joint.socket_radius)
+    joint = joint.with_floats()
+    number, sticks = float(model.adhesion_number(joint)), "otherwise the entire hemisphere sticks"
+    allowed = f"it must be below 1; {sticks}, and the rim determines the separation"
+    require("the adhesion number", number, number < 1.0, allowed)
+    return AdhesionPotential(model=model, joint=joint, deepest=joint.socket_radius)
 
 
 def fit_quantity_curve(model: Model, joint: Joint, quantity: str) -> CurveLaw:
@@ -247,5 +231,4 @@ def evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
     """Evaluate a fitted curve at indentations in mm; 0 without contact, NaN beyond the end of the curve."""
     if type(indentation) is float:
         return curve(indentation)[0]
-    ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return where(indentation > 0.0, energy_derivatives_of_array(indentation, *ends, curve.pieces)[0], 0.0)
+    return where(indentation > 0.0, energy_derivatives_of_array(indentation, curve)[0], 0.0)

@@ -8,7 +8,6 @@ U is a quadratic form in s. The force is the gradient of U, so that no cycle gai
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
@@ -19,7 +18,7 @@ import numpy
 from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, where
+from ..core.arrays import Array, Numbers, clip, is_plain_number, sqrt, where
 from ..core.checks import shown
 from ..core.display import OneLine
 from ..elasticity.off_axis.model import Sphere
@@ -30,12 +29,11 @@ from .bristles import Bristles
 from .damping import Damping
 from .element import components, loss_constants, split_states
 from .friction import Friction, friction_coefficient
-from .load import OVERFLOW_GUARD, ContactState, describe_load
-from .matrices import join_matrix, join_vector
+from .load import ContactState, describe_load, is_finite_state, tangent_matrix, to_contact_state
+from .matrices import join_vector
 from .potential import CurvePotential
 
-NODES = 7
-"""Number of tabulated directions, from the dome to the opening."""
+NODES = 7  # number of tabulated directions, from the dome to the opening
 
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
@@ -104,10 +102,7 @@ class PreloadTable:
 
 
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
-    """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
-
-    Raises ValueError: a joint without an interference; a socket that does not hold its ball.
-    """
+    """Solve the contacts of a preloaded joint in seven directions, fit curves to them, and check the force."""
     equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:
         raise ValueError(f"the preloaded ball has no equilibrium in its socket: {'; '.join(equilibrium.notes)}")
@@ -118,24 +113,22 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     curves: dict[str, list[CurveLaw]] = {name: [] for name in QUANTITIES}
     for cosine in node_cosines():
         contact, direction = _contact_along(model, joint, offset, distances, cosine)
-        force, (levers, _) = contact.force_vector @ direction, _friction_levers(contact)
-        pressure, half_angle = _cell_values(contact)
+        force, (lever, _, half_angle, pressure) = contact.force_vector @ direction, _patch_values(contact)
         solved = numpy.isfinite(force) & (force > 0.0)
         if not solved.all():
             distance, angle = distances[int(numpy.argmin(solved))], numpy.degrees(numpy.arccos(cosine))
             position = f"{distance:.3g} mm from equilibrium, {angle:.0f}° from the dome"
             raise ValueError(f"the preloaded joint has no restoring force {position}")
         curves["energy"].append(_energy_curve(distances, force))
-        curves["friction_lever"].append(_curve(distances, levers))
-        curves["half_angle"].append(_curve(distances, half_angle))
-        curves["max_pressure"].append(_curve(distances, pressure))
-    across, along = (lever[0] for lever in _friction_levers(equilibrium))
+        for name, values in (("friction_lever", lever), ("half_angle", half_angle), ("max_pressure", pressure)):
+            curves[name].append(_curve(distances, values))
+    across, along, *_ = _patch_values(equilibrium)
     table = PreloadTable(
         offset=offset,
         limit=float(distances[-1]),
         stiffness_across=float(stiffness[0, 0] + stiffness[1, 1]) / 2.0,
         stiffness_along=float(stiffness[2, 2]),
-        drill_ratio=float(along / across),
+        drill_ratio=float(along[0] / across[0]),
         curves={name: tuple(rows) for name, rows in curves.items()},
     )
     return replace(table, error=_interpolation_error(model, joint, table, distances))
@@ -164,21 +157,18 @@ def _interpolation_error(model: Sphere, joint: Joint, table: PreloadTable, dista
     return largest
 
 
-def _friction_levers(contact: Any) -> tuple[Numbers, Numbers]:
-    """Compute the torques of friction in N mm for a coefficient of 1, about axes across and along the dome's axis."""
-    ((_, contacts),) = contact.laws.pieces
-    grid = contacts.state.bore.compliance.grid
-    weights = contacts.state.equilibrium.pressure * grid.areas
-    scale = float(contact.joint.ball_radius * contact.joint.socket_radius**2)
-    x, y, z = (scale * (weights * numpy.sqrt(1.0 - part * part)).sum(axis=(1, 2)) for part in grid.centroids)
-    return (x + y) / 2.0, z
+def _patch_values(contact: Any) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Compute the torques of friction in N mm for a coefficient of 1 about axes across and along the dome's axis.
 
-
-def _cell_values(contact: Any) -> tuple[Numbers, Numbers]:
+    Further results are the half angle in rad of a round contact of the same area, and the largest pressure in MPa.
+    """
     ((_, contacts),) = contact.laws.pieces
     grid, pressure = contacts.state.bore.compliance.grid, contacts.state.equilibrium.pressure
+    weights, scale = pressure * grid.areas, float(contact.joint.ball_radius * contact.joint.socket_radius**2)
+    x, y, z = (scale * (weights * numpy.sqrt(1.0 - part * part)).sum(axis=(1, 2)) for part in grid.centroids)
     solid_angle = ((pressure > 0) * grid.areas).sum(axis=(1, 2))
-    return pressure.max(axis=(1, 2)), numpy.arccos(numpy.clip(1.0 - solid_angle / (2 * pi), -1.0, 1.0))
+    half_angle = numpy.arccos(numpy.clip(1.0 - solid_angle / (2 * pi), -1.0, 1.0))
+    return (x + y) / 2.0, z, half_angle, pressure.max(axis=(1, 2))
 
 
 def _curve(distances: Numbers, values: Numbers) -> CurveLaw:
@@ -221,18 +211,16 @@ def _curve_law(distances: Numbers, local: Numbers) -> CurveLaw:
 
 def interpolate(values: Any, cosine: Array, order: int = 0) -> Array:
     """Interpolate values of all directions at a cosine, or differentiate the interpolation `order` times."""
-    coefficients = [_weighted_sum(column, values) for column in _WEIGHTS]
+    coefficients = []
+    for weights in _WEIGHTS:
+        first, *others = (weight * value for weight, value in zip(weights, values, strict=True) if weight != 0.0)
+        coefficients.append(sum(others, first))
     for _ in range(order):
         coefficients = [power * coefficient for power, coefficient in enumerate(coefficients)][1:]
     result = coefficients[-1]
     for coefficient in coefficients[-2::-1]:
         result = result * cosine + coefficient
     return result
-
-
-def _weighted_sum(weights: Sequence[float], values: Any) -> Array:
-    first, *others = (weight * value for weight, value in zip(weights, values, strict=True) if weight != 0.0)
-    return sum(others, first)
 
 
 _WEIGHTS = numpy.round(numpy.linalg.inv(numpy.vander(node_cosines(), increasing=True)), 12).tolist()
@@ -256,25 +244,20 @@ def displacement_from_equilibrium(
 
 def preloaded_force(energies: Any, place: tuple[Array, ...], constants: Constants) -> PreloadedForce:
     """Compute the elastic energy and its derivatives from the energies of all directions at a displacement."""
-    distance, nx, ny, nz, cosine = place
+    distance, nx, ny, nz, t = place
     energy, slope, bend = zip(*energies, strict=True)
     a, b, c = constants.dome_x, constants.dome_y, constants.dome_z
     return PreloadedForce(
-        energy=interpolate(energy, cosine),
-        slope=interpolate(slope, cosine),
-        turn=interpolate(energy, cosine, 1),
-        slope_by_distance=interpolate(bend, cosine),
-        slope_by_turn=interpolate(slope, cosine, 1),
-        turn_by_turn=interpolate(energy, cosine, 2),
-        distance=distance,
-        cosine=cosine,
-        nx=nx,
-        ny=ny,
-        nz=nz,
-        px=a - cosine * nx,
-        py=b - cosine * ny,
-        pz=c - cosine * nz,
-    )
+        energy=interpolate(energy, t),
+        slope=interpolate(slope, t),
+        turn=interpolate(energy, t, 1),
+        slope_by_distance=interpolate(bend, t),
+        slope_by_turn=interpolate(slope, t, 1),
+        turn_by_turn=interpolate(energy, t, 2),
+        distance=distance, cosine=t,
+        nx=nx, ny=ny, nz=nz,
+        px=a - t * nx, py=b - t * ny, pz=c - t * nz,
+    )  # fmt: skip
 
 
 def preloaded_load(
@@ -326,11 +309,7 @@ def preloaded_state(distance: Array, is_finite: Array, limit: float) -> ContactS
     """Determine the state of a preloaded contact: contact, beyond the table, or a state that is not finite."""
     none = 0.0 * where(is_finite, distance, 0.0)
     code = where(distance > limit, none + float(ContactState.THROUGH_WALL), none + float(ContactState.CONTACT))
-    code = where(is_finite, code, none + float(ContactState.NO_NUMBER))
-    if type(code) is float:
-        return ContactState(int(code))
-    xp = arrays.namespace(code)
-    return xp.astype(code, xp.int8)
+    return to_contact_state(where(is_finite, code, none + float(ContactState.NO_NUMBER)))
 
 
 class PreloadedLoad(NamedTuple):
@@ -373,9 +352,7 @@ class PreloadedLoad(NamedTuple):
     def tangent(self) -> Any:
         """Tangent stiffness ∂²U/∂r² in N/mm, a symmetric matrix (3, 3)."""
         with numpy.errstate(all="ignore"):
-            xx, yy, zz, xy, yz, zx = preloaded_tangent(self.elastic)
-        rows = (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
-        return rows if type(self.force) is tuple else join_matrix(rows)
+            return tangent_matrix(type(self.force), preloaded_tangent(self.elastic))
 
     @property
     def status(self) -> ContactState | Array:
@@ -385,13 +362,9 @@ class PreloadedLoad(NamedTuple):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on states without a load."""
-        codes = numpy.atleast_1d(arrays.to_numpy(self.status)).ravel()
-        failures = (ContactState.THROUGH_WALL, ContactState.NO_NUMBER)
-        return tuple(
-            f"{state.sentence}; the limit is {self.element.wall:.4g} mm from equilibrium"
-            for state in failures
-            if (codes == state).any()
-        )
+        codes, limit = numpy.atleast_1d(arrays.to_numpy(self.status)), f"{self.element.wall:.4g} mm from equilibrium"
+        failed = [state for state in ContactState if state.failed and (codes == state).any()]
+        return tuple(f"{state.sentence}; the limit is {limit}" for state in failed)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -493,15 +466,7 @@ class PreloadedElement(OneLine):
     def __call__(self, position: Any, velocity: Any = _ZERO_VECTOR, spin: Any = _ZERO_VECTOR) -> PreloadedLoad:
         """Compute force, moment and energy at a state of the ball, with axes fixed to the socket.
 
-        Parameters
-        ----------
-        position : (3,) or array (..., 3)
-            Position of the ball centre relative to the socket centre in mm. Tuples and lists of numbers return tuples,
-            which is fastest; arrays of any library return arrays for all states at once.
-        velocity : (3,) or array (..., 3)
-            Velocity of the ball centre relative to the socket in mm/s.
-        spin : (3,) or array (..., 3)
-            Angular velocity of the ball relative to the socket in rad/s.
+        Position (mm), velocity (mm/s) and spin (rad/s) are (3,) or arrays (..., 3), as in `ForceElement`.
 
         Raises
         ------
@@ -515,7 +480,7 @@ class PreloadedElement(OneLine):
 
     def _load(self, kind: type, position: Vector, velocity: Vector, spin: Vector) -> PreloadedLoad:
         with numpy.errstate(all="ignore"):
-            is_finite = isfinite(OVERFLOW_GUARD * sum((part * part for part in (*position, *velocity, *spin)), 0.0))
+            is_finite = is_finite_state((*position, *velocity, *spin))
             place = displacement_from_equilibrium(*position, self.constants, self.table.offset)
             elastic = preloaded_force(self.table.evaluate("energy", place[0]), place, self.constants)
             lever = self.interpolate("friction_lever", elastic)

@@ -12,15 +12,7 @@ from typing import NamedTuple
 
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 from . import film, friction
-from .ball_centre import (
-    BallCentre,
-    Constants,
-    Vector,
-    dome_angle,
-    rim_share,
-    smooth_ramp,
-    smooth_ramp_value,
-)
+from .ball_centre import BallCentre, Constants, Vector, dome_angle, rim_share, smooth_ramp, smooth_ramp_value
 
 
 class Elastic(NamedTuple):
@@ -198,10 +190,7 @@ def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vect
 
 
 def versine(centre: BallCentre) -> Array:
-    """Compute the versine d/e = 1 - cos ε of the half angle ε, from indentation d and distance e of the centres.
-
-    e is the distance of the centres.
-    """
+    """Compute the versine d/e = 1 - cos ε of the half angle ε, from indentation d and distance e of the centres."""
     return where(centre.indentation > 0.0, centre.indentation * centre.inverse_distance, 0.0)
 
 

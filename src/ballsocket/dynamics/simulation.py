@@ -74,111 +74,92 @@ def simulate(
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
     step_count = max(int(numpy.ceil(steps - 1e-9)), 1)
     initial = BallState(*components(position), *components(velocity), *components(spin))
-    problem = _InitialValueProblem(
-        element, force_element, checked_mass, checked_inertia, initial, pull, duration / step_count, step_count
+    h, start = duration / step_count, force_element(initial[:3], initial[3:6], initial[6:])
+    ball: dict[str, Any] = {
+        "mass": TONNE * checked_mass,
+        "inertia": TONNE * checked_inertia,
+        "initial": initial,
+        "pull": pull,
+    }
+    if ContactState(int(start.status)).failed:
+        states, none = numpy.array([initial]), numpy.zeros(1)
+        results: dict[str, Any] = {
+            "dissipated_energy": none,
+            "work": none,
+            "end_reason": _failure_note(force_element, states[0]),
+        }
+    elif force_element.internal_state:
+        states, results = _integrate_contact_state(force_element, h, step_count, **ball)
+    else:
+        states, results = _march(element, force_element, h, step_count, **ball)
+    return Motion(
+        element=force_element,
+        mass=checked_mass,
+        inertia=checked_inertia,
+        time=h * numpy.arange(len(states)),
+        position=states[:, :3],
+        velocity=states[:, 3:6],
+        spin=states[:, 6:],
+        energy=force_element(states[:, :3], attached=results.get("attached", False)).energy,
+        **results,
     )
-    if ContactState(int(force_element(initial[:3], initial[3:6], initial[6:]).status)).failed:
-        return problem.motion_without_steps()
-    return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
 
 _MAX_STEPS = 1e8  # largest number of steps of a simulation
 
 
-@dataclass(frozen=True)
-class _InitialValueProblem:
-    """Initial value problem of a ball: initial state, pull, and `count` time steps of `step` seconds."""
-
-    element: Any
-    force_element: ForceElement
-    mass: float
-    inertia: float
-    initial: BallState
-    pull: Any
-    step: float
-    count: int
-
-    def motion_without_steps(self) -> Motion:
-        """Return a motion that ends at the initial state, because this state has no load."""
-        states, none = numpy.array([self.initial]), numpy.zeros(1)
-        return self._build_motion(
-            states,
-            self.force_element(states[:, :3]),
-            dissipated_energy=none,
-            work=none,
-            end_reason=_failure_note(self.force_element, states[0]),
-        )
-
-    def simulate_by_energy_steps(self) -> Motion:
-        """Simulate the motion by energy-momentum steps."""
-        step = self.step
-        step_count = self.count
-        potential_and_constants = (self.element.potential, self.element.constants)
-        states, dissipated = numpy.zeros((step_count + 1, 9)), numpy.zeros(step_count + 1)
-        pulls = _pull_forces_at(self.pull, step * (numpy.arange(step_count) + 0.5))
-        is_uncompiled = isinstance(self.element, ForceElement)
-        march, pull_rows = (stepping.march, pulls.tolist()) if is_uncompiled else (self.element.march, pulls)
-        converged = march(
-            *potential_and_constants,
-            self.initial,
-            TONNE * self.mass,
-            TONNE * self.inertia,
-            pull_rows,
-            step,
-            states,
-            dissipated,
-        )
-        end_reason = (
-            ""
-            if converged == step_count
-            else _failure_note(self.force_element, states[converged + 1], converged * step, step)
-        )
-        states, dissipated, pulls = states[: converged + 1], dissipated[: converged + 1], pulls[:converged]
-        position = states[:, :3]
-        work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
-        moment = numpy.cumsum(step / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
-        sums = {"work": numpy.append(0.0, work), "pull_moment": numpy.vstack([numpy.zeros(3), moment])}
-        return self._build_motion(
-            states, self.force_element(position), dissipated_energy=dissipated, end_reason=end_reason, **sums
-        )
-
-    def simulate_with_contact_state(self) -> Motion:
-        """Simulate the motion with bristles or adhesion by the integrator LSODA."""
-        ball = StatefulIntegrator(
-            element=self.force_element,
-            mass=TONNE * self.mass,
-            inertia=TONNE * self.inertia,
-            pull=pull_function(self.pull),
-        )
-        results = ball.integrate(self.initial, self.step * numpy.arange(self.count + 1), self.step)
-        load = self.force_element(results.states[:, :3], attached=results.attached)
-        end_reason = ""
-        if results.failure is not None:
-            notes = "; ".join(results.failure.notes) or "the integration failed"
-            end_reason = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
-        contact_state = {"deflection": results.deflection, "attached": results.attached, "end_reason": end_reason}
-        return self._build_motion(
-            results.states, load, dissipated_energy=results.dissipated, work=results.work, **contact_state
-        )
-
-    def _build_motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
-        return Motion(
-            element=self.force_element,
-            mass=self.mass,
-            inertia=self.inertia,
-            time=self.step * numpy.arange(len(states)),
-            position=states[:, :3],
-            velocity=states[:, 3:6],
-            spin=states[:, 6:],
-            energy=load.energy,
-            **results,
-        )
-
-
-def _pull_forces_at(pull: Any, time: Numbers) -> Numbers:
+def _march(
+    element: Any,
+    force_element: ForceElement,
+    h: float,
+    count: int,
+    *,
+    mass: float,
+    inertia: float,
+    initial: Any,
+    pull: Any,
+) -> tuple[Numbers, dict[str, Any]]:
+    """Simulate `count` energy-momentum steps of h seconds; return the states and further fields of the motion."""
+    states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
     if callable(pull):
-        return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
-    return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
+        pulls = numpy.array([components(pull(time), "a pull") for time in (h * (numpy.arange(count) + 0.5)).tolist()])
+    else:
+        pulls = numpy.tile(numpy.array(components(pull, "a pull")), (count, 1))
+    is_uncompiled = isinstance(element, ForceElement)
+    march, rows = (stepping.march, pulls.tolist()) if is_uncompiled else (element.march, pulls)
+    n_converged = march(element.potential, element.constants, initial, mass, inertia, rows, h, states, dissipated)
+    end_reason = ""
+    if n_converged < count:
+        end_reason = _failure_note(force_element, states[n_converged + 1], n_converged * h, h)
+    states, dissipated, pulls = states[: n_converged + 1], dissipated[: n_converged + 1], pulls[:n_converged]
+    position = states[:, :3]
+    work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
+    moment = numpy.cumsum(h / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
+    return states, {
+        "dissipated_energy": dissipated,
+        "end_reason": end_reason,
+        "work": numpy.append(0.0, work),
+        "pull_moment": numpy.vstack([numpy.zeros(3), moment]),
+    }
+
+
+def _integrate_contact_state(
+    element: ForceElement, h: float, count: int, *, mass: float, inertia: float, initial: Any, pull: Any
+) -> tuple[Numbers, dict[str, Any]]:
+    """Integrate the motion with bristles or adhesion by LSODA; return the states and further fields of the motion."""
+    integrator = StatefulIntegrator(element=element, mass=mass, inertia=inertia, pull=pull_function(pull))
+    trajectory = integrator.integrate(initial, h * numpy.arange(count + 1), h)
+    end_reason = ""
+    if trajectory.failure is not None:
+        notes = "; ".join(trajectory.failure.notes) or "the integration failed"
+        end_reason = f"after {h * (len(trajectory.states) - 1):g} s: {notes}"
+    return trajectory.states, {
+        "dissipated_energy": trajectory.dissipated,
+        "work": trajectory.work,
+        "deflection": trajectory.deflection,
+        "attached": trajectory.attached,
+        "end_reason": end_reason,
+    }
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
@@ -191,9 +172,7 @@ _MASS_RANGE = (1e-100, 1e100)  # range of masses and moments of inertia whose pr
 
 
 def _check_mass_or_inertia(name: str, value: Any) -> float:
-    """Check that a mass or moment of inertia lies in the allowed range, and return it."""
-    checked = check_number(name, value)
-    low, high = _MASS_RANGE
+    checked, (low, high) = check_number(name, value), _MASS_RANGE
     require(name, checked, low <= checked <= high, f"{name} must be between {low:g} and {high:g}")
     return checked
 
@@ -231,21 +210,15 @@ class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no 
 
 @dataclass(frozen=True, kw_only=True)
 class StatefulIntegrator:
-    """Time integrator for a ball with an internal contact state, under a pull.
-
-    `mass` is in t, `inertia` in t mm², `pull` in N as a function of time in s.
-    """
+    """Time integrator for a ball with an internal contact state; `pull` in N is a function of the time in s."""
 
     element: ForceElement
-    mass: float
-    inertia: float
+    mass: float  # in t
+    inertia: float  # in t mm²
     pull: Callable[[float], Vector]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """Integrate the motion of a ball from an initial state, with steps of at most `step` seconds.
-
-        `times` increase; the initial state is that at the first time.
-        """
+        """Integrate the motion from an initial state at the first time, with steps of at most `step` seconds."""
         state = numpy.zeros(_STATE_SIZE)
         state[:9] = initial
         states, attachments, failure = [state], [self._is_touching(state)], None
@@ -299,15 +272,8 @@ class StatefulIntegrator:
                 raise _NoLoad(load)
             acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             angular_acceleration = [a / self.inertia for a in load.moment]
-            work = _dot_product(pull, load.velocity)
-            return [
-                *load.velocity,
-                *acceleration,
-                *angular_acceleration,
-                *load.deflection_rate,
-                _dissipated_power(load),
-                work,
-            ]
+            powers = _dissipated_power(load), _dot_product(pull, load.velocity)
+            return [*load.velocity, *acceleration, *angular_acceleration, *load.deflection_rate, *powers]
 
         return time_derivatives
 

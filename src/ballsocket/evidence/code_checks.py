@@ -199,8 +199,7 @@ def check_order_of_elements(poisson: float = 0.4) -> CheckResult:
 
 # Known solutions for the finite elements
 
-INNER, OUTER = 1.0, 1.4
-"""Inner and outer radius of the sphere of the element checks."""
+INNER, OUTER = 1.0, 1.4  # inner and outer radius of the sphere of the element checks
 
 
 def shell_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> ElasticBlock:

@@ -21,8 +21,7 @@ from ..studies.parameters import LOADS, press_arguments
 from .matrix import Row
 from .question import ALMOST_ALL, Question
 
-MEASURED = "measured"
-"""Kind of a comparator with measurements."""
+MEASURED = "measured"  # kind of a comparator with measurements
 
 APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY = "applies", "applies in part", "does not apply"
 """Verdicts on the applicability of a comparator."""
@@ -30,8 +29,7 @@ APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY = "applies", "applies in part", "does n
 WITHIN, IN_PART, OUTSIDE = "within", "in part", "outside"
 """Positions of the range of a question in the range of a comparator."""
 
-Ranges = Mapping[str, Sequence[float]]
-"""Smallest and largest value of each similarity number."""
+Ranges = Mapping[str, Sequence[float]]  # smallest and largest value of each similarity number
 
 
 SIMILARITY: Mapping[str, Callable[[Joint, Array], Array]] = MappingProxyType(
@@ -312,12 +310,8 @@ def question_ranges(question: Question, rows: Sequence[Row]) -> Ranges:
 def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted: bool) -> dict[str, Any]:
     """Judge the applicability of a comparator to a question; return one dictionary for JSON.
 
-    Parameters
-    ----------
-    reaches, needed : mapping of str to pair of float
-        Ranges of the comparator and of the question, in the numbers of `SIMILARITY`.
-    tilted : bool
-        True for a question with a tilted load; every comparator has a load along the axis.
+    The ranges of comparator and question are in the numbers of `SIMILARITY`. The load of a question may be tilted;
+    every comparator has a load along the axis.
     """
     positions = {name: _position(needed[name], reaches[name]) for name in reaches}
     gaps = [

@@ -22,16 +22,14 @@ from .folder import QUESTION, RECORD, SIGNATURES, SUMS, digest, names_of
 from .pack import STATED, Listener, gather_evidence
 from .question import read_question
 
-RELATIVE_TOLERANCE = 1e-9
-"""Largest relative difference between the numbers of two machines."""
+RELATIVE_TOLERANCE = 1e-9  # largest relative difference between the numbers of two machines
 
 _OBSERVED_TOLERANCE = 1e-3
 """Largest difference of an observed error, as a share of the allowed error: observed errors depend on rounding."""
 
 _OBSERVED = re.compile(r"code_verification\[(\d+)\]\.observed")
 
-_STATED = ("version", "made_on", "made_with")
-"""Entries that a computation cannot confirm."""
+_STATED = ("version", "made_on", "made_with")  # entries that a computation cannot confirm
 
 _DERIVED = ("credibility", "requirements", "adequacy")
 """Entries that follow from the others. They have rounded numbers, and so they are derived from the pack's own."""

@@ -85,8 +85,7 @@ FACTORS: Sequence[Factor] = tuple(
 )
 """Credibility factors in the order of the standard."""
 
-MET, NOT_MET, UNKNOWN = "met", "not met", "not known"
-"""States of a requirement."""
+MET, NOT_MET, UNKNOWN = "met", "not met", "not known"  # states of a requirement
 
 
 def assess(record: Record) -> dict[str, Any]:

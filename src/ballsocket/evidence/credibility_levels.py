@@ -12,8 +12,7 @@ from .code_checks import ORDER_OF_ELEMENTS, OWN_TOLERANCE
 from .comparators import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, MEASURED, WITHIN
 from .matrix import NAMES, input_title, limit_text
 
-Record = Mapping[str, Any]
-"""Record of a pack, as in its JSON file."""
+Record = Mapping[str, Any]  # record of a pack, as in its JSON file
 
 
 @dataclass(frozen=True)
@@ -211,8 +210,7 @@ def _outputs_level(record: Record) -> ReachedLevel:
     return ReachedLevel("b" if compared else "a", supported, missing)
 
 
-_COMPARED = ("max_pressure", "half_angle", "area", "indentation")
-"""Quantities that comparators publish."""
+_COMPARED = ("max_pressure", "half_angle", "area", "indentation")  # quantities that comparators publish
 
 
 def _quantities_level(record: Record) -> ReachedLevel:

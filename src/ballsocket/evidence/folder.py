@@ -16,13 +16,11 @@ QUESTION, RECORD, PAGE, SUMS = "question.toml", "evidence.json", "evidence.html"
 SIGNATURES = (f"{SUMS}.sig", f"{SUMS}.asc")
 """Signatures of the checksums, as `ssh-keygen -Y sign` and `gpg --detach-sign` write them."""
 
-WORK = "data"
-"""Folder of stored results of a stopped run. It does not belong to the pack."""
+WORK = "data"  # folder of stored results of a stopped run. It does not belong to the pack.
 
 _RESERVED = {name.casefold() for name in (QUESTION, RECORD, PAGE, SUMS, *SIGNATURES, WORK)}
 
-PageMaker = Callable[[Mapping[str, Any], str], str]
-"""Function from a record and the digest of the pack to the page."""
+PageMaker = Callable[[Mapping[str, Any], str], str]  # function from a record and the digest of the pack to the page
 
 
 def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder: Path) -> Path:

@@ -13,7 +13,7 @@ from ..core.arrays import Numbers
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
-from ..hip.rim import MEASURED_SEPARATIONS
+from ..hip.microseparation import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability
@@ -90,8 +90,7 @@ PUBLISHED: Mapping[str, Published] = MappingProxyType(
 CONVENTIONAL, LINKED = 1.066e-6, 2e-7
 """Wear factors k in mm³/(N m); published for cross-linked polyethylene: 1e-7 to 4e-7."""
 
-STEPS, YEAR = 1.5e6, 365.25 * 86400.0
-"""Steps of the mean patient per year, and seconds per year."""
+STEPS, YEAR = 1.5e6, 365.25 * 86400.0  # steps of the mean patient per year, and seconds per year
 
 INPUTS = (
     "E 1 GPa, ν 0.4, clearance 0.1 mm, the paper's springs; liners of 8 mm (28 mm), 10.9 mm (22 mm), 6 mm (36 mm), "

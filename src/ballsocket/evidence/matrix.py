@@ -41,16 +41,14 @@ NAMES: Mapping[str, Quantity] = {
 }
 """Numbers of a case, by name."""
 
-LIMITED: Mapping[str, Quantity] = {**QUANTITIES, **PARAMETERS, **NAMES}
-"""Quantities that can be limited, by name."""
+LIMITED: Mapping[str, Quantity] = {**QUANTITIES, **PARAMETERS, **NAMES}  # quantities that can be limited, by name
 
 KEYS: Mapping[str, Quantity] = {quantity.key: quantity for quantity in LIMITED.values()}
 """Quantities that can be limited, by their key in JSON."""
 
 _WORST = ("max_pressure", "half_angle", "area", "utilisation", "edge_distance", TORQUE.name, WEAR.name)
 
-Case = dict[str, float]
-"""Values of the varied parameters, by name."""
+Case = dict[str, float]  # values of the varied parameters, by name
 
 
 @dataclass(frozen=True)

@@ -40,8 +40,7 @@ from .worst_case import (
 
 _SERIAL = Serial()
 
-Listener = Callable[[str], None]
-"""Function that is called with the name of each completed piece."""
+Listener = Callable[[str], None]  # function that is called with the name of each completed piece
 
 
 def gather_evidence(
@@ -283,8 +282,7 @@ def _tolerance_text(question: Question, name: str) -> str:
 
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib")
-STATED = ("python", "system", *_LIBRARIES)
-"""Names of the entries in `made_with`."""
+STATED = ("python", "system", *_LIBRARIES)  # names of the entries in `made_with`
 
 
 def _made_with() -> dict[str, str]:

@@ -41,8 +41,7 @@ from ..studies.limits import Limit
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, nominal_value, vary_joint
 
 LEVELS = ("low", "medium", "high")
-MOST = 2000
-"""Cases of a matrix."""
+MOST = 2000  # cases of a matrix
 
 
 class MatrixValues(Parsed):
@@ -324,5 +323,4 @@ def _check_visible(path: Path) -> None:
                 raise ValueError(f"{path.name} has the invisible character U+{ord(character):04X} in line {number}")
 
 
-ALMOST_ALL = (0.001, 0.999)
-"""Quantiles that count as the ends of a distribution."""
+ALMOST_ALL = (0.001, 0.999)  # quantiles that count as the ends of a distribution

@@ -23,8 +23,7 @@ from ..problem import Joint, Material
 SHARE, EXCESS = 0.99, 1.3
 """Required share of valid points within the promise, and largest allowed error over the promise."""
 
-TRUTH = Tabulated()
-"""Reference solution, with an error of 2e-4; fast enough for large populations."""
+TRUTH = Tabulated()  # reference solution, with an error of 2e-4; fast enough for large populations
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,19 +86,11 @@ def models_with_promise(models: Iterable[Model] = tuple(catalogue.values())) -> 
 
 
 def measure(model: Model, size: int = 20_000, seed: int = 1) -> MeasuredValidity:
-    """Measure the errors of a model within its range, at the forces of the reference solution.
+    """Measure the errors of a model with a promise within its range, at the forces of the reference solution.
 
-    Parameters
-    ----------
-    model : Model
-        Model with a promise.
-    size, seed : int
-        Size and seed of the population.
+    `size` and `seed` are those of the population.
 
-    Raises
-    ------
-    ValueError
-        A model without a promise, or without a valid contact in the population.
+    Raises ValueError: a model without a promise, or without a valid contact in the population.
     """
     promise = model.promise
     if promise is None:

@@ -35,8 +35,7 @@ from ..studies.variance_shares import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
 
-ALONG = " (along the axis)"
-"""Suffix of the name of a method that aligns the load with the axis."""
+ALONG = " (along the axis)"  # suffix of the name of a method that aligns the load with the axis
 
 _COMPARED = ("max_pressure", "half_angle", "area", "indentation", "force")
 _BANDED = ("max_pressure", "half_angle", "area", "indentation")
@@ -148,10 +147,7 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
 def largest_deviation(methods: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     """Compute the largest relative deviation of the methods from the first, by quantity.
 
-    Parameters
-    ----------
-    methods : sequence of mapping
-        Summaries of `CalculationMethod`. Only valid methods with the load direction of the first are compared.
+    Of the summaries of `CalculationMethod`, only valid ones with the load direction of the first are compared.
     """
     first, *candidates = methods
     compared = [method for method in candidates if method["valid"] and method["aligned"] == first["aligned"]]

@@ -67,10 +67,7 @@ def compiler() -> list[str]:
 
     CC is the path of a program, which may contain blanks, or a program with arguments.
 
-    Raises
-    ------
-    NoCompiler
-        No compiler is installed.
+    Raises NoCompiler: no compiler is installed.
     """
     if (stated_program := shutil.which(os.environ.get("CC", ""))) is not None:
         return [stated_program]
@@ -89,14 +86,9 @@ def compiler() -> list[str]:
 
 
 def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
-    """Compile C sources of a folder into a shared library, and return its platform.
+    """Compile C sources of a folder into a shared library, and return the platform in its header.
 
-    The environment variables CC and CFLAGS apply.
-
-    Returns
-    -------
-    Platform
-        Platform in the header of the library; a cross-compiler builds for another platform than this machine.
+    The environment variables CC and CFLAGS apply; a cross-compiler builds for another platform than this machine.
 
     Raises NoCompiler: a missing compiler, a failed one (with its first error message), or an unknown output format.
     """

@@ -16,8 +16,7 @@ from ..core.arrays import cos, sin, sqrt
 Part = Any
 """A `Recorded`, or a Python number."""
 
-Slope = Part | None
-"""Derivative of a part; None where the part is constant."""
+Slope = Part | None  # derivative of a part; None where the part is constant
 
 BOOLEAN = frozenset(("<", "<=", ">", ">=", "==", "!=", "&", "|", "not", "isfinite"))
 """Steps whose result is true or false."""
@@ -25,8 +24,7 @@ BOOLEAN = frozenset(("<", "<=", ">", ">=", "==", "!=", "&", "|", "not", "isfinit
 _GENERAL_TRUTH = {">": True, ">=": True, "!=": True, "==": False, "<": False, "<=": False}
 """Results of comparisons of a tunable parameter with 0 in the general case."""
 
-CURVE_SLOPES = 4
-"""Number of values that a curve returns: itself and its derivatives."""
+CURVE_SLOPES = 4  # number of values that a curve returns: itself and its derivatives
 
 
 @dataclass(eq=False)

@@ -11,16 +11,12 @@ from typing import Any
 
 from ..core.checks import needs
 
-_MAX_SHEET_BYTES = 200_000_000
-"""Largest size in bytes of the content of an Excel file."""
+_MAX_SHEET_BYTES = 200_000_000  # largest size in bytes of the content of an Excel file
 
-_SEPARATORS = ";\t, "
+_SEPARATORS = ";\t|, "
 _MARKS = (".", ",")
-_BLANKS = " '\u2019\u00a0\u2009\u202f"
-"""Blanks and apostrophes between thousands."""
-
-_WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))
-"""Words of numbers that are not finite, in small letters."""
+_BLANKS = " '\u2019\u00a0\u2009\u202f"  # blanks and apostrophes between thousands
+_WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))  # words of numbers that are not finite, in small letters
 
 _NO_NUMBER = frozenset(("", "-", "--", "---", "[-]", "(-)", "n/a", "na", "#n/a", "null", "none"))
 """Cells for a missing number, in small letters."""
@@ -43,24 +39,17 @@ _DECIMALS = {mark: str.maketrans(mark, ".", _BLANKS + other) for mark, other in 
 
 _BLANKS_AT_BRACKETS = re.compile(r"(?<=[^\s\])])\s++(?=[\[(])|(?<=[\[(])\s++|(?<!\s)\s++(?=[\])])|(?<=%)\s++(?=\w)")
 
-Cell = str | float
-"""Content of a cell: text, or a number of an Excel file."""
-
-NumberedRow = tuple[int, Sequence[Cell]]
-"""Number of a line, and its cells."""
+Cell = str | float  # content of a cell: text, or a number of an Excel file
+NumberedRow = tuple[int, Sequence[Cell]]  # number of a line, and its cells
 
 
-OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"
-"""First bytes of Excel files: .xls, which is not read, and .xlsx."""
+OLD_EXCEL, EXCEL = b"\xd0\xcf\x11\xe0", b"PK"  # first bytes of Excel files: .xls, which is not read, and .xlsx
 
 
 def decode_text(raw: bytes) -> str:
     """Decode text in UTF-8 or UTF-16, with or without a byte order mark, or in cp1252, the code page of Windows.
 
-    Raises
-    ------
-    ValueError
-        Bytes that are no text.
+    Raises ValueError: bytes that are no text.
     """
     wide = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}.get(raw[:2])
     if wide is None and b"\0" in raw[:2]:
@@ -78,14 +67,11 @@ def decode_text(raw: bytes) -> str:
 def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
     """Yield each possible separator of cells and the cells of all lines; comments (#) have none.
 
-    Raises
-    ------
-    ValueError
-        A quote that does not close, with all separators.
+    Raises ValueError: a quote that does not close, with all separators.
     """
     errors, n_tables = [], 0
     for separator in _SEPARATORS:
-        if separator in ";\t" and separator not in text:
+        if separator in ";\t|" and separator not in text:
             continue
         lines = text.split("\n")
         if separator == " ":
@@ -106,12 +92,8 @@ def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
 def read_excel(raw: bytes) -> dict[str, list[NumberedRow]]:
     """Return the rows of each sheet with a number in an Excel file (.xlsx), or of all sheets without any.
 
-    Raises
-    ------
-    ValueError
-        Another content, or one that is too large.
-    ImportError
-        The extra `xlsx` is not installed.
+    Raises ValueError: another content, or one that is too large.
+    Raises ImportError: the extra `xlsx` is not installed.
     """
     from zipfile import BadZipFile, ZipFile
 
@@ -155,10 +137,7 @@ def decimal_mark(cells: Iterable[tuple[int, Cell]], separator: str) -> str:
 
     Numbers between commas have a decimal point unless one of them contains a comma.
 
-    Raises
-    ------
-    ValueError
-        Numbers with both marks, or only such with one mark that may also stand between thousands.
+    Raises ValueError: numbers with both marks, or only such with one mark that may also stand between thousands.
     """
     settled: dict[str, tuple[int, str]] = {}
     ambiguous: tuple[int, str] | None = None

@@ -36,11 +36,8 @@ from .head_names import UNCERTAINTY, count_factor, known_head, plain_name
 from .schema import HeadMap, Table, Texts, meaning
 from .units import Units, parse, parse_units
 
-_MAX_BYTES = 10_000_000
-"""Largest size in bytes of a table that is not Parquet."""
-
-_COPIES = 3
-"""Copies of the numbers that are in memory at once: as read, as converted, as labels of a result."""
+_MAX_BYTES = 10_000_000  # largest size in bytes of a table that is not Parquet
+_COPIES = 3  # copies of the numbers that are in memory at once: as read, as converted, as labels of a result
 
 _MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
 """Largest number of characters of a known column head, and of words in its name."""
@@ -48,8 +45,7 @@ _MAX_HEAD_LENGTH, _MAX_HEAD_WORDS = 200, 8
 _MAX_HEAD_ROWS, _MAX_TABLES = 4, 100
 """Lines above the numbers in which the column heads are searched, and tables of a file whose heads are compared."""
 
-_MAX_NAMES, _MAX_LISTED = 3, 20
-"""Largest numbers of known names and of heads in a message."""
+_MAX_NAMES, _MAX_LISTED = 3, 20  # largest numbers of known names and of heads in a message
 
 _HEADER_END = "endheader"
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
@@ -90,8 +86,7 @@ class HeadChoice:
     skip: Sequence[str] = ()
 
 
-ALL_COLUMNS = HeadChoice()
-"""Choice of all columns of a file, under their names there."""
+ALL_COLUMNS = HeadChoice()  # choice of all columns of a file, under their names there
 
 
 @dataclass(frozen=True)
@@ -111,10 +106,7 @@ class Head:
     def factor(self, kind: Kind) -> float:
         """Return the factor from the unit of the column to mm, N, MPa or rad.
 
-        Raises
-        ------
-        ValueError
-            A missing unit, or the unit of another quantity.
+        Raises ValueError: a missing unit, or the unit of another quantity.
         """
         if kind is Kind.NUMBER:
             return parse(self.text, f"1 {'' if self.unit in ('-', '1') else self.unit}".strip(), kind)
@@ -246,10 +238,7 @@ class CellTable:
     def numbers(self, heads: Sequence[Head]) -> NumberTable:
         """Convert columns to numbers.
 
-        Raises
-        ------
-        ValueError
-            Numbers whose decimal mark is ambiguous, or more than fit into the memory.
+        Raises ValueError: numbers whose decimal mark is ambiguous, or more than fit into the memory.
         """
         check_memory(
             f"{plain_number(len(self.rows), 3)} rows of {self.title}", _COPIES * 8 * len(self.rows) * len(heads)
@@ -271,9 +260,9 @@ class CellTable:
 def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_COLUMNS) -> NumberTable:
     """Read the columns of numbers in a file.
 
-    Text is in UTF-8, UTF-16 or cp1252. Its cells are separated by semicolons, tabs, commas or blanks, and may have
-    quotes. All rows decide between decimal point and decimal comma. Lines above the heads, comments (#), blank lines
-    and lines without a number are left out, and counted. Units stand in the heads, or in the line below them.
+    Text is in UTF-8, UTF-16 or cp1252. Its cells are separated by semicolons, tabs, vertical bars, commas or blanks,
+    and may have quotes. All rows decide between decimal point and decimal comma. Lines above the heads, comments (#),
+    blank lines and lines without a number are left out, and counted. Units stand in the heads, or in the line below.
 
     Parameters
     ----------
@@ -313,14 +302,10 @@ def read_cells(path: Path, names: Collection[str], choice: HeadChoice, texts: Co
 
     The names in `texts` are those of columns of text, whose heads have no unit.
 
-    Raises
-    ------
-    ValueError
-        A file that is too large or no table, a known column that appears twice, or two tables with the same columns.
-    ImportError
-        An optional extra is not installed.
-    OSError
-        The file cannot be read.
+    Raises ValueError: a file that is too large or no table, a known column that appears twice, or two tables with the
+    same columns.
+    Raises ImportError: an optional extra is not installed.
+    Raises OSError: the file cannot be read.
     """
     try:
         return _parse_table(path.name, _read_bytes(path), _HeadReader(names, choice, texts))

@@ -49,8 +49,7 @@ HEAD_NAMES: Mapping[str, str] = MappingProxyType(
 )
 """Names of quantities by other plain names; a displacement is positive into the socket, and 0 at first touch."""
 
-UNCERTAINTY = "_uncertainty"
-"""End of the name of a column with the standard uncertainties of another column."""
+UNCERTAINTY = "_uncertainty"  # end of the name of a column with the standard uncertainties of another column
 
 
 def known_head(plain: str, names: Collection[str]) -> str:

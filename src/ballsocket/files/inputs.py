@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache
+from functools import cache, cached_property
 from math import inf
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ from ..core.quantities import LOADS, QUANTITIES, Quantity
 from ..problem.dimensions import LENGTHS, canonical
 from .joint_file import JointFileTable
 from .refusals import choices_in, customs_in, expected, meaning_of, parts_of, tables_of
-from .schema import QuantityValue, Table
+from .schema import QuantityValue, Table, Value, choices_schema
 
 
 class Typical(NamedTuple):
@@ -39,8 +39,7 @@ class Typical(NamedTuple):
     sizes: tuple[float, ...] = ()  # of manufacturers
 
 
-PARTS = ("joint", "liner", "ball", "shell")
-"""Tables of lengths and materials in a joint file."""
+PARTS = ("joint", "liner", "ball", "shell")  # tables of lengths and materials in a joint file
 
 ORIENTATION = tuple(f"cup.{key}" for key in ("inclination", "anteversion", "side", "orientation", "pelvic_tilt"))
 """Keys of a joint file for the orientation of the cup in the body."""
@@ -104,11 +103,15 @@ _REMARKS = {
 _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 """Inputs whose default is not that of the file, which is read to radiographic angles in the body."""
 
-_PREFIXES = {"ball": "ball_", "shell": "shell_"}
-"""Beginnings of the names of options by table."""
+_PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
 
-_RIVALS = (tuple(LOADS), ("tilt", "direction"))
-"""Keys of which a load has one."""
+_LENGTHS = {name: canonical(name) for name in LENGTHS}
+_RIVALS = (
+    *([name for name in LENGTHS if _LENGTHS[name] == length] for length in dict.fromkeys(_LENGTHS.values())),
+    tuple(LOADS),
+    ("tilt", "direction"),
+)
+"""Keys of which a joint or a load has one."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,7 @@ class Input:
         """Name of the table."""
         return self.table.strip("[]")
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Name of the option: "liner" and "ball" are materials, and keys of the liner have no prefix."""
         return self.part if self.key == "material" else f"{_PREFIXES.get(self.part, '')}{self.key}"
@@ -174,7 +177,7 @@ class Input:
         """Example of a value; empty for a key without one."""
         return self.shown.get("example") or (self.typical.example if self.typical else "")
 
-    @property
+    @cached_property
     def choices(self) -> list[str]:
         """Words that the key allows, or the names that it knows; empty for other keys."""
         return choices_in(self.type)
@@ -194,8 +197,8 @@ class Input:
     @property
     def rivals(self) -> list[str]:
         """Keys of a joint file that exclude this one."""
-        groups = ([name for name in LENGTHS if canonical(name) == canonical(self.key)], *_RIVALS)
-        return [rival for group in groups if self.part and self.key in group for rival in group if rival != self.key]
+        groups = [group for group in _RIVALS if self.part and self.key in group]
+        return [rival for group in groups for rival in group if rival != self.key]
 
     @property
     def values(self) -> str:
@@ -211,7 +214,7 @@ class Input:
         text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
         return text[:1].lower() + text[1:]
 
-    @property
+    @cached_property
     def help(self) -> str:
         """Help of the option: label, symbol, unit, example or choices, definition, remark, rivals and default."""
         kinds = [custom.kind for custom in customs_in(self.type) if issubclass(custom, QuantityValue)]
@@ -263,3 +266,63 @@ def inputs_in(parts: Sequence[str]) -> list[Input]:
     """List the options for some parts of a joint file: tables such as "joint", and keys such as "cup.side"."""
     inputs = [entry for entry in inputs_of(JointFileTable) if not _ONLY_IN_FILES.fullmatch(entry.name)]
     return [entry for entry in inputs if {entry.part, f"{entry.part}.{entry.key}"} & {*parts}]
+
+
+def json_schema(table: type[Table]) -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs."""
+    definitions: dict[str, Any] = {}
+    root = inspect.type_info(table)
+    assert isinstance(root, inspect.StructType)
+    schema = _object_schema(root, definitions)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "$defs": definitions}
+
+
+def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a table; `definitions` gets those of the tables in it."""
+    return {
+        "title": (struct.cls.__doc__ or "").split("\n")[0].rstrip("."),
+        "type": "object",
+        "properties": {field.encode_name: _key_schema(field, definitions) for field in struct.fields},
+        "required": [field.encode_name for field in struct.fields if field.required],
+        "additionalProperties": False,
+    }
+
+
+def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a key, with its meaning and default."""
+    described, default = meaning_of(field.encode_name, field.type), plain_default(field)
+    example, quantity = Input("", field).example, QUANTITIES.get(field.encode_name)
+    if quantity is not None and described == quantity.title:
+        described = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
+    return {
+        **_type_schema(field.type, definitions),
+        **({"description": described} if described else {}),
+        **({} if default is None else {"default": default}),
+        **({"examples": [example]} if example else {}),
+    }
+
+
+def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a type of values; None is left out, because TOML does not have it."""
+    parts = [part for part in parts_of(kind) if not isinstance(part, inspect.NoneType)]
+    schemas = [_part_schema(part, definitions) for part in parts]
+    return schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
+
+
+def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
+    if isinstance(part, inspect.CustomType):
+        value: type[Value] = part.cls
+        definitions[value.__name__] = value.json_schema()
+        return {"$ref": f"#/$defs/{value.__name__}"}
+    if isinstance(part, inspect.EnumType):
+        return choices_schema(choices_in(part))
+    if isinstance(part, inspect.ListType):
+        return {"type": "array", "items": _type_schema(part.item_type, definitions)}
+    if isinstance(part, inspect.DictType):
+        return {"type": "object", "additionalProperties": _type_schema(part.value_type, definitions)}
+    if isinstance(part, inspect.StructType):
+        name = part.cls.__name__
+        if name not in definitions:
+            definitions[name] = _object_schema(part, definitions)
+        return {"$ref": f"#/$defs/{name}"}
+    return {"type": {inspect.BoolType: "boolean", inspect.StrType: "string"}[type(part)]}

@@ -24,11 +24,9 @@ from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
-DEFAULT_CUP = Cup()
-"""Hemisphere that opens downwards."""
+DEFAULT_CUP = Cup()  # hemisphere that opens downwards
 
-_MAX_LAYERS = 20
-"""Largest number of layers behind the liner."""
+_MAX_LAYERS = 20  # largest number of layers behind the liner
 
 
 class LengthsTable(Table, frozen=True, kw_only=True):
@@ -161,8 +159,7 @@ class JointFileTable(JointTables, frozen=True, kw_only=True):
     report: ReportDetails | None = None
 
 
-NO_DETAILS = ReportDetails()
-"""Head of a report without names and logo."""
+NO_DETAILS = ReportDetails()  # head of a report without names and logo
 
 
 @dataclass(frozen=True)
@@ -270,10 +267,8 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     The name of a material replaces all its numbers. A length, a load or a direction replaces the one that excludes it;
     `Joint.replace` holds the other lengths that the file gives, and names those that change.
 
-    Raises
-    ------
-    ValueError
-        As of `read_joint`; keys of the tables that exclude each other; a length that would change another one.
+    Raises ValueError: as of `read_joint`; keys of the tables that exclude each other; a length that would change
+    another one.
     """
     tables, joint = read_table(content, JointFileTable), file.joint
     lengths, load = tables.joint or LengthsTable(), tables.load or LoadTable()
@@ -349,10 +344,7 @@ def _shell(
 
     Without a thickness of the shell, an outer dimension and the thickness of the liner determine it.
 
-    Raises
-    ------
-    ValueError
-        A thickness that is missing, or an outer dimension that leaves no shell.
+    Raises ValueError: a thickness that is missing, or an outer dimension that leaves no shell.
     """
     material = _material("shell", table)
     remaining = dict(numbers)
@@ -393,8 +385,7 @@ def _material(name: str, table: MaterialTable, present: Material | None = None) 
         return replace(preset, **numbers) if preset else Material(**numbers)
 
 
-_PARTS = ("liner", "ball", "shell", "backing", "cup")
-"""Tables that describe a joint together with [joint]."""
+_PARTS = ("liner", "ball", "shell", "backing", "cup")  # tables that describe a joint together with [joint]
 
 
 def joint_in(tables: JointTables, folder: Path) -> JointFile:
@@ -402,12 +393,8 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
 
     `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error, and the nearest allowed name.
-    OSError
-        A joint file cannot be read.
+    Raises ValueError: one sentence: the error, and the nearest allowed name.
+    Raises OSError: a joint file cannot be read.
     """
     if tables.joint is None:
         raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
@@ -423,10 +410,7 @@ def joint_in(tables: JointTables, folder: Path) -> JointFile:
 def named_joint(name: str, folder: Path = Path()) -> JointFile:
     """Return the joint of a file in a folder, or the preset of that name.
 
-    Raises
-    ------
-    ValueError
-        No such file or preset.
+    Raises ValueError: no such file or preset.
     """
     if not name:
         raise ValueError("the joint's name is empty")

@@ -30,10 +30,7 @@ Tables = dict[str, Any]
 def tables_of(file: JointFile) -> Tables:
     """Return the tables of a joint file, with bare numbers in mm, N, MPa, degrees; `joint_of` reads them.
 
-    Raises
-    ------
-    ValueError
-        A joint of arrays.
+    Raises ValueError: a joint of arrays.
     """
     return write_table(_file_table(file))
 
@@ -46,10 +43,7 @@ def written_tables(file: JointFile) -> Tables:
 def toml_of(file: JointFile) -> str:
     """Return the text of a joint file, with units.
 
-    Raises
-    ------
-    ValueError
-        A joint of arrays.
+    Raises ValueError: a joint of arrays.
     """
     return toml_text(written_tables(file))
 

@@ -17,11 +17,8 @@ from .schema import KEY, Table, Text, Value, read_value
 
 _PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
 _STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
-_MAX_HINTS = 3
-"""Largest number of names or tables in a hint."""
-
-_SIMILAR = 0.8
-"""Least similarity of a key to that of another table, for a hint."""
+_MAX_HINTS = 3  # largest number of names or tables in a hint
+_SIMILAR = 0.8  # least similarity of a key to that of another table, for a hint
 
 
 @dataclass(frozen=True)
@@ -186,8 +183,7 @@ def _table_hint(location: _Location, root: _Location) -> str:
     return f"; did you mean {heads[similar[0]]}?" if similar else ""
 
 
-_NAMING_KEYS = ("material", "name", "law", "file")
-"""Keys of tables that a user writes in place of the table."""
+_NAMING_KEYS = ("material", "name", "law", "file")  # keys of tables that a user writes in place of the table
 
 
 def _expected(location: _Location) -> str:

@@ -15,8 +15,7 @@ from ..core.input_files import open_input
 
 Result = TypeVar("Result")
 
-MAX_FILE_SIZE = 100_000
-"""Largest size of a file in bytes."""
+MAX_FILE_SIZE = 100_000  # largest size of a file in bytes
 
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.){0,80}+"|'[^'\n]{0,80}+')[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?<![\w-])(?:{_PART}\.[ \t]*+){{16}}")
@@ -26,12 +25,8 @@ _LONG_KEY = re.compile(rf"(?<![\w-])(?:{_PART}\.[ \t]*+){{16}}")
 def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Result]) -> Result:
     """Read a file and convert its content; see `parse_toml`.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error.
-    OSError
-        The file cannot be read.
+    Raises ValueError: one sentence: the error.
+    Raises OSError: the file cannot be read.
     """
     with open_input(path) as stream:
         raw = stream.read(MAX_FILE_SIZE + 1)
@@ -43,10 +38,7 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
 
     Every message begins with `title`, the name of the file. `kind` is the expected kind in a word: "joint", "study".
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error.
+    Raises ValueError: one sentence: the error.
     """
     content = _content(raw, title, kind)
     try:

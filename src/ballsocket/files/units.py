@@ -16,11 +16,8 @@ from typing import Any
 from ..core.checks import shown
 from ..core.kinds import Kind
 
-LONGEST = 100
-"""Characters of a quantity."""
-
-Units = Mapping[str, float]
-"""Product of units: exponents by the names of pint."""
+LONGEST = 100  # characters of a quantity
+Units = Mapping[str, float]  # product of units: exponents by the names of pint
 
 _LARGEST_EXPONENT = 9
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
@@ -132,10 +129,7 @@ def _number(name: str, value: float | str, kind: str) -> float:
 def split_quantity(text: str) -> tuple[float, str]:
     """Split text into a number or a fraction, and the text of its unit, which may be empty.
 
-    Raises
-    ------
-    ValueError
-        Text of more than `LONGEST` characters, or without a number at its beginning.
+    Raises ValueError: text of more than `LONGEST` characters, or without a number at its beginning.
 
     Examples
     --------
@@ -165,10 +159,7 @@ def parse_units(text: str) -> Units:
 
     Exponents are integers from -9 to 9, or 0.5. A slash divides by the next unit or bracket.
 
-    Raises
-    ------
-    ValueError
-        Text of more than `LONGEST` characters, an unknown unit, or text that is not a product of units.
+    Raises ValueError: text of more than `LONGEST` characters, an unknown unit, or text that is not a product of units.
 
     Examples
     --------

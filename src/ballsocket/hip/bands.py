@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import degrees
@@ -25,8 +25,7 @@ from .variability import (
 )
 from .wear_law import COEFFICIENT, coefficient_field
 
-CONVERTED = ("volume", "depth", "penetration")
-"""Results that are converted to shared coefficients."""
+CONVERTED = ("volume", "depth", "penetration")  # results that are converted to shared coefficients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -176,87 +175,57 @@ class Bands:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on the assumptions and limits of the bands."""
-        assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
-        return (
-            *self._method_notes,
-            assumed,
-            *self._coefficient_note,
-            *self._surface_note,
-            *self._failure_note,
-            *self._wear_through_note,
-            *self._validity_note,
-        )
+        return tuple(self._list_notes())
+
+    def _list_notes(self) -> Iterator[str]:
+        variability, noun, count = self.variability, self.noun, self.n_patients
+        patients = variability.coarse_simulation
+        if self.accuracy is not None:
+            yield from self.accuracy.notes(noun, count)
+        elif self.obstacle:
+            yield f"each of the {noun} was simulated, without a series: {self.obstacle}"
+        yield f"assumed: given and independent distributions of {', '.join(variability.distributions)}"
+        if COEFFICIENT in variability.distributions:
+            low, high = variability.distributions[COEFFICIENT].frozen.ppf(self.ends)
+            coefficient = coefficient_field(variability.use.wear)
+            unit = "" if coefficient is None else coefficient.unit.text
+            band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
+            yield f"the wear coefficient is unknown, but the same for all {noun}: {band}"
+        if not patients.uses_springs:
+            rings = degrees(patients.ring_width)
+            yield f"the bands are for full elasticity ({type(patients.surface).__name__}) on rings of {rings:.2g}°"
+        elif not variability.use.uses_springs:
+            yield "the bands are for radial springs"
+        if self.n_failed:
+            reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
+            failed = f"{self.n_failed} of {count} {noun} have no result, most often: {reasons.most_common(1)[0][0]}"
+            yield f"{failed}; the bands are for the others"
+        depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
+        if n_worn_through := int((depth > variability.use.joint.liner_thickness).sum()):
+            yield f"{n_worn_through} of {count} {noun} wear their liner through"
+        if n_invalid := int((self.cohort.valid[:, -1] == 0).sum()):
+            model = patients.contact_model.name
+            yield f"{n_invalid} of {count} {noun} have contacts outside the validity of the contact model ({model})"
 
     @property
     def nominal_notes(self) -> tuple[str, ...]:
         """Sentences on the simulation of the nominal patient: contact model, cycle, cup and laws."""
-        checks = [
-            (
-                f"nominal {self.noun.removesuffix('s')}, in the first cycle",
-                self.variability.coarse_simulation.unworn_checks,
-            )
-        ]
-        return (*list_check_notes(checks), *self.variability.use.notes)
-
-    @property
-    def _coefficient_note(self) -> tuple[str, ...]:
-        if COEFFICIENT not in self.variability.distributions:
-            return ()
-        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self.ends)
-        coefficient = coefficient_field(self.variability.use.wear)
-        unit = "" if coefficient is None else coefficient.unit.text
-        band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
-        return (f"the wear coefficient is unknown, but the same for all {self.noun}: {band}",)
-
-    @property
-    def _surface_note(self) -> tuple[str, ...]:
-        patients = self.variability.coarse_simulation
-        if not patients.uses_springs:
-            rings = degrees(patients.ring_width)
-            return (f"the bands are for full elasticity ({type(patients.surface).__name__}) on rings of {rings:.2g}°",)
-        return () if self.variability.use.uses_springs else ("the bands are for radial springs",)
-
-    @property
-    def _method_notes(self) -> tuple[str, ...]:
-        """Sentences on the series of a cohort and its error, or on the reason why there is none."""
-        if self.accuracy is not None:
-            return self.accuracy.notes(self.noun, self.n_patients)
-        return (f"each of the {self.noun} was simulated, without a series: {self.obstacle}",) if self.obstacle else ()
-
-    @property
-    def _failure_note(self) -> tuple[str, ...]:
-        if not self.n_failed:
-            return ()
-        reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
-        reason = reasons.most_common(1)[0][0]
-        failed = f"{self.n_failed} of {self.n_patients} {self.noun} have no result, most often: {reason}"
-        return (f"{failed}; the bands are for the others",)
-
-    @property
-    def _wear_through_note(self) -> tuple[str, ...]:
-        depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
-        n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) * bool(n_worn_through)
-
-    @property
-    def _validity_note(self) -> tuple[str, ...]:
-        invalid_count = int((self.cohort.valid[:, -1] == 0).sum())
-        model = self.variability.coarse_simulation.contact_model.name
-        sentence = (
-            f"{invalid_count} of {self.n_patients} {self.noun} have contacts outside the validity of the contact model "
-            f"({model})"
-        )
-        return (sentence,) if invalid_count else ()
+        stage = f"nominal {self.noun.removesuffix('s')}, in the first cycle"
+        checks = self.variability.coarse_simulation.unworn_checks
+        return (*list_check_notes([(stage, checks)]), *self.variability.use.notes)
 
     @cached_property
     def peak_utilisation(self) -> Numbers:
         """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
 
+    def _mean_of_known(self, values: Numbers) -> float:
+        known = values[self.cohort.refused == ""]
+        return float(known.mean()) if len(known) else numpy.nan
+
     def valid_fraction(self, report: int) -> float:
         """Compute the fraction of patients whose contacts are valid from the first cycle to a report."""
-        valid = self.cohort.valid[self.cohort.refused == "", report]
-        return float(valid.mean()) if len(valid) else numpy.nan
+        return self._mean_of_known(self.cohort.valid[:, report])
 
     @property
     def valid(self) -> bool:
@@ -273,37 +242,40 @@ class Bands:
 
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
-        column = list(RESULT_UNITS).index("edge_distance")
-        distance = self.cohort.table[self.cohort.refused == "", report, column]
-        return float((distance <= 0).mean()) if len(distance) else numpy.nan
+        return self._mean_of_known(self.cohort.table[:, report, list(RESULT_UNITS).index("edge_distance")] <= 0)
 
     def edge_loaded_fraction(self, report: int) -> float:
         """Compute the fraction of patients with edge loading at a report; see `RimDistance.edge_loaded`.
 
         A bore that is worn to the rim is not edge loading: `edge_loading` counts it, this method does not.
         """
-        edge_loaded = self.cohort.edge_loaded[self.cohort.refused == "", report]
-        return float(edge_loaded.mean()) if len(edge_loaded) else numpy.nan
+        return self._mean_of_known(self.cohort.edge_loaded[:, report])
 
     def table(self) -> list[dict[str, float]]:
         """Return the bands at each report, as dictionaries of numbers by column name with unit: "volume_low_mm3"."""
-        columns = [
-            {
-                f"{name}_{end_name}_{RESULT_UNITS[name]}": self.quantile(name, fraction)
-                for end_name, fraction in self._probabilities_by_name.items()
-            }
+        columns = {
+            f"{name}_{end_name}_{RESULT_UNITS[name]}": self.quantile(name, fraction)
             for name in CONVERTED
-        ]
-        return [
-            {head: float(values[report]) for column in columns for head, values in column.items()}
-            for report in range(len(self.counts))
-        ]
+            for end_name, fraction in self._probabilities_by_name.items()
+        }
+        return [{head: float(values[report]) for head, values in columns.items()} for report in range(len(self.counts))]
 
     def summary(self) -> dict[str, Any]:
         """Return the bands as a dictionary for JSON."""
+        sobol = (
+            None
+            if self.indices is None
+            else {
+                result: {
+                    name: {order: finite_or_none(values[row, column]) for order, values in self.indices.items()}
+                    for column, name in enumerate(self.variability.distributions)
+                }
+                for row, result in enumerate(INFLUENCED_RESULTS)
+            }
+        )
         return {
             "bands": [self._summarize_report(report) for report in range(len(self.counts))],
-            "sobol": self._summarize_indices(),
+            "sobol": sobol,
             "uncertainty": {
                 "patients": self.n_patients,
                 "without_answer": self.n_failed,
@@ -340,17 +312,6 @@ class Bands:
             "edge_loaded": finite_or_none(self.edge_loaded_fraction(report)),
             "peak_utilisation": values(self.utilisation_quantile),
             "valid": finite_or_none(self.valid_fraction(report)),
-        }
-
-    def _summarize_indices(self) -> dict[str, Any] | None:
-        if self.indices is None:
-            return None
-        return {
-            result: {
-                name: {order: finite_or_none(values[row, column]) for order, values in self.indices.items()}
-                for column, name in enumerate(self.variability.distributions)
-            }
-            for row, result in enumerate(INFLUENCED_RESULTS)
         }
 
 

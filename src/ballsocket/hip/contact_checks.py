@@ -123,13 +123,8 @@ class ContactCheck:
 def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     """Compute the half angles in rad of round contacts with the same areas as contacts on a grid: (contacts,).
 
-    Parameters
-    ----------
-    grid : Grid
-    reach : float
-        End of the bore, in rad from the dome's pole.
-    field : array (contacts, cells)
-        Positive in the contact and linear across its edge. A field that is 0 outside marks the cells alone.
+    `field` (contacts, cells) is positive in the contact and linear across its edge; one that is 0 outside marks the
+    cells alone. `reach` is the end of the bore in rad from the dome's pole.
     """
     level = field.reshape(len(field), grid.rings, grid.meridians)
     inner_level, outer_level = level[:, :-1], level[:, 1:]
@@ -226,12 +221,8 @@ def worst_verdict(checks: Iterable[ContactCheck]) -> Verdict:
 def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
     """Yield the notes of contact checks at several stages of a run, each kind of note only once.
 
-    A missing yield stress holds throughout the run: its note names no instant.
-
-    Parameters
-    ----------
-    stages : sequence of pairs
-        Stage in words ("in the first cycle") and its checks. Notes that differ in numbers alone are of one kind.
+    A stage has a text ("in the first cycle") and its checks. Notes that differ in numbers alone are of one kind. A
+    missing yield stress holds throughout the run: its note names no instant.
     """
     listed_kinds = set()
     for stage, checks in stages:

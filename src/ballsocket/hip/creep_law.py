@@ -61,10 +61,7 @@ class CreepLaw(Law):
     def linear_response(self, strain: Numbers, seconds: float) -> tuple[Numbers, float]:
         """Compute the total creep strain after a time in s as a linear function of the pressure.
 
-        Returns
-        -------
-        tuple
-            Strain without pressure (points,), and the added strain per MPa.
+        These are the strain without pressure (points,), and the added strain per MPa.
         """
         compliance, growth = self._compliance_and_growth(seconds)
         return ((1 - growth)[:, None] * strain).sum(axis=0), float(growth @ compliance)
@@ -100,9 +97,9 @@ def constrained_share(poisson: float) -> float:
     return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson)
 
 
-def creep_notes(creep: CreepLaw | None, poisson: float) -> tuple[str, ...]:
-    """List notes on a creep law and the confinement of the liner; empty without a creep law."""
-    return () if creep is None else (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
+def creep_notes(creep: CreepLaw, poisson: float) -> tuple[str, ...]:
+    """List notes on a creep law and the confinement of the liner."""
+    return (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
 
 
 def confinement_note(creep: CreepLaw, poisson: float) -> str:

@@ -13,8 +13,8 @@ from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
 from .kinematics import sliding_distance
+from .microseparation import Microseparation, SpringLoadedBall
 from .mix import Mix
-from .rim import Microseparation, SpringLoadedBall
 
 ANGLES = ("inclination", "anteversion", "tilt")
 """Names of the angles that orient a cup, in rad; summaries and tables show them in degrees."""
@@ -80,15 +80,12 @@ class CupFrame:
 
     @cached_property
     def _spring_loaded_ball(self) -> SpringLoadedBall | None:
-        spring = self.side_cycle.spring
-        if spring is None:
-            return None
-        return SpringLoadedBall(
-            spring=spring,
-            side=self._spring_axis,
-            reach=self.reach,
-            socket_radius=float(self.joint.socket_radius),
-            ball_radius=float(self.joint.ball_radius),
+        spring, joint = self.side_cycle.spring, self.joint
+        radii = {"socket_radius": float(joint.socket_radius), "ball_radius": float(joint.ball_radius)}
+        return (
+            None
+            if spring is None
+            else SpringLoadedBall(spring=spring, side=self._spring_axis, reach=self.reach, **radii)
         )
 
     @property
@@ -145,15 +142,11 @@ class CupFrame:
     @cached_property
     def activities(self) -> tuple[tuple[str, Numbers], ...]:
         """Name of each activity with contact, and indices of its loads among the loaded instants."""
-        indices = {
-            activity_index: numpy.flatnonzero((self.loaded >= step_range.start) & (self.loaded < step_range.stop))
-            for activity_index, (_, step_range) in enumerate(self.cycle.activity_slices)
-        }
-        return tuple(
-            (self.cycle.activity_slices[activity_index][0], loads)
-            for activity_index, loads in indices.items()
-            if len(loads)
-        )
+        loads = [
+            (name, numpy.flatnonzero((self.loaded >= steps.start) & (self.loaded < steps.stop)))
+            for name, steps in self.cycle.activity_slices
+        ]
+        return tuple((name, indices) for name, indices in loads if len(indices))
 
     @cached_property
     def loads(self) -> Numbers:
@@ -185,23 +178,19 @@ class CupFrame:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on the orientation of the cup, unloaded instants and microseparation."""
-        tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
-        separated = () if self.separation is None else (self.separation.describe(self.cycle),)
-        return (*tilted, *self._unloaded_instants_note, *separated)
-
-    @property
-    def _unloaded_instants_note(self) -> tuple[str, ...]:
-        unloaded = numpy.flatnonzero(~self._load_mask)
-        if len(unloaded) == self.cycle.n_steps:
-            return (_NEVER_LOADED,)
-        if not len(unloaded):
-            return ()
-        return (_LIFTS_OFF.format(self.cycle.describe_step(int(unloaded[0])), len(unloaded), self.cycle.n_steps),)
-
-
-_TILTED = "the cup is tilted by {:g}° from the load, as the cycle's standard requires"
-_NEVER_LOADED = "no wear: the ball is never in contact during this cycle"
-_LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact and no wear"
+        notes = []
+        if self.placed != self.cup:
+            tilt = degrees(self.cycle.cup_tilt or 0.0)
+            notes.append(f"the cup is tilted by {tilt:g}° from the load, as the cycle's standard requires")
+        unloaded, count = numpy.flatnonzero(~self._load_mask), self.cycle.n_steps
+        if len(unloaded) == count:
+            notes.append("no wear: the ball is never in contact during this cycle")
+        elif len(unloaded):
+            first, part = self.cycle.describe_step(int(unloaded[0])), f"{len(unloaded)} of {count} instants"
+            notes.append(f"the ball lifts off, first at {first}: {part} have no contact and no wear")
+        if self.separation is not None:
+            notes.append(self.separation.describe(self.cycle))
+        return tuple(notes)
 
 
 def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:

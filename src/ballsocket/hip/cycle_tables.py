@@ -42,12 +42,7 @@ _HEADS = (*_UNITS, *_ORTHOLOAD, *_IGNORED_ORTHOLOAD)
 def read_table(path: Path, choice: HeadChoice) -> NumberTable:
     """Read the table of a cycle: an OpenSim file (.mot, .sto), or columns with any separator.
 
-    Raises
-    ------
-    ValueError
-        The file is not a table, has too few or too many rows, or fewer rows than its header states.
-    OSError
-        The file cannot be read.
+    Raises ValueError: no table, or too few or too many rows.
     """
     table = read_columns(path, _HEADS, choice)
     if not _MIN_ROWS <= len(table) < _ROW_LIMIT:
@@ -73,11 +68,7 @@ class HipColumns:
 
 
 def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
-    """Extract the columns of the hip on one side from a table.
-
-    Raises ValueError: a column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of
-    angles.
-    """
+    """Extract the columns of the hip on one side from a table."""
     return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
 
 
@@ -124,24 +115,15 @@ def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     reactions: set[tuple[str, str]] = set()
     for head in names:
         if (angle := _OPENSIM_ANGLE.fullmatch(head)) and angle[2] == letter:
-            columns[angle[1]] = _angle_factor(table) * table.numbers(head)
+            if table.in_degrees is None:
+                raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")
+            columns[angle[1]] = (pi / 180 if table.in_degrees else 1.0) * table.numbers(head)
         elif (force := _OPENSIM_REACTION.fullmatch(head)) and force[1] == letter:
             reactions.add((force[2], force[3]))
             columns[_OPENSIM_AXES[force[4]]] = table.numbers(head)
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
-    return _with_reaction_frame(columns, reactions)
-
-
-def _angle_factor(table: NumberTable) -> float:
-    """Return the factor that converts the angles of an OpenSim table to rad."""
-    if table.in_degrees is None:
-        raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")
-    return pi / 180 if table.in_degrees else 1.0
-
-
-def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
     if not reactions:
         return HipColumns(columns=columns)
     if len(reactions) > 1:
@@ -154,10 +136,7 @@ def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, 
 
 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
-    """Combine the columns of several tables of one cycle, interpolated at the times of the first table.
-
-    Raises ValueError: two tables have the same column, or their times do not match.
-    """
+    """Combine the columns of several tables of one cycle, interpolated at the times of the first table."""
     if len(tables) == 1:
         return tables[0]
     columns = dict(tables[0].columns)
@@ -170,8 +149,7 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
     return replace(reaction, columns=columns)
 
 
-DEFAULT_CLOSURE = 0.01
-"""Largest difference between the ends of a column, as a share of its range."""
+DEFAULT_CLOSURE = 0.01  # largest difference between the ends of a column, as a share of its range
 
 _MAX_STEP_RATIO = 3.0  # longest time step as a multiple of the median step; a longer one is a gap
 _TIME_TOLERANCE = 1e-6  # difference by which two tables may end apart, as a share of the duration
@@ -195,20 +173,14 @@ def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
 
 
 def time_column(columns: dict[str, Numbers]) -> str:
-    """Find the name of the column with times or phases: "time" or "phase".
-
-    Raises ValueError: neither or both columns exist.
-    """
+    """Find the name of the column with times or phases: "time" or "phase"."""
     if ("time" in columns) == ("phase" in columns):
         raise ValueError("a column time [s] or phase [%] is needed, and not both")
     return "time" if "time" in columns else "phase"
 
 
 def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict[str, Numbers]:
-    """Interpolate the columns of a table at the times of a reference table.
-
-    Raises ValueError: one table has times and the other has phases, or this one does not cover the other.
-    """
+    """Interpolate the columns of a table at the times of a reference table."""
     name = time_column(columns)
     if name != time_column(reference):
         raise ValueError("one file has a column time and another one phase: they cannot be combined")
@@ -222,10 +194,7 @@ def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict
 
 
 def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
-    """Select the rows of a table between two times, and interpolate rows at both times.
-
-    Raises ValueError: the times are outside the table, or fewer than five rows lie between them.
-    """
+    """Select the rows of a table between two times, and interpolate rows at both times."""
     if begin is None and end is None:
         return columns
     name = time_column(columns)
@@ -240,10 +209,7 @@ def select_time_range(columns: dict[str, Numbers], begin: float | None, end: flo
 
 
 def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
-    """Convert the time column of a table to phases from 0 to 1, and return also the duration in s.
-
-    Raises ValueError: times do not increase, or have a gap.
-    """
+    """Convert the time column of a table to phases from 0 to 1, and return also the duration in s."""
     name = time_column(columns)
     time = columns[name]
     _check_increasing_times(name, time)
@@ -268,8 +234,7 @@ def _check_increasing_times(name: str, time: Numbers) -> None:
 def check_closed(name: str, values: Numbers, closure: float, unit: str, factor: float) -> None:
     """Check that a column ends with its first value, as a closed cycle does; ValueError otherwise.
 
-    `closure` is the allowed difference as a share of the column's range; `factor` converts values to `unit` for the
-    message.
+    The difference may be a share (`closure`) of the column's range; `factor` converts values to `unit` for the message.
     """
     difference, span = abs(values[-1] - values[0]), float(numpy.ptp(values))
     if difference > closure * span:

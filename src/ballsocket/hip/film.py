@@ -18,9 +18,9 @@ from ..core.display import finite_or_none, load_plot
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
+from ..problem import Joint
 from .cup_frame import CupFrame
 from .film_limit import CYCLES
-from .hamrock_dowson import CONFORMITY_NOTE, film_thickness
 from .kinematics import SurfaceSliding
 from .socket_foundation import CycleEquilibrium, SocketFoundation
 
@@ -30,8 +30,12 @@ if TYPE_CHECKING:
 WAVE_NOTE = "Film carried over the dry contacts from instant to instant, from a flooded bore"
 """Note on the film thickness by the kinematic wave."""
 
-METHODS = ("wave", "hamrock-dowson")
-"""Names of the methods; the first is the default."""
+CONFORMITY_NOTE = (
+    "Hamrock and Dowson's formulas hold for bodies of low conformity: here they give a regime, not a thickness"
+)
+"""Note on the film thickness of a conforming joint."""
+
+METHODS = ("wave", "hamrock-dowson")  # names of the methods; the first is the default
 
 _SMALL_SHARE = 0.01  # share of a contact without fresh lubricant up to which it is not noted
 _MAX_ERROR = 0.1  # largest estimated error of a valid film
@@ -193,7 +197,8 @@ class Film(Record):
             "heat_J_per_cycle": self.heat,
         }
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
-        return {
+        carried = self.carried
+        summary: dict[str, Any] = {
             **{name: finite_or_none(value) for name, value in values.items()},
             "moment_on_cup_Nmm": largest_moment,
             "central_nm": _mean_nm(self.central),
@@ -202,32 +207,23 @@ class Film(Record):
             "method": self.method,
             "valid": self.valid,
             "error": None if self.error is None else float(self.error.max(initial=0.0)),
-            **self._regions_summary(),
         }
-
-    def _regions_summary(self) -> dict[str, Any]:
-        """Return the refreshed part and the core of the contact for JSON; empty without the wave."""
-        if self.carried is None:
-            return {}
-        return {
-            "refreshed_share_least": 1 - self.unreached,
-            "refreshed_mean_nm": _mean_nm(self.carried.joined("refreshed_mean")),
-            "core_mean_nm": _mean_nm(self.carried.joined("core_mean")),
-            "drift_deg_per_cycle": max(degrees(film.drift) for film in self.carried.films),
-            "cycles": self.carried.films[0].cycles,
-            "change_per_cycle": max(film.change for film in self.carried.films),
-            "settled": self.settled,
-            "smallest_settled": self.smallest_settled,
-            "refreshed_mean_error": self.refreshed_mean_error,
-        }
+        if carried is not None:
+            summary |= {
+                "refreshed_share_least": 1 - self.unreached,
+                "refreshed_mean_nm": _mean_nm(carried.joined("refreshed_mean")),
+                "core_mean_nm": _mean_nm(carried.joined("core_mean")),
+                "drift_deg_per_cycle": max(degrees(film.drift) for film in carried.films),
+                "cycles": carried.films[0].cycles,
+                "change_per_cycle": max(film.change for film in carried.films),
+                "settled": self.settled,
+                "smallest_settled": self.smallest_settled,
+                "refreshed_mean_error": self.refreshed_mean_error,
+            }
+        return summary
 
     def plot(self) -> Any:
-        """Plot the film over the cycle, and maps of it over the bore.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Plot the film over the cycle, and maps of it over the bore; return the matplotlib figure."""
         return load_plot("cycle_film")(self)
 
 
@@ -300,10 +296,40 @@ def _moment(foundation: SocketFoundation, sliding: SurfaceSliding, shear: Number
     """
     directions, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
     weight = numpy.divide(
-        shear * foundation.areas * sliding.radius**2,
-        distances,
-        out=numpy.zeros_like(distances),
-        where=distances > 0,
+        shear * foundation.areas * sliding.radius**2, distances, out=numpy.zeros_like(distances), where=distances > 0
     )
     normal_part = weight * (rotations @ directions)
     return rotations * weight.sum(axis=1)[:, None] - normal_part @ directions.T
+
+
+def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float) -> tuple[Numbers, Numbers]:
+    """Compute the minimum and central film thickness in mm by the formulas of Hamrock and Dowson.
+
+    Parameters
+    ----------
+    joint : Joint
+    force : array
+        Load in N.
+    spin : array
+        Rotation rate of the ball perpendicular to the load, in rad/s.
+    viscosity : float
+        Viscosity in Pa s.
+
+    Returns
+    -------
+    pair of arrays
+        Thicknesses; NaN without clearance, where no equivalent sphere exists.
+    """
+    if float(joint.clearance) == 0:
+        return numpy.full_like(force, numpy.nan), numpy.full_like(force, numpy.nan)
+    # h_min = 2.80 R* U^.65 W^-.21, h_cen = 3.34 R* U^.64 W^-.22, U = ηu/(E'R*), W = F/(E'R*²), u = ωR1/2
+    effective_radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
+    ball_compliance = 0.0 if joint.ball is None else float((1 - joint.ball.poisson**2) / joint.ball.young)
+    liner_compliance = float((1 - joint.liner.poisson**2) / joint.liner.young)
+    modulus = 2 / (liner_compliance + ball_compliance)
+    speed_parameter = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * effective_radius)
+    load_parameter = force / (modulus * effective_radius**2)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        minimum = 2.80 * effective_radius * speed_parameter**0.65 * load_parameter**-0.21
+        central = 3.34 * effective_radius * speed_parameter**0.64 * load_parameter**-0.22
+    return minimum, central

@@ -38,8 +38,7 @@ from .rim import RimDistance, rim_distance
 from .socket_foundation import CycleEquilibrium, SocketFoundation, spring_foundation
 from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 
-MIN_RING_WIDTH = radians(0.5)
-"""Smallest ring width in rad."""
+MIN_RING_WIDTH = radians(0.5)  # smallest ring width in rad
 
 _MAX_RING_WIDTH = radians(10.0)  # largest ring width in rad
 _DIAMETERS = 1.0, 1000.0  # allowed diameters of head and bore in mm
@@ -130,7 +129,7 @@ class HipSetup(OneLine):
             *self.frame.notes,
             *law_notes,
             *([self.film_limit.note(self.excluded_work_share)] if self.film_limit else ()),
-            *creep_notes(self.creep, float(self.joint.liner.poisson)),
+            *(() if self.creep is None else creep_notes(self.creep, float(self.joint.liner.poisson))),
         )
 
     @cached_property
@@ -154,10 +153,7 @@ class HipSetup(OneLine):
 
     @cached_property
     def ball_grid(self) -> Grid:
-        """Grid of cells on the ball, with rings about the axis to the front.
-
-        The cells in contact then have similar widths.
-        """
+        """Grid of cells on the ball, with rings about the axis to the front: cells in contact have similar widths."""
         return even_grid(pi, self.ring_width)
 
     @cached_property
@@ -267,14 +263,7 @@ class HipSetup(OneLine):
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
     def wearing_exposure(self, exposure: CycleExposure, cells: Numbers | None = None) -> CycleExposure:
-        """Restrict an exposure to the instants and cells that wear, by the limit of the film ratio.
-
-        Parameters
-        ----------
-        exposure : CycleExposure
-        cells : array (points,), optional
-            Numbers of the cells of the exposure; all by default.
-        """
+        """Restrict the exposure of some cells (all by default) to instants and cells that wear, by the film ratio."""
         if self.film_limit is None:
             return exposure
         return exposure.select_contact(self._wearing_cells if cells is None else self._wearing_cells[:, cells])
@@ -325,18 +314,15 @@ class HipSetup(OneLine):
         ValueError
             An unknown method; a number of cycles below 1.
         """
-        if isinstance(depth, float) and depth == 0.0:
-            key = lubricant, method, cycles
-            if key not in self._unworn_films:
-                self._unworn_films[key] = self._film(self.unworn, depth, lubricant, method, cycles)
+        is_unworn, key = isinstance(depth, float) and depth == 0.0, (lubricant, method, cycles)
+        if is_unworn and key in self._unworn_films:
             return self._unworn_films[key]
-        return self._film(self.solve_equilibrium(depth), depth, lubricant, method, cycles)
-
-    def _film(
-        self, equilibrium: CycleEquilibrium, depth: Numbers | float, lubricant: Lubricant, method: str, cycles: int
-    ) -> Film:
         frame, foundation, worn = self.frame, self.foundation, self._depth_field(depth)
-        return film(frame, foundation, self.sliding, equilibrium, worn, lubricant, self.grid, method, cycles)
+        equilibrium = self.unworn if is_unworn else self.solve_equilibrium(depth)
+        result = film(frame, foundation, self.sliding, equilibrium, worn, lubricant, self.grid, method, cycles)
+        if is_unworn:
+            self._unworn_films[key] = result
+        return result
 
     @cached_property
     def _unworn_films(self) -> dict[tuple[Lubricant, str, int], Film]:

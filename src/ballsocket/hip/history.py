@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
@@ -196,13 +196,7 @@ class History(OneLine):
         return Table("history", "Numbers", columns, rows)
 
     def to_frame(self) -> Any:
-        """Return the reports as a pandas DataFrame, one row for each; heads have units: "volume_mm3".
-
-        Raises
-        ------
-        ImportError
-            Pandas is not installed; the message has the command.
-        """
+        """Return the reports as a pandas DataFrame, one row for each; heads have units: "volume_mm3"."""
         return answers.to_frame(self.table())
 
     def plot(self) -> Any:
@@ -242,51 +236,37 @@ class History(OneLine):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on cycle, cup, laws, contact model and rim, for reports."""
-        unbalanced = () if self.converged else (_NOT_CONVERGED,)
-        return (*self._contact_notes, *self.use.notes, *self._thin_liner_notes, *self._rim_notes, *unbalanced)
+        return tuple(self._list_notes())
 
-    @property
-    def _contact_notes(self) -> tuple[str, ...]:
-        later = (_AFTER_CYCLES.format(plain_number(report.cycles)) for report in self.reports)
-        return tuple(
-            list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
-        )
-
-    @property
-    def _thin_liner_notes(self) -> tuple[str, ...]:
-        """Sentence on a liner that is worn through, or whose stiffness has changed by wear."""
-        liner = float(self.use.joint.liner_thickness)
+    def _list_notes(self) -> Iterator[str]:
+        use = self.use
+        later = [f"after {plain_number(report.cycles)} cycles" for report in self.reports]
+        yield from list_check_notes([(_FIRST_CYCLE, use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
+        yield from use.notes
+        liner = float(use.joint.liner_thickness)
         for limit, sentence in ((1.0, _WORN_THROUGH), (_THIN_LINER, _WORN_THIN)):
             first = next((report for report in self.reports if report.depth > limit * liner), None)
             if first is not None:
-                return (sentence.format(plain_number(first.cycles), first.depth, liner),)
-        return ()
+                yield sentence.format(plain_number(first.cycles), first.depth, liner)
+                break
+        approaches = [self.worst, *(report.edge.closest_approach(use.frame) for report in self.reports)]
+        first_stages: dict[str, tuple[str, ClosestApproach]] = {}  # by the kind of contact at the rim
+        for stage, nearest in zip([_FIRST_CYCLE, *later], approaches, strict=True):
+            if nearest is not None and nearest.steps_at_rim:
+                first_stages.setdefault(nearest.kind, (stage, nearest))
+        count, unworn_distance = len(use.frame.loaded), 0.0 if self.worst is None else self.worst.distance
+        for _, (stage, nearest) in sorted(first_stages.items()):
+            if nearest.steps_edge_loaded:
+                yield _EDGE_LOADING.format(stage, nearest.steps_edge_loaded, count, nearest.location, nearest.pressure)
+            else:
+                yield _WORN_TO_RIM.format(stage, nearest.steps_at_rim, count, unworn_distance, nearest.pressure)
+        if not self.converged:
+            yield "a contact did not balance its load: the results of this run are invalid"
 
     @property
     def worst(self) -> ClosestApproach | None:
         """Closest approach of the contact to the rim in the first cycle; None without contact."""
         return self.use.edge(self.use.unworn).closest_approach(self.use.frame)
-
-    @property
-    def _rim_notes(self) -> tuple[str, ...]:
-        frame = self.use.frame
-        stages = [(_FIRST_CYCLE, self.worst)] + [
-            (_AFTER_CYCLES.format(plain_number(report.cycles)), report.edge.closest_approach(frame))
-            for report in self.reports
-        ]
-        first: dict[str, tuple[str, ClosestApproach]] = {}
-        for stage, worst in stages:
-            if worst is not None and worst.steps_at_rim:
-                first.setdefault(worst.kind, (stage, worst))
-        return tuple(self._describe_rim_contact(*first[kind]) for kind in sorted(first))
-
-    def _describe_rim_contact(self, stage: str, worst: ClosestApproach) -> str:
-        """Describe the contact at the rim at one stage: edge loading, or a bore that is worn to the rim."""
-        count = len(self.use.frame.loaded)
-        if worst.steps_edge_loaded:
-            return _EDGE_LOADING.format(stage, worst.steps_edge_loaded, count, worst.location, worst.pressure)
-        distance = 0.0 if self.worst is None else self.worst.distance
-        return _WORN_TO_RIM.format(stage, worst.steps_at_rim, count, distance, worst.pressure)
 
     def __str__(self) -> str:
         joint, count = self.use.joint, len(self.reports)
@@ -381,7 +361,7 @@ _WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner
 _WORN_THIN = (
     "after {} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
 )
-_FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {} cycles"
+_FIRST_CYCLE = "in the first cycle"
 _EDGE_LOADING = (
     "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
     "the pressure in the outermost ring is at most {:.3g} MPa"
@@ -391,7 +371,6 @@ _WORN_TO_RIM = (
     "edge loading, since under the same loads the unworn contact ends {:.3g} mm before the rim; the pressure in the "
     "outermost ring is at most {:.3g} MPa"
 )
-_NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 
 
 def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:

@@ -1,13 +1,14 @@
-"""Description of a wear simulation: its first cycle, its wear, its contacts and its film."""
+"""Descriptions of one wear simulation (first cycle, wear, contacts, film), and of several hips side by side."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy
 
 from ..contact.verdict import bar_text
-from ..core.answers import PAGE, Answer, Column, Row, Table
+from ..core.answers import PAGE, Answer, Cell, Column, Row, Table
 from ..core.arrays import Numbers
 from ..core.display import plain_number
 from ..core.kinds import (
@@ -25,6 +26,8 @@ from ..core.kinds import (
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Amount, Sentence, joint_sentence
 from ..lubrication.friction import Stribeck
+from ..lubrication.lubricant import Lubricant
+from .bands import Bands
 from .contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from .film import Film
 from .history import History
@@ -103,22 +106,18 @@ def contact_table(history: History) -> Table:
 
 
 def contact_line(history: History) -> str:
-    """Describe validity and largest utilisation of the contacts in one line."""
-    model = history.use.contact_model.name
+    """Describe validity and largest utilisation of the contacts, unworn and of the last report, in one line."""
     validity = "valid" if history.contact_valid else "NOT VALID, see the notes"
-    return f"contact ({model}): {validity}; {_utilisation_words(history)}"
-
-
-def _utilisation_words(history: History) -> str:
-    """Describe the largest utilisation of the unworn hip and of the last report, with the verdict on both."""
     checks, last = history.use.unworn_checks, history.contact_checks[-1]
     if largest_utilisation(checks) is None or largest_utilisation(last) is None:
-        return checks[0].utilisation_note if checks else "nothing is pressed"
-    unworn, end = (
-        _utilisation_text(max(stage, key=lambda check: check.utilisation or 0.0)) for stage in (checks, last)
-    )
-    verdict = worst_verdict((*checks, *last)).word
-    return f"yield {verdict}: utilisation σv/σy {unworn} unworn, {end} after {plain_number(history.last.cycles)} cycles"
+        strength = checks[0].utilisation_note if checks else "nothing is pressed"
+    else:
+        unworn, end = (
+            _utilisation_text(max(stage, key=lambda check: check.utilisation or 0.0)) for stage in (checks, last)
+        )
+        after = f"{end} after {plain_number(history.last.cycles)} cycles"
+        strength = f"yield {worst_verdict((*checks, *last)).word}: utilisation σv/σy {unworn} unworn, {after}"
+    return f"contact ({history.use.contact_model.name}): {validity}; {strength}"
 
 
 def _utilisation_text(check: ContactCheck) -> str:
@@ -129,30 +128,24 @@ def _utilisation_text(check: ContactCheck) -> str:
 def film_table(film: Film) -> Table:
     """List film thicknesses and the film ratio over the cycle, with regime, friction and lubricant."""
     columns = [Column.of_words("film", "film over the cycle"), *map(Column.of_number, ("least", "mean", "largest"))]
+    courses: list[tuple[str, Numbers | None, Unit]] = [
+        ("smallest", film.least, NANOMETRES),
+        ("at the load", film.central, NANOMETRES),
+        ("mean of the refreshed part", film.refreshed_mean, NANOMETRES),
+        ("mean of the core", film.core_mean, NANOMETRES),
+        ("refreshed share of the contact", film.refreshed_share, PERCENT),
+        ("λ, smallest film over roughness", film.ratio, PLAIN),
+        ("Hamrock-Dowson, smallest", film.comparison, NANOMETRES),
+    ]
     rows = [
         Row([name, *(Amount(number, unit, 3) for number in (known.min(), known.mean(), known.max()))])
-        for name, values, unit in _film_courses(film)
-        if len(known := values[numpy.isfinite(values)])
+        for name, values, unit in courses
+        if values is not None and len(known := values[numpy.isfinite(values)])
     ]
     return Table("film", "Film and friction", columns, rows, list(_film_lines(film)))
 
 
-def _film_courses(film: Film) -> Sequence[tuple[str, Numbers, Unit]]:
-    """Return the names of the rows of the film table, their values over the cycle, and their units."""
-    parts: list[tuple[str, Numbers, Unit]] = []
-    if film.refreshed_mean is not None and film.core_mean is not None and film.refreshed_share is not None:
-        parts = [
-            ("mean of the refreshed part", film.refreshed_mean, NANOMETRES),
-            ("mean of the core", film.core_mean, NANOMETRES),
-            ("refreshed share of the contact", film.refreshed_share, PERCENT),
-        ]
-    return [
-        ("smallest", film.least, NANOMETRES),
-        ("at the load", film.central, NANOMETRES),
-        *parts,
-        ("λ, smallest film over roughness", film.ratio, PLAIN),
-        ("Hamrock-Dowson, smallest", film.comparison, NANOMETRES),
-    ]
+_STATED = "viscosity", "ball_roughness", "cup_roughness"
 
 
 def _film_lines(film: Film) -> Iterator[str]:
@@ -174,4 +167,67 @@ def _film_lines(film: Film) -> Iterator[str]:
         )
     roughness = (Amount(size, Unit("µm", 1e3)) for size in (lubricant.ball_roughness, lubricant.cup_roughness))
     viscosity = f"{1e3 * lubricant.viscosity:g} mPa s"
-    yield Sentence("assumed for the film: viscosity {}, roughness Ra {} (ball) and {} (cup)", viscosity, *roughness)
+    defaults = [name for name in _STATED if getattr(lubricant, name) == getattr(Lubricant(), name)]
+    assumed = f"; by default: {', '.join(defaults)}" if defaults else ""
+    yield Sentence(f"film with viscosity {{}}, roughness Ra {{}} (ball) and {{}} (cup){assumed}", viscosity, *roughness)
+
+
+_COMPARED = ("volume", "depth", "penetration", "max_pressure")
+_BANDED = ("volume", "penetration")
+
+
+@dataclass(frozen=True, kw_only=True)
+class HipRun:
+    """Simulation of one hip with its bands, if any, and its name in tables and figures, such as that of its file."""
+
+    name: str
+    history: History
+    bands: Bands | None = None
+
+
+def describe_hips(runs: Sequence[HipRun]) -> Answer:
+    """Describe several hips: one below the other at each report."""
+    named_uses = [(run.name, run.history.use) for run in runs]
+    joints = [Sentence("{}: {}; {}", name, joint_sentence(use.joint), use.cycle.name) for name, use in named_uses]
+    notes = list(_comparison_notes(runs))
+    return Answer(title="hips side by side", lines=joints, tables=[_comparison_table(runs)], notes=notes)
+
+
+def _comparison_table(runs: Sequence[HipRun]) -> Table:
+    columns = [Column.of(QUANTITIES["cycles"], digits=6), Column.of_words("hip")]
+    columns += [Column.of(QUANTITIES[name]) for name in _COMPARED] + [Column.of_words("edge_loading", "edge loading")]
+    if any(run.bands is not None for run in runs):
+        columns += [Column.of(QUANTITIES[name], head=f"{name} 95 %", digits=3) for name in _BANDED]
+    rows = []
+    for cycles in sorted({report.cycles for run in runs for report in run.history.reports}):
+        for run in runs:
+            for number, report in enumerate(run.history.reports):
+                if report.cycles == cycles:
+                    cells: list[Cell] = [cycles, run.name, *(float(getattr(report, name)) for name in _COMPARED)]
+                    cells += [bool(report.edge_loaded.any()), *(_band(run, name, number) for name in _BANDED)]
+                    rows.append(Row(cells[: len(columns)]))
+    lines = [
+        Sentence(
+            "{}: contact {}; estimated numerical error of the volume {}",
+            run.name,
+            "valid" if run.history.valid else "NOT VALID, see its notes",
+            Amount(run.history.error.volume, PERCENT, 2),
+        )
+        for run in runs
+    ]
+    return Table("hips", "Wear", columns, rows, lines)
+
+
+def _band(run: HipRun, name: str, report: int) -> Cell:
+    return None if run.bands is None else tuple(float(end[report]) for end in run.bands.band(name))
+
+
+def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[Sentence]:
+    """Yield the notes of all hips, each with the names of the hips that have it, unless all have it."""
+    holders: dict[str, list[str]] = {}
+    for run in runs:
+        for note in dict.fromkeys((*run.history.notes, *(run.bands.notes if run.bands else ()))):
+            holders.setdefault(note, []).append(run.name)
+    for note, names in holders.items():
+        written = note if isinstance(note, Sentence) else Sentence(note)
+        yield written if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), written)

@@ -53,11 +53,8 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     return LawUnit(text=text, typed=text, suffix=suffix, read=read_numbers)
 
 
-NUMBER = kind_unit(Kind.NUMBER)
-"""Unit of a plain number."""
-
-PRESSURE = kind_unit(Kind.MODULUS)
-"""Unit of a pressure: MPa."""
+NUMBER = kind_unit(Kind.NUMBER)  # unit of a plain number
+PRESSURE = kind_unit(Kind.MODULUS)  # unit of a pressure: MPa
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,11 +84,7 @@ class LawField:
         return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
 
     def check(self, value: Any) -> None:
-        """Check type and limits of a value of this field; TypeError or ValueError otherwise.
-
-        Raises TypeError: the value is not a number (or, for a list, not a tuple of numbers).
-        Raises ValueError: the value is outside the limits.
-        """
+        """Check type and limits of a value of this field; TypeError or ValueError otherwise."""
         for number in value if self.is_list else (value,):
             if not isinstance(number, Real) or isinstance(number, bool):
                 wanted = "a tuple of numbers" if self.is_list else "one number"
@@ -112,20 +105,10 @@ def law_field(
     high: float = inf,
     low_included: bool = True,
 ) -> Any:
-    """Define a dataclass field of a law, with its unit, meaning and limits.
+    """Define a dataclass field of a law, with unit, meaning (noun phrase for messages and labels) and limits.
 
-    Parameters
-    ----------
-    unit : LawUnit
-    meaning : str
-        Noun phrase for messages and labels.
-    example : number or tuple
-    key : str, optional
-        Key in files; the name of the field by default.
-    default : number or tuple, optional
-        Without it the field is required.
-    low, high : float
-        Limits; `high` itself is excluded, `low` only with `low_included=False`.
+    The key in files is the name of the field by default. Without a default value the field is required. `high` itself
+    is excluded, `low` only with `low_included=False`.
     """
     limits = {"low": low, "high": high, "low_included": low_included}
     metadata = {"unit": unit, "meaning": meaning, "example": example, "key": key, **limits}
@@ -150,17 +133,14 @@ class Law(ABC):
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:
         """List the fields of the law with their units and limits."""
+        numbers = [
+            (number.name, number.default is MISSING, number.metadata["law"])
+            for number in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
+            if "law" in number.metadata
+        ]
         return tuple(
-            LawField(
-                name=dataclass_field.name,
-                required=dataclass_field.default is MISSING,
-                **{
-                    **dataclass_field.metadata["law"],
-                    "key": dataclass_field.metadata["law"]["key"] or dataclass_field.name,
-                },
-            )
-            for dataclass_field in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
-            if "law" in dataclass_field.metadata
+            LawField(name=name, required=required, **{**metadata, "key": metadata["key"] or name})
+            for name, required, metadata in numbers
         )
 
     @property
@@ -202,18 +182,8 @@ def read_law(
 ) -> AnyLaw:
     """Create a law of a given class from a table of a file.
 
-    Parameters
-    ----------
-    table : mapping
-    laws : mapping of str to class
-        Registry with the law.
-    law : class
-    keys : mapping of str to str
-        Other keys of this table, by the usual key.
-    **values
-        Further values of fields that files do not have.
-
-    Raises ValueError: a missing key, a key of another law, or a value that is not allowed.
+    `laws` is the registry, `keys` has other keys of this table by the usual key, and `values` are those of fields that
+    files do not have.
     """
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
+from typing import ClassVar
 
 import numpy
 
@@ -60,6 +61,9 @@ class Mix:
 
     activities: tuple[Activity, ...]
 
+    frame: ClassVar[Frame] = Frame.BODY  # reference frame of the forces
+    spring: ClassVar[None] = None  # activities of a mix have no lateral spring
+
     def __post_init__(self) -> None:
         if not self.activities:
             raise ValueError("a mix needs at least one activity")
@@ -69,7 +73,6 @@ class Mix:
 
     @property
     def activity_cycles(self) -> tuple[Cycle, ...]:
-        """Cycle of each activity."""
         return tuple(activity.cycle for activity in self.activities)
 
     @property
@@ -90,8 +93,10 @@ class Mix:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on the activities for reports, without repetitions."""
-        notes = tuple(dict.fromkeys(note for cycle in self.activity_cycles for note in cycle.notes))
-        return notes if len({cycle.cup_tilt for cycle in self.activity_cycles}) == 1 else (*notes, _NO_COMMON_TILT)
+        notes = dict.fromkeys(note for cycle in self.activity_cycles for note in cycle.notes)
+        if len({cycle.cup_tilt for cycle in self.activity_cycles}) > 1:
+            notes["no standard tilt of the cup is applied: the activities have different ones"] = None
+        return tuple(notes)
 
     @property
     def remark(self) -> str:
@@ -103,16 +108,6 @@ class Mix:
         """Tilt of the cup in rad by a standard; None if the activities have different ones."""
         tilts = {cycle.cup_tilt for cycle in self.activity_cycles}
         return tilts.pop() if len(tilts) == 1 else None
-
-    @property
-    def frame(self) -> Frame:
-        """Reference frame of the forces, always the body."""
-        return Frame.BODY
-
-    @property
-    def spring(self) -> None:
-        """Lateral spring: None, because activities of a mix have no spring."""
-        return None
 
     @property
     def n_steps(self) -> int:
@@ -202,6 +197,3 @@ class Mix:
     def transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
         """Return this mix with each cycle replaced by the result of a function of that cycle."""
         return Mix(activities=tuple(replace(activity, cycle=transform(activity.cycle)) for activity in self.activities))
-
-
-_NO_COMMON_TILT = "no standard tilt of the cup is applied: the activities have different ones"

@@ -31,7 +31,7 @@ from ..files.schema import (
 )
 from ..model_catalogue import catalogue
 from ..problem.cup import Side
-from ..studies.distribution_tables import DISTRIBUTION_SCHEMA
+from ..studies.expressions import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES

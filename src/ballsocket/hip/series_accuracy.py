@@ -108,17 +108,7 @@ class SeriesAccuracy:
 def estimate_accuracy(
     result: CohortResult, expected: CohortResult, names: Sequence[str], n_simulations: int, degree: int
 ) -> SeriesAccuracy:
-    """Compare the results of a series with those of simulations of the same patients.
-
-    Parameters
-    ----------
-    result, expected : CohortResult
-        Results of the series and of the simulations.
-    names : sequence of str
-        Results whose relative errors are stated.
-    n_simulations, degree : int
-        Simulations that the series is fitted to, and degree of its polynomials.
-    """
+    """Compare the results of a series with simulations of the same patients; errors of `names` are relative."""
     ratios = {
         name: abs(result.table[:, :, column] / expected.table[:, :, column] - 1)
         for column, name in enumerate(RESULT_UNITS)

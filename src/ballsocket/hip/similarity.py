@@ -44,10 +44,10 @@ The excess is the largest overlap at the rim minus the largest elsewhere, over c
 def find_obstacle(variability: PatientVariability, counts: Sequence[float]) -> str:
     """State why patients with reports at given cycle counts are not similar, in one clause; empty if they are."""
     use = variability.coarse_simulation
-    scattered = set(variability.distributions)
+    scattered, degree = set(variability.distributions), getattr(use.wear, "pressure_degree", None)
     obstacles = {
         "the foundation is elastic, not springs": not use.uses_springs,
-        f"the wear law {type(use.wear).__name__} has no known degree in the pressure": _degree(use) is None,
+        f"the wear law {type(use.wear).__name__} has no known degree in the pressure": degree is None,
         "the ball wears too": use.ball_wear is not None,
         "wear has a limit of the film ratio": use.film_limit is not None,
         "the cycle has a lateral spring": any(cycle.spring is not None for cycle in use.cycle.activity_cycles),
@@ -57,12 +57,6 @@ def find_obstacle(variability: PatientVariability, counts: Sequence[float]) -> s
         "nothing is pressed": not len(use.frame.loaded),
     }
     return next((clause for clause, holds in obstacles.items() if holds), "")
-
-
-def _degree(use: HipSimulation) -> float | None:
-    """Return the degree of the wear law in the pressure; None if unknown."""
-    degree: float | None = getattr(use.wear, "pressure_degree", None)
-    return degree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,6 +84,11 @@ class Similarity:
         if "coefficient" not in distributions or coefficient_field(use.wear) is None:
             return use
         return replace(use, wear=with_coefficient(use.wear, self._median("coefficient")))
+
+    @property
+    def degree(self) -> float:
+        """Degree of the wear law in the pressure."""
+        return float(getattr(self.setup.wear, "pressure_degree", None) or 0.0)
 
     def _median(self, name: str) -> float:
         return float(self.variability.distributions[name].frozen.median())
@@ -124,10 +123,6 @@ class Similarity:
         """Return the clearances of patients in mm: (patients,)."""
         return numpy.asarray(values.get(CLEARANCE, numpy.full(_count(values), self.clearance)), dtype=float)
 
-    def cycle_ratios(self, values: Mapping[str, Numbers]) -> Numbers:
-        """Return the ratios of patients' cycles to those of the nominal patient: (patients,)."""
-        return self._ratios(values, "cycles_per_year")
-
     def largest_forces(self, values: Mapping[str, Numbers]) -> Numbers:
         """Compute the largest force in N of each activity: (activities, patients)."""
         frame = self.setup.frame
@@ -143,21 +138,22 @@ class Similarity:
 
     def exposure_per_cycle(self, values: Mapping[str, Numbers]) -> Numbers:
         """Compute the exposure per cycle, k K^m c^(m-1) with k over its median: (patients,)."""
-        clearance, degree = self.clearances(values), _degree(self.setup) or 0.0
+        clearance, degree = self.clearances(values), self.degree
         ratio = values["coefficient"] / self._median("coefficient") if "coefficient" in values else 1.0
         return ratio * self.modulus(clearance) ** degree * clearance ** (degree - 1)
 
     def log_exposure(self, values: Mapping[str, Numbers]) -> Numbers:
         """Compute the logarithm of patients' exposure per cycle of the nominal patient: (patients,)."""
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            return numpy.log(self.exposure_per_cycle(values) * self.cycle_ratios(values))
+            return numpy.log(self.exposure_per_cycle(values) * self._ratios(values, "cycles_per_year"))
 
     def numbers(self, values: Mapping[str, Numbers]) -> dict[str, Numbers]:
         """Compute the numbers of patients by name: each (patients,), NaN where a value is not allowed."""
         clearance, forces = self.clearances(values), self._ratios(values, "body_weight")
         force_unit = self.modulus(clearance) * clearance * self.socket_radius(clearance) ** 2
         stated = self.setup.seconds_per_cycle is not None
-        seconds = self.setup.seconds / (self.cycle_ratios(values) if stated else numpy.ones(len(clearance)))
+        cycle_ratios = self._ratios(values, "cycles_per_year") if stated else numpy.ones(len(clearance))
+        seconds = self.setup.seconds / cycle_ratios
         with numpy.errstate(divide="ignore", invalid="ignore"):
             numbers = {FORCE: numpy.log(forces / force_unit), **{name: values[name] for name in self.angles}}
             if self.setup.creep is not None:
@@ -186,10 +182,7 @@ class Similarity:
         return {"volume": clearance * radius**2, **lengths, "max_pressure": pressure, "edge_distance": radius}
 
     def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> FamilyMember:
-        """Simulate the family member with given numbers up to each of several logarithms of exposures.
-
-        Raises ValueError: a contact did not balance its load.
-        """
+        """Simulate the family member with given numbers up to each of several logarithms of exposures."""
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)
         clearance, worn, converged = float(use.joint.clearance), [], True
@@ -209,7 +202,7 @@ class Similarity:
     def make_member(self, numbers: Mapping[str, float]) -> tuple[HipSimulation, float]:
         """Return the simulation of a family member with given numbers, and its exposure per cycle."""
         clearance = exp(numbers[CLEARANCE]) if CLEARANCE in numbers else self.clearance
-        modulus, degree = float(self.modulus(clearance)), _degree(self.setup) or 0.0
+        modulus, degree = float(self.modulus(clearance)), self.degree
         force_ratio = exp(numbers[FORCE]) * modulus * clearance * float(self.socket_radius(clearance)) ** 2
         per_cycle = modulus**degree * clearance ** (degree - 1)
         member = replace(

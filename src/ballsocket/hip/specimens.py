@@ -18,20 +18,12 @@ class SpecimenMean:
 
 
 def mean_of_specimens(values: Numbers, variances: Numbers, min_ratio: float) -> SpecimenMean:
-    """Compute the mean over specimens whose values have different variances by their readings.
+    """Compute the mean over specimens whose values have different variances by their readings; two or more.
 
-    The variance between specimens is by Paule & Mandel 1982 (doi:10.6028/jres.087.022), the standard error by Hartung
-    & Knapp 2001 (doi:10.1002/sim.791). For equal variances they are mean and standard error of the values themselves.
-
-    Parameters
-    ----------
-    values : array (specimens,)
-        Value of each specimen; two or more.
-    variances : array (specimens,)
-        Variance of each value by the errors of its readings, at least 0.
-    min_ratio : float
-        Least ratio of the observed scatter to the scatter that the variances explain: 1 for stated errors, below which
-        chance is no reason for a narrower band; 0 for errors that are estimated from the same readings.
+    The variance between specimens is by Paule & Mandel 1982 (doi:10.6028/jres.087.022), the standard error by Hartung &
+    Knapp 2001 (doi:10.1002/sim.791). For equal variances they are mean and standard error of the values themselves.
+    `min_ratio` is the least ratio of the observed scatter to the scatter that the variances explain: 1 for stated
+    errors, below which chance is no reason for a narrower band; 0 for errors that are estimated from the same readings.
     """
     from scipy.optimize import brentq
 

@@ -15,14 +15,9 @@ import numpy
 
 from ..core.arrays import Numbers
 
-MAX_ITERATIONS = 60
-"""Number of Newton steps after which an equilibrium counts as not converged."""
-
-FORCE_TOLERANCE = 1e-8
-"""Allowed error of the force balance, relative to the load."""
-
-REGULARISATION = 1e-12
-"""Stiffness added to the tangent stiffness, relative to its trace."""
+MAX_ITERATIONS = 60  # number of Newton steps after which an equilibrium counts as not converged
+FORCE_TOLERANCE = 1e-8  # allowed error of the force balance, relative to the load
+REGULARISATION = 1e-12  # stiffness added to the tangent stiffness, relative to its trace
 
 _BLOCK_SIZE = 131_072  # values (loads times cells) computed together, which stay in the processor's cache
 
@@ -51,21 +46,9 @@ def spring_solver() -> Solver:
 
 
 def newton_step(tangent: tuple[Any, ...], residual: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Solve 3 x 3 equations with a positive symmetric matrix by its factors L D Lᵀ.
+    """Solve 3 x 3 equations with a positive symmetric matrix (xx, xy, xz, yy, yz, zz) by its factors L D Lᵀ.
 
-    Numbers and arrays of any library are allowed.
-
-    Parameters
-    ----------
-    tangent : tuple of 6 numbers or arrays
-        Matrix entries xx, xy, xz, yy, yz, zz in N/mm.
-    residual : tuple of 3 numbers or arrays
-        Unbalanced force in N.
-
-    Returns
-    -------
-    tuple of 3 numbers or arrays
-        Displacement in mm.
+    Numbers and arrays of any library are allowed: stiffness in N/mm, unbalanced force in N, displacement in mm.
     """
     xx, xy, xz, yy, yz, zz = tangent
     fx, fy, fz = residual
@@ -87,20 +70,10 @@ def load_blocks(load_count: int, cell_count: int) -> Iterator[slice]:
 
 
 def solve_in_blocks(contact: SpringContact, displacement: Numbers, pressure: Numbers) -> bool:
-    """Solve a contact in NumPy, in blocks of loads that stay in the processor's cache.
+    """Solve a contact in NumPy, in blocks of loads that stay in the processor's cache; True if all are balanced.
 
-    Parameters
-    ----------
-    contact : SpringContact
-    displacement : array (loads, 3)
-        Initial guess in mm; it is overwritten by the result.
-    pressure : array (loads, cells)
-        Result: pressures in MPa.
-
-    Returns
-    -------
-    bool
-        True if every load is balanced.
+    The initial displacements (loads, 3) in mm are overwritten by the result, and pressures (loads, cells) in MPa
+    filled.
     """
     normals, areas = contact.normals, contact.areas
     to_force = (normals * areas).T.copy()
@@ -133,20 +106,16 @@ def _solve_block(
         unbalanced = ~(numpy.linalg.norm(residual, axis=1) <= FORCE_TOLERANCE * magnitude)
         if not unbalanced.any():
             return True
-        step = _displacement_step(contact, in_contact @ to_stiffness, residual, magnitude)
+        tangent = in_contact @ to_stiffness
+        trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
+        separated = trace <= 0
+        tangent += contact.lateral_stiffness[numpy.triu_indices(3)]
+        tangent[:, [0, 3, 5]] += numpy.where(separated, 1.0, REGULARISATION * trace)[:, None]
+        step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
+        # a ball without contact moves along its load towards the bore
+        step = numpy.where(separated[:, None], contact.approach * loads / magnitude[:, None], step)
         displacement += numpy.where(unbalanced[:, None], step, 0.0)
     return False
-
-
-def _displacement_step(contact: SpringContact, tangent: Numbers, residual: Numbers, magnitude: Numbers) -> Numbers:
-    """Compute the Newton step (loads, 3) in mm; a ball without contact moves along its load towards the bore."""
-    trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
-    separated = trace <= 0
-    regularisation = numpy.where(separated, 1.0, REGULARISATION * trace)
-    tangent = tangent + contact.lateral_stiffness[numpy.triu_indices(3)]
-    tangent[:, [0, 3, 5]] += regularisation[:, None]
-    step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
-    return numpy.where(separated[:, None], contact.approach * contact.loads / magnitude[:, None], step)
 
 
 @cache

@@ -19,16 +19,15 @@ from ..files.units import convert, parse, parse_units, split_quantity
 from .kinematics import SurfaceSliding
 from .law_fields import Law, LawField, LawUnit
 
-METRE = 1e-3
-"""Wear factor per millimetre of sliding over wear factor per metre."""
+METRE = 1e-3  # wear factor per millimetre of sliding over wear factor per metre
+COEFFICIENT = "coefficient"  # key of the wear coefficient in files and among sampled quantities
 
-COEFFICIENT = "coefficient"
-"""Key of the wear coefficient in files and among sampled quantities."""
-
+_NO_COEFFICIENT = "coefficient cannot be sampled: the wear law has no coefficient"
 _PRESSURE_STEP = 1e-6  # step of the pressure for the sensitivity of a law, relative to the largest pressure
 _PLAUSIBLE_FACTORS = 1e-9, 1e-4  # range of wear factors of materials in joints, in mm³/(N m)
 _WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")  # force times length in a denominator, without brackets
 _WEAR_FACTOR = "mm^3/(N m)"
+_PER_LENGTH = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
 _FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")  # accepted units of a wear factor: each is for metres of sliding
 _ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")  # accepted units of a wear volume per energy
 
@@ -131,14 +130,11 @@ class WearLaw(Law):
         return None
 
     def with_coefficient(self, value: float) -> WearLaw:
-        """Return this law with another value of its wear coefficient.
-
-        Raises
-        ------
-        ValueError
-            The law has no coefficient.
-        """
-        changed: WearLaw = replace(self, **{_require_coefficient_field(self).name: value})  # type: ignore[type-var]
+        """Return this law with another value of its wear coefficient; ValueError for a law without one."""
+        field = coefficient_field(self)
+        if field is None:
+            raise ValueError(_NO_COEFFICIENT)
+        changed: WearLaw = replace(self, **{field.name: value})  # type: ignore[type-var]
         return changed
 
 
@@ -148,24 +144,11 @@ def coefficient_field(law: Any) -> LawField | None:
     return next((law_number for law_number in law_numbers if law_number.key == COEFFICIENT), None)
 
 
-def _require_coefficient_field(law: Any) -> LawField:
-    coefficient_number = coefficient_field(law)
-    if coefficient_number is None:
-        raise ValueError("coefficient cannot be sampled: the wear law has no coefficient")
-    return coefficient_number
-
-
 def with_coefficient(law: AnyWearLaw, value: float) -> AnyWearLaw:
-    """Return a wear law with another value of its wear coefficient.
-
-    Raises
-    ------
-    ValueError
-        The law has no coefficient.
-    """
-    _require_coefficient_field(law)
-    changed: AnyWearLaw = law.with_coefficient(value)  # type: ignore[attr-defined]  # it has fields: a `WearLaw`
-    return changed
+    """Return a wear law with another value of its wear coefficient; ValueError for a law without one."""
+    if not isinstance(law, WearLaw):
+        raise ValueError(_NO_COEFFICIENT)
+    return law.with_coefficient(value)
 
 
 def plausibility_notes(*factors: float) -> tuple[str, ...]:
@@ -211,69 +194,47 @@ def wear_factor(name: str, value: Any) -> float:
     ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
 so that this is 1.066e-06 mm^3/(N m); write it so
     """
-    number, unit = _split_number_and_unit(name, value, _WEAR_FACTOR)
-    if unit:
-        number *= _factor_to_wear_factor_unit(name, value, number, unit, _FACTOR_UNITS)
-    require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
-    return number
+    return _read_coefficient(name, value, _WEAR_FACTOR, f"0 {_WEAR_FACTOR}", _WEAR_FACTOR, _PER_LENGTH, _FACTOR_UNITS)
 
 
 def wear_per_energy(name: str, value: Any) -> float:
-    """Read a worn volume per friction energy in mm³/J from a number, or from text such as "1e-5 mm^3/J".
-
-    Raises ValueError: as `wear_factor`.
-    """
-    number, unit = _split_number_and_unit(name, value, "mm^3/J")
-    if unit:
-        number *= _factor_to_wear_factor_unit(name, value, number, unit, _ENERGY_UNITS)
-    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
-    return number
+    """Read a worn volume per friction energy in mm³/J, such as "1e-5 mm^3/J"; see `wear_factor`."""
+    return _read_coefficient(name, value, "mm^3/J", "0 mm^3/J", _WEAR_FACTOR, _PER_LENGTH, _ENERGY_UNITS)
 
 
 def wear_per_slide(name: str, value: Any) -> float:
-    """Read a worn depth per sliding distance in mm/mm from a number, or from text such as "1e-6 mm/m".
-
-    Raises ValueError: text without a number, or a unit of another dimension.
-    """
-    number, unit = _split_number_and_unit(name, value, "mm/m")
-    if unit:
-        number *= _conversion_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
-    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
-    return number
+    """Read a worn depth per sliding distance in mm/mm, such as "1e-6 mm/m"; see `wear_factor`."""
+    return _read_coefficient(name, value, "mm/m", "0", "", "mm/mm, a depth over a length of sliding")
 
 
-def _split_number_and_unit(name: str, value: Any, example: str) -> tuple[float, str]:
+def _read_coefficient(
+    name: str, value: Any, example: str, least: str, target: str, meaning: str, allowed: tuple[str, ...] = ()
+) -> float:
+    """Read a number, or text with a unit like the example, in the target unit; `allowed` units are for a metre."""
     if isinstance(value, int | float) and not isinstance(value, bool):
-        return parse(name, value, Kind.NUMBER), ""
-    try:
-        number, unit = split_quantity(value if isinstance(value, str) else "")
-        unit = _WORK.sub(r"(N*\1)", unit)
-        parse_units(unit)
-    except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
-    return number, unit
-
-
-def _factor_to_wear_factor_unit(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
-    """Compute the factor that converts a unit to mm³/(N m); ValueError if it uses another length."""
-    meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
-    factor = _conversion_factor(name, value, unit, _WEAR_FACTOR, meaning)
-    if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
-        written = unit.replace("**", "^").replace("N*m", "N m")
-        length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
-        raise ValueError(
-            f"{name} = {shown(value)} is {length}: 1 {written} is {factor:.6g} {_WEAR_FACTOR}, "
-            f"so that this is {number * factor:.6g} {_WEAR_FACTOR}; write it so"
-        )
-    return factor
-
-
-def _conversion_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
-    """Compute the factor that converts a unit to another; ValueError for a unit of another dimension."""
-    try:
-        return convert(1.0, parse_units(unit), parse_units(target))
-    except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error
+        number, unit = parse(name, value, Kind.NUMBER), ""
+    else:
+        try:
+            number, unit = split_quantity(value if isinstance(value, str) else "")
+            unit = _WORK.sub(r"(N*\1)", unit)
+            parse_units(unit)
+        except ValueError as error:
+            raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
+    if unit:
+        try:
+            factor = convert(1.0, parse_units(unit), parse_units(target))
+        except ValueError as error:
+            raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error
+        if allowed and parse_units(unit) not in map(parse_units, allowed):
+            written = unit.replace("**", "^").replace("N*m", "N m")
+            length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
+            raise ValueError(
+                f"{name} = {shown(value)} is {length}: 1 {written} is {factor:.6g} {target}, "
+                f"so that this is {number * factor:.6g} {target}; write it so"
+            )
+        number *= factor
+    require(name, number, 0 <= number < inf, f"a wear coefficient is at least {least}, and finite")
+    return number
 
 
 WEAR_FACTOR = LawUnit(text="mm³/(N m)", typed=_WEAR_FACTOR, suffix="mm3_per_Nm", read=wear_factor)

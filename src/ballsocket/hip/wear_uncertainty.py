@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy
@@ -70,15 +69,26 @@ def uncertainty(
     require("seed", seed, seed >= 0, "it must be at least 0")
     check_sample_memory(count)
     counts = tuple(report.cycles for report in history.reports)
-    simulation = _SampleSimulation(variability, counts, engine, progress)
+    results: list[CohortResult] = []
+    sampled_sets: list[Mapping[str, Numbers]] = []
+
+    def simulate(samples: Numbers) -> Numbers:
+        """Simulate samples (quantities, points); return `INFLUENCED_RESULTS` at the last report: (results, points)."""
+        values = dict(zip(variability.distributions, samples.reshape(len(samples), -1), strict=True))
+        n_finished = sum(len(result.refused) for result in results)
+        run = CohortRun(variability=variability, counts=counts, values=values)
+        results.append(run.simulate(engine, None, lambda finished: progress(n_finished + finished)))
+        sampled_sets.append(values)
+        last_results = results[-1].table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
+        return last_results.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
+
     distributions = list(variability.distributions.values())
-    indices: Mapping[str, Numbers] | None = sobol_indices(simulation, distributions, count, seed, DEFAULT_LEVEL)
-    if any((result.refused != "").any() for result in simulation.results):
+    indices: Mapping[str, Numbers] | None = sobol_indices(simulate, distributions, count, seed, DEFAULT_LEVEL)
+    if any((result.refused != "").any() for result in results):
         indices = None
-    cohort = join_results(simulation.results[:2])
+    cohort = join_results(results[:2])
     sampled = {
-        name: numpy.concatenate([values[name] for values in simulation.sampled[:2]])
-        for name in variability.distributions
+        name: numpy.concatenate([values[name] for values in sampled_sets[:2]]) for name in variability.distributions
     }
     return Bands(
         variability=variability,
@@ -155,42 +165,12 @@ def population(
     return run, bands
 
 
-@dataclass
-class _SampleSimulation:
-    """Function for Sobol indices: it simulates samples, and stores their results."""
-
-    variability: PatientVariability
-    counts: tuple[float, ...]
-    engine: Engine
-    progress: ProgressCallback
-    results: list[CohortResult] = field(default_factory=list)
-    sampled: list[Mapping[str, Numbers]] = field(default_factory=list)
-    n_finished: int = 0
-
-    def __call__(self, samples: Numbers) -> Numbers:
-        """Simulate samples (quantities, points); return `INFLUENCED_RESULTS` at the last report: (results, points)."""
-        values = dict(zip(self.variability.distributions, samples.reshape(len(samples), -1), strict=True))
-        run = CohortRun(variability=self.variability, counts=self.counts, values=values)
-        result = run.simulate(self.engine, None, lambda finished: self.progress(self.n_finished + finished))
-        self.n_finished += len(run)
-        self.results.append(result)
-        self.sampled.append(values)
-        last_results = result.table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
-        return last_results.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
-
-
 def _quick_run_errors(variability: PatientVariability, reports: Sequence[Report]) -> dict[str, float]:
+    columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
     coarse_reports = variability.patient({}).simulate([report.cycles for report in reports])
-    coarse, full = result_table(coarse_reports), result_table(reports)
-    errors = {}
-    for name in INFLUENCED_RESULTS:
-        column = list(RESULT_UNITS).index(name)
-        coarse_values, full_values = coarse[:, column], full[:, column]
-        coarse_over_full = numpy.divide(
-            coarse_values, full_values, out=numpy.ones_like(coarse_values), where=full_values > 0
-        )
-        errors[name] = float(abs(coarse_over_full - 1).max())
-    return errors
+    coarse, full = result_table(coarse_reports)[:, columns], result_table(reports)[:, columns]
+    ratios = numpy.divide(coarse, full, out=numpy.ones_like(coarse), where=full > 0)
+    return dict(zip(INFLUENCED_RESULTS, abs(ratios - 1).max(axis=0).tolist(), strict=True))
 
 
 def share_coefficient(
@@ -203,35 +183,20 @@ def share_coefficient(
 ) -> SharedCoefficient | None:
     """Compute the results if all patients have the same wear coefficient: low, median or high.
 
-    Each result is multiplied by the ratio of the nominal patient's results at both coefficients. Twice the cycles wear
-    as much as twice the coefficient. The ratio is therefore taken at the coefficient times the patient's cycle ratio.
+    Each result of the table (patients, reports, results) is multiplied by the ratio of the nominal patient's results at
+    both coefficients. Twice the cycles wear as much as twice the coefficient. The ratio is therefore taken at the
+    coefficient times the patient's cycle ratio. `level` is the fraction of the coefficients inside their band.
 
-    Parameters
-    ----------
-    variability : PatientVariability
-        Distributions of the patients.
-    counts : tuple of float
-        Cycles of the nominal patient at the reports.
-    sampled : mapping of str to array (patients,)
-        Sampled quantities of the patients.
-    table : array (patients, reports, results)
-        Results of `RESULT_UNITS` at the sampled coefficients.
-    level : float
-        Fraction of the coefficients inside their band.
-    engine : Engine
-        Executor of the simulations.
-
-    Returns
-    -------
-    SharedCoefficient or None
-        None without a sampled coefficient and another sampled quantity, for a coefficient of 0, or without results.
+    Returns None without a sampled coefficient and another sampled quantity, for a coefficient of 0, or without results.
     """
     if COEFFICIENT not in variability.distributions or len(variability.distributions) == 1:
         return None
     low_probability = (1 - level) / 2
     coefficients = variability.distributions[COEFFICIENT].frozen.ppf([low_probability, 0.5, 1 - low_probability])
     values = dict(zip(("low", "median", "high"), map(float, coefficients), strict=True))
-    sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], _cycle_ratios(variability, sampled)
+    sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], numpy.ones(len(sampled[COEFFICIENT]))
+    if "cycles_per_year" in sampled and variability.cycles_per_year:
+        cycle_ratios = sampled["cycles_per_year"] / variability.cycles_per_year
     low = min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min()
     high = max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max()
     if not 0 < low < high or numpy.isnan(table).all():
@@ -241,38 +206,17 @@ def share_coefficient(
     has_result = nominal.refused == ""
     if not has_result.any():
         return None
-    response = _NominalResponse(
-        exposures=exposures[has_result], table=nominal.table[has_result][:, :, _CONVERTED_COLUMNS]
-    )
-    patient_factors = table[:, :, _CONVERTED_COLUMNS] / response.interpolate(sampled_coefficients * cycle_ratios)
-    results = {name: patient_factors * response.interpolate(value * cycle_ratios) for name, value in values.items()}
+    log_nodes = numpy.log(exposures[has_result])
+    with numpy.errstate(divide="ignore"):
+        log_results = numpy.log(nominal.table[has_result][:, :, _CONVERTED_COLUMNS])
+
+    def nominal_results(coefficients: Numbers | float) -> Numbers:
+        """Interpolate the nominal results (patients, reports, results) on logarithmic axes; NaN for no wear."""
+        log_exposures = numpy.log(coefficients * cycle_ratios)
+        columns = log_results.reshape(len(log_nodes), -1).T
+        rows = numpy.exp(numpy.stack([numpy.interp(log_exposures, log_nodes, column) for column in columns], axis=-1))
+        return numpy.where(rows > 0, rows, numpy.nan).reshape(len(log_exposures), *log_results.shape[1:])
+
+    patient_factors = table[:, :, _CONVERTED_COLUMNS] / nominal_results(sampled_coefficients)
+    results = {name: patient_factors * nominal_results(value) for name, value in values.items()}
     return SharedCoefficient(values=MappingProxyType(values), results=MappingProxyType(results))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _NominalResponse:
-    """Results of the nominal patient as a function of the exposure, wear coefficient times cycle ratio."""
-
-    exposures: Numbers
-    table: Numbers
-
-    def interpolate(self, exposures: Numbers) -> Numbers:
-        """Interpolate the nominal results at other exposures, on logarithmic axes; NaN for no wear.
-
-        Their shape is (points, reports, results).
-        """
-        log_exposures, log_nodes = numpy.log(exposures), numpy.log(self.exposures)
-        with numpy.errstate(divide="ignore"):
-            log_results = numpy.log(self.table).reshape(len(log_nodes), -1).T
-        values = numpy.exp(
-            numpy.stack([numpy.interp(log_exposures, log_nodes, column) for column in log_results], axis=-1)
-        )
-        return numpy.where(values > 0, values, numpy.nan).reshape(len(log_exposures), *self.table.shape[1:])
-
-
-def _cycle_ratios(variability: PatientVariability, sampled: Mapping[str, Numbers]) -> Numbers:
-    """Compute each patient's cycles a year divided by those of the nominal patient."""
-    nominal = variability.cycles_per_year
-    if "cycles_per_year" not in sampled or not nominal:
-        return numpy.ones(len(sampled[COEFFICIENT]))
-    return sampled["cycles_per_year"] / nominal

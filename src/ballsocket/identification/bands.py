@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 
@@ -32,19 +32,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     The factor is Birge's ratio, the root of χ² over the degrees of freedom, if above 1. Student's quantile
     replaces the normal quantile if the probability of the scatter is below 5 %.
 
-    Parameters
-    ----------
-    misfit : Misfit
-        Misfit with the stated uncertainties.
-    best : FitResult
-
-    Returns
-    -------
-    misfit : Misfit
-        Misfit with the widened uncertainties.
-    best : FitResult
-        Best point for them.
-    information : Information
+    Returns the misfit with the widened uncertainties, the best point for them, and the information there.
 
     References
     ----------
@@ -147,15 +135,8 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
 
     All ends are computed together: an iteration needs one array call of the model.
 
-    Parameters
-    ----------
-    misfit : Misfit
-    starts : sequence of array (unknowns,)
-        Best point, and other points with nearly the same misfit.
-    cost : float
-        Misfit of the best point, half of χ².
-    rises : sequence of float
-        Limits on the rise of χ² above that of the best point.
+    The `starts` (unknowns,) are the best point and others with nearly the same misfit; `cost` is the misfit of the best
+    point, half of χ², and `rises` are limits on the rise of χ² above it.
 
     References
     ----------
@@ -181,20 +162,14 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
             lowest, least_cost = active[int(costs.argmin())].theta, float(costs.min())
         for path, residual, slope in zip(active, residuals, slopes, strict=True):
             _advance_end_search(path, residual, slope, cost, low, high)
-    ends = iter([path.end or ProfileEnd(path.previous, False, (path.index,)) for path in paths])
-    end_pairs = [
-        [
-            (_next_outermost_end(ends, len(starts), index, -1), _next_outermost_end(ends, len(starts), index, 1))
-            for index in indices
-        ]
-        for _ in rises
-    ]
-    return Profiles(end_pairs, lowest, least_cost)
 
+    def outermost_end(rise: float, index: int, side: int) -> ProfileEnd:
+        own = [path for path in paths if (path.rise, path.index, path.side) == (rise, index, side)]
+        ends = [path.end or ProfileEnd(path.previous, False, (index,)) for path in own]
+        return max(ends, key=lambda end: side * float(end.theta[index]))
 
-def _next_outermost_end(ends: Iterator[ProfileEnd], start_count: int, index: int, side: int) -> ProfileEnd:
-    """Return the outermost of the next `start_count` interval ends, one for each starting point."""
-    return max([next(ends) for _ in range(start_count)], key=lambda end: side * float(end.theta[index]))
+    ends = [[(outermost_end(rise, index, -1), outermost_end(rise, index, 1)) for index in indices] for rise in rises]
+    return Profiles(ends, lowest, least_cost)
 
 
 def _limiting_unknowns(
@@ -204,11 +179,13 @@ def _limiting_unknowns(
     theta = numpy.clip(path.theta + theta_step, low, high)
     new_gradient = point.gradient + point.hessian @ theta_step
     limited_mask = _mask_limited_by_range(theta, new_gradient, low, high)
-    inner_indices = set(numpy.flatnonzero(~limited_mask).tolist()) - {path.index}
-    at_limit = [index for index in numpy.flatnonzero(limited_mask).tolist() if index != path.index]
+    others = [index for index in range(len(theta)) if index != path.index]
+    inner = [index for index in others if not limited_mask[index]]
     limiting = []
-    for index in at_limit:
-        free = [*inner_indices, index]
+    for index in others:
+        if not limited_mask[index]:
+            continue
+        free = [*inner, index]
         # decrease of χ² if the free unknowns minimise its quadratic approximation
         decrease = new_gradient[free] @ numpy.linalg.solve(point.hessian[numpy.ix_(free, free)], new_gradient[free])
         if decrease > _MIN_LIMIT_GAIN * path.rise:

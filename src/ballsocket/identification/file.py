@@ -33,8 +33,7 @@ from ..files.toml import read_toml
 from ..files.units import parse
 from ..model_catalogue import named_models, with_gap
 from ..problem import Joint
-from ..studies.distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
-from ..studies.expressions import parse_ends
+from ..studies.expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_ends
 from ..studies.file import ModelGap, ModelName
 from .columns import Gaps, parse_uncertainty, read_measured
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange

@@ -30,20 +30,17 @@ _EQUAL_COST = 1e-6  # difference of cost that counts as equal
 def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     """Find the best fit of the unknowns: a global search, then least squares from its best points.
 
+    Of equal fits it is the one nearest to the middle of the ranges.
+
     Raises ValueError: the model has no result for all data at any point within the ranges.
     """
     ends = [minimise_misfit(misfit, start) for start in _choose_starting_points(misfit, seed)]
-    best = _choose_best_fit(misfit, ends)
+    least_cost, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
+    lowest = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
+    best = min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
     return FitResult(best.theta, best.cost, best.converged, rivals)
-
-
-def _choose_best_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges."""
-    least_cost, range_middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
-    lowest_ends = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
-    return min(lowest_ends, key=lambda end: float(numpy.max(abs(end.theta - range_middle))))
 
 
 def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
@@ -99,21 +96,11 @@ def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedModel:
-    """Contact model fitted to measured data, with estimates and residuals.
+    """Contact model fitted to measured data, with estimates and residuals."""
 
-    Attributes
-    ----------
-    misfit : Misfit
-        Data, model and unknowns.
-    best : FitResult
-        Point of the smallest misfit.
-    information : Information
-        Information at that point, and profile intervals of the unknowns.
-    """
-
-    misfit: Misfit
-    best: FitResult
-    information: Information
+    misfit: Misfit  #: data, model and unknowns
+    best: FitResult  #: point of the smallest misfit
+    information: Information  #: information at that point, and profile intervals of the unknowns
 
     @property
     def model(self) -> Model:
@@ -173,21 +160,8 @@ class FittedModel:
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
         """Compute model results at equally spaced loads over the load range of a data set.
 
-        The data set has no angles.
-
-        Parameters
-        ----------
-        index : int
-            Index of the data set.
-        count : int
-            Number of points.
-
-        Returns
-        -------
-        loads : array (count,)
-            Loads from the least to the largest of the data set.
-        results : array (count,)
-            Results of the model at the best point.
+        The data set has no angles. Returns the loads, from the least to the largest, and the results of the model at
+        the best point, both of shape (count,).
         """
         measured = self.data[index]
         loads = numpy.linspace(measured.loads.min(), measured.loads.max(), count)

@@ -25,10 +25,7 @@ _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance i
 
 
 def split_joint_and_model_values(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Split values of unknowns by name into numbers of the joint and numbers of the contact model.
-
-    Errors of a machine are in neither.
-    """
+    """Split values by name into numbers of the joint and of the model; errors of a machine are in neither."""
     joint_values = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
     return joint_values, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 
@@ -82,33 +79,24 @@ class ForwardModel:
     def _compute_results(self, joints_at_points: _JointsAtPoints, load_factor: float) -> list[Array]:
         """Compute the results (points, values) of each data set; those with the same kind of load share one press."""
         results_by_index: dict[int, Array] = {}
-        for kind in dict.fromkeys(measured.load for measured in self.data):
-            indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
-            if not kind:
-                results_by_index |= {
-                    index: _read_joint_number(joints_at_points.joint, self.data[index]) for index in indices
-                }
-                continue
-            shared_indices = [index for index in indices if kind != "indentation" or not self.data[index].machine.name]
-            if shared_indices:
-                results_by_index |= self._compute_results_of_one_press(
-                    joints_at_points, kind, shared_indices, load_factor
+        shared_by_load: dict[str, list[int]] = {}
+        for index, measured in enumerate(self.data):
+            if not measured.load:
+                results_by_index[index] = _read_joint_number(joints_at_points.joint, measured)
+            elif measured.load == "indentation" and measured.machine.name:
+                results_by_index[index] = joints_at_points.compute_at_read_indentation(measured, load_factor)
+            else:
+                shared_by_load.setdefault(measured.load, []).append(index)
+        for kind, indices in shared_by_load.items():
+            loads = load_factor * numpy.concatenate([self.data[index].loads for index in indices])
+            contact, start = joints_at_points.press(kind, loads), 0
+            for index in indices:
+                value_range = slice(start, start + len(self.data[index]))
+                start = value_range.stop
+                results_by_index[index] = joints_at_points.compute_readings(
+                    contact, len(loads), self.data[index], value_range
                 )
-            for index in set(indices) - set(shared_indices):
-                results_by_index[index] = joints_at_points.compute_at_read_indentation(self.data[index], load_factor)
         return [results_by_index[index] for index in range(len(self.data))]
-
-    def _compute_results_of_one_press(
-        self, joints_at_points: _JointsAtPoints, kind: str, indices: list[int], load_factor: float
-    ) -> dict[int, Array]:
-        loads = load_factor * numpy.concatenate([self.data[index].loads for index in indices])
-        contact, results_by_index, start = joints_at_points.press(kind, loads), {}, 0
-        for index in indices:
-            measured = self.data[index]
-            value_range = slice(start, start + len(measured))
-            start += len(measured)
-            results_by_index[index] = joints_at_points.compute_readings(contact, len(loads), measured, value_range)
-        return results_by_index
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,12 +118,16 @@ class _JointsAtPoints:
     def compute_readings(
         self, contact: Contact | None, contact_count: int, measured: Measured, value_range: slice
     ) -> Array:
-        """Compute the readings of one data set: model results plus machine errors."""
+        """Compute the readings of one data set: model results, and of an indentation the machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        return self._measured_quantity_values(contact, contact_count, measured, value_range) + self._indentation_error(
-            measured, contact, value_range
-        )
+        values = self._measured_quantity_values(contact, contact_count, measured, value_range)
+        error: Array = 0.0
+        if measured.quantity == "indentation" and measured.machine.name:
+            force = _add_point_axis(contact.force)[:, value_range]
+            zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
+            error = self._sum_machine_errors(measured, force, depends_on_force=True) + zero_error
+        return values + error
 
     def compute_at_read_indentation(self, measured: Measured, load_factor: float) -> Array:
         """Compute the results at indentations that a machine with errors has read."""
@@ -148,9 +140,12 @@ class _JointsAtPoints:
             contact = self.press("indentation", arrays.clip(depth - force_error, 0.0, inf))
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
-                force = force - (force - contact.force) / (
-                    1 + self._sum_machine_error_slopes(measured, force) * stiffness
+                compliance = sum(  # of the machine, in mm/N
+                    self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
+                    for name, error in MACHINE_ERRORS.items()
+                    if error.slope is not None
                 )
+                force = force - (force - contact.force) / (1 + compliance * stiffness)
         return self.compute_readings(contact, len(measured), measured, slice(None))
 
     def _measured_quantity_values(
@@ -158,21 +153,14 @@ class _JointsAtPoints:
     ) -> Array:
         if measured.observable is not None:
             numbers = {name: self.numbers[name] for name in measured.observable.numbers}
-            return _add_point_axis(measured.observable.read(contact, **numbers))[:, value_range]
-        if measured.quantity != "pressure":
-            return _add_point_axis(getattr(contact, measured.quantity))[:, value_range]
-        angle = numpy.zeros(contact_count)
-        angle[value_range] = measured.angle
-        return _add_point_axis(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, value_range]
-
-    def _indentation_error(self, measured: Measured, contact: Contact, value_range: slice) -> Array:
-        """Compute the machine error in mm of the indentations of a data set; 0 for other quantities."""
-        if measured.quantity != "indentation" or not measured.machine.name:
-            return 0.0
-        force = _add_point_axis(contact.force)[:, value_range]
-        return self._sum_machine_errors(measured, force, depends_on_force=True) + self._sum_machine_errors(
-            measured, 0.0, depends_on_force=False
-        )
+            values = measured.observable.read(contact, **numbers)
+        elif measured.quantity == "pressure":
+            angle = numpy.zeros(contact_count)
+            angle[value_range] = measured.angle
+            values = contact.pressure(arrays.namespace(contact.force).asarray(angle))
+        else:
+            values = getattr(contact, measured.quantity)
+        return _add_point_axis(values)[:, value_range]
 
     def _sum_machine_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
         """Sum the machine errors in mm: either those that depend on the force, or the others."""
@@ -180,14 +168,6 @@ class _JointsAtPoints:
             self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if (error.slope is not None) == depends_on_force
-        )
-
-    def _sum_machine_error_slopes(self, measured: Measured, force: Array) -> Array:
-        """Sum the derivatives of the machine errors with respect to the force in mm/N."""
-        return sum(
-            self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
-            for name, error in MACHINE_ERRORS.items()
-            if error.slope is not None
         )
 
 

@@ -31,27 +31,15 @@ _MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directi
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated value of one unknown with its 95 % band.
-
-    Attributes
-    ----------
-    name, unit : str
-    value : float
-        NaN for an unidentifiable unknown without a stated distribution.
-    low, high : float
-        Band of 95 % from the profile likelihood within the ranges of all unknowns.
-    width_ratio : float
-        Width of the band over the prior range.
-    limited_by : tuple of str
-        Unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
-    """
+    """Estimated value of one unknown with its 95 % band."""
 
     name: str
     unit: str
-    value: float
-    low: float
+    value: float  #: NaN for an unidentifiable unknown without a stated distribution
+    low: float  #: lower end of the band of 95 %, from the profile likelihood within the ranges of all unknowns
     high: float
-    width_ratio: float
+    width_ratio: float  #: width of the band over the prior range
+    #: unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
     limited_by: tuple[str, ...] = ()
 
     @property
@@ -76,21 +64,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Product:
-    """Identifiable product of powers of unknowns that are not identifiable separately.
+    """Identifiable product of powers of unknowns that are not identifiable separately."""
 
-    Attributes
-    ----------
-    exponents : dict of str to float
-        Power of each unknown.
-    unit : str
-    value, low, high : float
-        Value of the product, and its band of 95 %.
-    """
-
-    exponents: dict[str, float]
+    exponents: dict[str, float]  #: power of each unknown
     unit: str
     value: float
-    low: float
+    low: float  #: lower end of the band of 95 %
     high: float
 
     @property
@@ -100,14 +79,7 @@ class Product:
 
     def summary(self) -> dict[str, Any]:
         """Return the product as a dictionary for JSON."""
-        return {
-            "name": self.name,
-            "exponents": self.exponents,
-            "unit": self.unit,
-            "value": self.value,
-            "low": self.low,
-            "high": self.high,
-        }
+        return {"name": self.name, **vars(self)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,25 +108,13 @@ class Interval:
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Fisher information of the data about the unknowns, with identifiability and covariance.
-
-    Attributes
-    ----------
-    transform : ParameterTransform
-    theta : array (unknowns,)
-        Best point, in standard deviations of the priors.
-    matrix : array (unknowns, unknowns)
-        Fisher information of the data there; 1 is the information of the prior.
-    intervals : tuple of Interval
-        Profile intervals over the ranges of the unknowns; `matrix` is local.
-    quantile : float
-        Standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large.
-    """
+    """Fisher information of the data about the unknowns, with identifiability and covariance."""
 
     transform: ParameterTransform
-    theta: Numbers
-    matrix: Numbers
-    intervals: tuple[Interval, ...]
+    theta: Numbers  #: (unknowns,), best point, in standard deviations of the priors
+    matrix: Numbers  #: (unknowns, unknowns), Fisher information of the data there; 1 is the information of the prior
+    intervals: tuple[Interval, ...]  #: profile intervals over the ranges of the unknowns; `matrix` is local
+    #: standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large
     quantile: float = QUANTILE_95
 
     @cached_property
@@ -211,17 +171,17 @@ class Information:
             for index in range_indices
             if not self.intervals[index].closed or width_ratios[unknowns[index].name] >= MAX_WIDTH_RATIO
         }
+        # the range of another unknown limits the band, and shifts it by 10 % or more
         shifted_indices = {
             index
             for index in range_indices
-            if any(self._is_band_shifted(index, limiting_index) for limiting_index in wide_indices - {index})
+            if any(
+                limiting in self.intervals[index].limiting_indices
+                and abs(self._band_vector(limiting)[index]) >= MAX_SHIFT * sqrt(12)
+                for limiting in wide_indices - {index}
+            )
         }
         return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide_indices | shifted_indices)
-
-    def _is_band_shifted(self, index: int, limiting_index: int) -> bool:
-        """Check if the range of another unknown limits the band of an unknown and shifts it by 10 % or more."""
-        is_limited = limiting_index in self.intervals[index].limiting_indices
-        return is_limited and abs(self._band_vector(limiting_index)[index]) >= MAX_SHIFT * sqrt(12)
 
     def _band_vector(self, index: int) -> Numbers:
         """Compute the change of all thetas from the lower to the upper end of one unknown's 95 % band."""
@@ -279,7 +239,12 @@ class Information:
         ):
             return None
         powers = powers / powers[factor_indices[numpy.argmax(abs(powers[factor_indices]))]]
-        exponents = {unknowns[index].name: _round_exponent(float(powers[index])) for index in factor_indices}
+        exponents = {}
+        for index in factor_indices:
+            power = float(powers[index])
+            half_integer = round(2 * power) / 2
+            is_near = abs(power - half_integer) < 0.1 and half_integer
+            exponents[unknowns[index].name] = half_integer if is_near else power
         product = self._product_band(exponents)
         band_widths = [
             abs(self._band_vector(index)[index]) * prior_deviations[index]
@@ -295,25 +260,17 @@ class Information:
         prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
         covariance = numpy.linalg.pinv(self._identifiable_information + prior_information, rcond=1e-9, hermitian=True)
         half_width = self.quantile * float(direction @ covariance @ direction) ** 0.5
-        log_value = self._log_product(exponents, self.theta)
+
+        def log_product(theta: Numbers) -> float:
+            values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
+            return sum(power * log(values[name]) for name, power in exponents.items())
+
+        log_value = log_product(self.theta)
         intervals = [self.intervals[self.transform.names.index(name)] for name in self.unidentifiable]
-        log_ends = [
-            self._log_product(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
-        ]
+        log_ends = [log_product(end.theta) for interval in intervals for end in (interval.low, interval.high)]
         low, high = min(log_value - half_width, *log_ends), max(log_value + half_width, *log_ends)
         units = {unknown.name: unknown.quantity.unit for unknown in self.transform.unknowns}
         unit = " ".join(
             units[name] if power == 1 else f"{units[name]}^{power:.3g}" for name, power in exponents.items()
         )
         return Product(exponents, unit, exp(log_value), exp(low), exp(high))
-
-    def _log_product(self, exponents: Mapping[str, float], theta: Numbers) -> float:
-        """Compute the logarithm of a product of powers of unknowns at a point theta."""
-        values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
-        return sum(power * log(values[name]) for name, power in exponents.items())
-
-
-def _round_exponent(power: float) -> float:
-    """Round an exponent to the nearest multiple of 1/2 if the difference is below 0.1."""
-    half_integer = round(2 * power) / 2
-    return half_integer if abs(power - half_integer) < 0.1 and half_integer else power

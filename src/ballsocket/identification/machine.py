@@ -9,7 +9,6 @@ from typing import Any
 
 from ..core.checks import nearest, require, shown
 from .registry import MACHINE_ERRORS
-from .unknown_kinds import MachineError
 
 NumberOrRange = float | tuple[float, float]
 """A known number, or the lower and upper end of an unknown one."""
@@ -58,7 +57,11 @@ class Machine:
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "errors", tuple((key, sizes.get(key, 0.0)) for key in MACHINE_ERRORS))
         for key, size in self.errors:
-            _check_error_size(MACHINE_ERRORS[key], size)
+            quantity, ends = MACHINE_ERRORS[key].quantity, size if isinstance(size, tuple) else (size, size)
+            is_ascending = len(ends) == 2 and -inf < ends[0] <= ends[1] < inf
+            if not is_ascending or (isinstance(size, tuple) and ends[0] == ends[1]):
+                raise ValueError(f"{key} = {shown(size)} must be a number, or two ends in ascending order")
+            require(key, ends[0], quantity.allows(ends[0]), quantity.allowed)
 
     def __getattr__(self, name: str) -> Any:
         sizes = dict(self.__dict__.get("errors", ()))
@@ -92,14 +95,6 @@ class Machine:
     def depends_on_force(self) -> bool:
         """True if an error of the machine depends on the force."""
         return any(size != 0.0 for error, size in self.errors if MACHINE_ERRORS[error].slope is not None)
-
-
-def _check_error_size(error: MachineError, size: Any) -> None:
-    """Check the size of a machine error: a number, or two ends in ascending order; ValueError otherwise."""
-    ends = size if isinstance(size, tuple) else (size, size)
-    if len(ends) != 2 or not -inf < ends[0] <= ends[1] < inf or (isinstance(size, tuple) and ends[0] == ends[1]):
-        raise ValueError(f"{error.name} = {shown(size)} must be a number, or two ends in ascending order")
-    require(error.name, ends[0], error.quantity.allows(ends[0]), error.quantity.allowed)
 
 
 IDEAL_MACHINE = Machine(name="")

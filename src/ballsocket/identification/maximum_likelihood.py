@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy
 
@@ -66,10 +65,6 @@ def identify(
     seed : int
         Seed of the search for a start.
 
-    Returns
-    -------
-    IdentificationResult
-
     Raises
     ------
     ValueError
@@ -93,12 +88,16 @@ def identify(
         raise TypeError(f"model must be a model, such as bs.Tabulated(), got {shown(model)}")
     if not all(map(is_plain_number, joint.numbers())):
         raise ValueError("joint must have plain numbers, got arrays: identify one joint at a time")
-    sets = _check_data_sets(data)
+    sets = tuple(data) if isinstance(data, list | tuple) else (data,)
+    if not sets:
+        raise ValueError("data must have at least one set of measurements, got none")
+    for measured in sets:
+        if not isinstance(measured, Measured):
+            raise TypeError(f"data must be sets of Measured, got {shown(measured)}")
     unknowns = collect_unknowns(free, [measured.machine for measured in sets], model)
-    _check_counts_and_areas(sets, joint, unknowns)
-    _check_observables(sets, {unknown.name for unknown in unknowns})
+    _check_data(sets, joint, unknowns)
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
-    uncertainty = _join_data_sets(measured.uncertainty for measured in sets)
+    uncertainty = _joined(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
     best = find_best_fit(misfit, seed)
     if any(measured.has_unknown_noise for measured in sets):
@@ -163,38 +162,25 @@ def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
     data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
-    of_loads = _join_data_sets(_relative_load_uncertainty(measured) for measured in data)
-    results, stated = misfit.forward.results_at(values)[0], _join_data_sets(measured.uncertainty for measured in data)
-    shares = _join_data_sets(numpy.full(len(measured), measured.relative_uncertainty) for measured in data)
+    of_loads = [numpy.zeros(len(measured)) for measured in data]  # relative; 0 for a number of the joint
+    for share, measured in zip(of_loads, data, strict=True):
+        if measured.load:
+            numpy.divide(measured.load_uncertainty, measured.loads, out=share, where=measured.loads > 0)
+    results, stated = misfit.forward.results_at(values)[0], _joined(measured.uncertainty for measured in data)
+    shares = _joined(numpy.full(len(measured), measured.relative_uncertainty) for measured in data)
     stated = numpy.where((shares > 0) & (results != 0), shares * abs(results), stated)
-    is_estimated = _join_data_sets(numpy.full(len(measured), measured.has_unknown_noise) for measured in data)
+    is_estimated = _joined(numpy.full(len(measured), measured.has_unknown_noise) for measured in data)
     of_values = numpy.where(is_estimated, misfit.uncertainty, stated)
-    return numpy.hypot(of_values, numpy.where((of_loads > 0) & ~is_estimated, slope * of_loads, 0.0))
+    relative = _joined(of_loads)
+    return numpy.hypot(of_values, numpy.where((relative > 0) & ~is_estimated, slope * relative, 0.0))
 
 
-def _relative_load_uncertainty(measured: Measured) -> Numbers:
-    """Compute the relative uncertainty of each load of a data set; 0 for a number of the joint."""
-    if not measured.load:
-        return numpy.zeros(len(measured))
-    loads = measured.loads
-    return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
-
-
-def _join_data_sets(arrays: Iterable[Numbers]) -> Numbers:
+def _joined(arrays: Iterable[Numbers]) -> Numbers:
     return numpy.concatenate(list(arrays))
 
 
-def _check_data_sets(data: Any) -> tuple[Measured, ...]:
-    sets = tuple(data) if isinstance(data, list | tuple) else (data,)
-    if not sets:
-        raise ValueError("data must have at least one set of measurements, got none")
-    for measured in sets:
-        if not isinstance(measured, Measured):
-            raise TypeError(f"data must be sets of Measured, got {shown(measured)}")
-    return sets
-
-
-def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
+def _check_data(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
+    """Check areas, the number of values, and that the numbers of all custom observables are unknowns."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:
@@ -206,10 +192,7 @@ def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Se
             f"{count} values do not suffice for {len(ranges)} unknowns ({', '.join(ranges)}): measure more values, or "
             "free fewer unknowns"
         )
-
-
-def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
-    """Check that the numbers of all custom observables are unknowns; ValueError otherwise."""
+    names = {unknown.name for unknown in unknowns}
     needed = {name: measured for measured in data if measured.observable for name in measured.observable.numbers}
     for name, measured in needed.items():
         if name not in names:

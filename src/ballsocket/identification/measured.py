@@ -14,6 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import known_name, require, select_load, shown
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
+from ..problem.material import set_fields
 from .machine import IDEAL_MACHINE, Machine
 from .observables import CustomObservable
 
@@ -120,98 +121,79 @@ class Measured:
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
             name = ALIASES.get(self.quantity, self.quantity) if isinstance(self.quantity, str) else self.quantity
-            self._set_field("quantity", known_name("quantity", name, MEASURED))
-        self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
-        values = _to_float_array(self._message_label(self.quantity), self.values)
-        self._set_field("values", values)
-        self._check_measured_values(values)
+            set_fields(self, quantity=known_name("quantity", name, MEASURED))
+        described = MEASURED[self.quantity] if self.observable is None else self.observable.described
+        values = _to_float_array(self._label(self.quantity), self.values)
+        set_fields(self, described=described, values=values)
+        self._check_values()
         share = self.relative_uncertainty
         require("relative_uncertainty", share, 0 <= share < inf, "a share of each value is at least 0 and finite")
-        if self.uncertainty is None and share:
-            self._set_field("uncertainty", share * abs(values))
-        if self.uncertainty is None:
-            self._set_field("has_unknown_noise", True)
-            self._set_field("uncertainty", _FIRST_NOISE * float(abs(values).max()) or 1.0)
-        self._set_field(
-            "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
-        )
-        sigma, title = self.uncertainty, self._message_label(f"{self.quantity}_uncertainty")
+        stated, is_unknown = self.uncertainty, self.uncertainty is None and not share
+        if is_unknown:
+            stated = _FIRST_NOISE * float(abs(values).max()) or 1.0
+        elif stated is None:
+            stated = share * abs(values)
+        sigma = self._broadcast(f"{self.quantity}_uncertainty", stated)
+        title = self._label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
+        set_fields(self, has_unknown_noise=is_unknown, uncertainty=sigma)
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
-            self._check_and_set_load(values)
+            self._check_and_set_load()
         if (self.angle is not None) != (self.quantity == "pressure"):
             rule = "needs an angle" if self.angle is None else "takes no angle"
-            raise ValueError(f"{self._message_label(self.quantity)} {rule}")
+            raise ValueError(f"{self._label(self.quantity)} {rule}")
         if self.angle is not None:
-            self._set_field("angle", FIELD["angle"].check(self._broadcast_to_values("angle", self.angle, values)))
+            set_fields(self, angle=FIELD["angle"].check(self._broadcast("angle", self.angle)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
-            raise ValueError(
-                f"{self._message_label(self.quantity)} has a machine, but only indentations are read by one"
-            )
-        self._set_field("order", self._check_reading_numbers(values))
+            raise ValueError(f"{self._label(self.quantity)} has a machine, but only indentations are read by one")
+        order = numpy.arange(float(values.size))
+        if self.order is not None:
+            order = self._broadcast("order", self.order)
+            require(self._label("order"), order, abs(order) < inf, "numbers of readings must be finite")
+        set_fields(self, order=order)
 
-    def _set_field(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
-
-    def _message_label(self, quantity: str) -> str:
+    def _label(self, quantity: str) -> str:
         return f"{self.name}: {quantity}" if self.name else quantity
 
-    def _check_reading_numbers(self, values: Numbers) -> Numbers:
-        if self.order is None:
-            return numpy.arange(float(values.size))
-        reading_numbers = self._broadcast_to_values("order", self.order, values)
-        title, rule = self._message_label("order"), "numbers of readings must be finite"
-        require(title, reading_numbers, abs(reading_numbers) < inf, rule)
-        return reading_numbers
-
-    def _check_measured_values(self, values: Numbers) -> None:
-        missing_indices = numpy.flatnonzero(numpy.isnan(values))
-        if len(missing_indices):
-            row_numbers = ", ".join(str(index + 1) for index in missing_indices[:8])
-            raise ValueError(
-                f"{self._message_label(self.quantity)} has no number in row {row_numbers}: add it, or omit the row"
-            )
+    def _check_values(self) -> None:
+        label, values = self._label(self.quantity), self.values
+        missing = numpy.flatnonzero(numpy.isnan(values))
+        if len(missing):
+            rows = ", ".join(str(index + 1) for index in missing[:8])
+            raise ValueError(f"{label} has no number in row {rows}: add it, or omit the row")
         if self.observable is not None:
             return
         if not self.described.allowed:
-            require(self._message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+            require(label, values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
-            allowed = self.described.allows(values)
             rule = self.described.allowed + (_ZERO_HINT if self.quantity == "indentation" else "")
-            require(self._message_label(self.quantity), values, allowed, rule)
+            require(label, values, self.described.allows(values), rule)
 
-    def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
+    def _broadcast(self, name: str, numbers: Any) -> Numbers:
         """Repeat one number for all values, or check that there is one number for each value."""
-        number_array = _to_float_array(self._message_label(name), numbers)
-        if number_array.size not in (1, values.size):
-            raise ValueError(
-                f"{self._message_label(name)} must have 1 or {values.size} numbers, got {number_array.size}"
-            )
-        if numpy.isnan(number_array).any():
-            raise ValueError(
-                f"{self._message_label(name)} has no number in row {int(numpy.isnan(number_array).argmax()) + 1}"
-            )
-        return numpy.broadcast_to(number_array, values.shape)
+        label, size = self._label(name), self.values.size
+        array = _to_float_array(label, numbers)
+        if array.size not in (1, size):
+            raise ValueError(f"{label} must have 1 or {size} numbers, got {array.size}")
+        if numpy.isnan(array).any():
+            raise ValueError(f"{label} has no number in row {int(numpy.isnan(array).argmax()) + 1}")
+        return numpy.broadcast_to(array, self.values.shape)
 
-    def _check_and_set_load(self, values: Numbers) -> None:
+    def _check_and_set_load(self) -> None:
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
+        label = self._label(kind)
         if kind == self.quantity:
-            raise ValueError(
-                f"{self._message_label(kind)} is both the measured quantity and the load; choose another load"
-            )
-        loads = self._broadcast_to_values(kind, load, values)
+            raise ValueError(f"{label} is both the measured quantity and the load; choose another load")
+        loads = self._broadcast(kind, load)
         if self.machine is IDEAL_MACHINE or kind != "indentation":
-            require(self._message_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
-        self._set_field("load", kind)
-        self._set_field(kind, loads)
-        load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
-        title = self._message_label("load_uncertainty")
-        require(title, load_sigma, (load_sigma >= 0) & (load_sigma < inf), _NOT_NEGATIVE)
-        self._set_field("load_uncertainty", load_sigma)
+            require(label, loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
+        sigma = self._broadcast("load_uncertainty", self.load_uncertainty)
+        require(self._label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
+        set_fields(self, load=kind, **{kind: loads}, load_uncertainty=sigma)
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
-            require(self._message_label(kind), loads, (loads > 0) | (values == 0), rule)
+            require(label, loads, (loads > 0) | (self.values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -231,17 +213,15 @@ class Measured:
         if self.quantity == "area":
             half_ball_area = 2 * pi * float(joint.ball_radius) ** 2
             rule = f"a contact area is below half of the ball, 2π R1² = {half_ball_area:.4g} mm²"
-            require(self._message_label("area"), self.values, self.values < half_ball_area, rule)
+            require(self._label("area"), self.values, self.values < half_ball_area, rule)
 
 
 def _to_float_array(name: str, numbers: Any) -> Numbers:
     try:
-        number_array = numpy.asarray(numbers)
-        float_array = numpy.atleast_1d(
-            number_array.astype(float, casting="safe" if number_array.dtype.kind == "c" else "unsafe")
-        )
+        array = numpy.asarray(numbers)
+        array = numpy.atleast_1d(array.astype(float, casting="safe" if array.dtype.kind == "c" else "unsafe"))
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {shown(numbers)} must be numbers") from error
-    if float_array.ndim != 1 or float_array.size == 0:
-        raise ValueError(f"{name} of shape {float_array.shape} must be a row of numbers")
-    return float_array
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"{name} of shape {array.shape} must be a row of numbers")
+    return array

@@ -21,23 +21,10 @@ Slopes = Callable[[ForwardModel, ParameterTransform, Numbers], tuple[Numbers, Nu
 
 
 def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute model results and their derivatives with respect to theta by central differences.
+    """Compute model results and their derivatives with respect to theta by central differences; see `Slopes`.
 
-    One array call computes all points. At the ends of the ranges, differences are one-sided.
-
-    Parameters
-    ----------
-    forward : ForwardModel
-    transform : ParameterTransform
-    theta : array (..., unknowns)
-        Scaled parameters.
-
-    Returns
-    -------
-    results : array (..., data)
-        NaN where the model has no result.
-    derivatives : array (..., data, unknowns)
-        Derivatives with respect to theta.
+    One array call computes all points. At the ends of the ranges, differences are one-sided. A result is NaN where the
+    model has none.
     """
     unknown_count = theta.shape[-1]
     points = theta.reshape(-1, 1, unknown_count)
@@ -69,27 +56,11 @@ def _replace_missing_neighbours(
 def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
     """Compute model results and their derivatives with respect to theta by JAX.
 
-    The first call for a set of data compiles the model, which takes seconds.
+    Theta has the shape (..., unknowns), results (..., data), derivatives (..., data, unknowns). The first call for a
+    set of data compiles the model, which takes seconds.
 
-    Parameters
-    ----------
-    forward : ForwardModel
-    transform : ParameterTransform
-    theta : array (..., unknowns)
-        Scaled parameters.
-
-    Returns
-    -------
-    results : array (..., data)
-    derivatives : array (..., data, unknowns)
-        Derivatives with respect to theta.
-
-    Raises
-    ------
-    ValueError
-        A model that JAX cannot trace.
-    ImportError
-        JAX is not installed.
+    Raises ValueError: a model that JAX cannot trace.
+    Raises ImportError: JAX is not installed.
     """
     if not forward.model.differentiable:
         raise ValueError(f"{forward.model.name} cannot be traced by JAX: use by_differences")
@@ -180,8 +151,7 @@ class Misfit:
         standardised = self.standardised_residuals(results)
         residual_slopes = numpy.where(
             self.saturated, self.scatter.censored(standardised)[1], self.scatter.slope(standardised)
-        )
-        residual_slopes = residual_slopes / (self.widening * self.uncertainty)
+        ) / (self.widening * self.uncertainty)
         has_distribution = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
         prior_slopes = numpy.broadcast_to(
             numpy.eye(theta.shape[-1])[has_distribution],
@@ -228,16 +198,14 @@ class Misfit:
         return slopes.T @ (self._information_weights(results) * errors).T
 
     def _information_weights(self, results: Numbers) -> Numbers:
-        """Compute the weight of each value: its Fisher information about the model result, in 1/unit²."""
-        information = numpy.where(self.saturated, self._censored_information(results), self.scatter.information)
-        return information / (self.widening * self.uncertainty) ** 2
+        """Compute the weight of each value: its Fisher information about the model result, in 1/unit².
 
-    def _censored_information(self, results: Numbers) -> Numbers:
-        """Compute the Fisher information of saturated values, for an uncertainty of 1.
-
-        It is -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln of the density.
+        For a saturated value it is -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln
+        of the density.
         """
         z = self.standardised_residuals(results)
         residual, slope = self.scatter.censored(z)
         hazard, density_slope = -residual * slope, self.scatter.misfit(z) * self.scatter.slope(z)
-        return numpy.maximum(hazard * (hazard + density_slope), 0.0)
+        censored = numpy.maximum(hazard * (hazard + density_slope), 0.0)
+        information = numpy.where(self.saturated, censored, self.scatter.information)
+        return information / (self.widening * self.uncertainty) ** 2

@@ -16,8 +16,6 @@ from .result import IdentificationResult
 _MAX_PROPOSALS = 5
 _LEAST_SHIFT_RATIO = 5e-3  # shift over half a band, below which a shift is listed as zero
 
-_RATIO = "ratio: of the shift to half the band"
-
 
 def describe_identification(result: IdentificationResult, posterior: Posterior | None = None) -> Answer:
     """Describe the unknowns with their bands, products, fit, neglected machine errors, and the next measurement."""
@@ -53,7 +51,15 @@ def _estimates(result: IdentificationResult, posterior: Posterior | None) -> Tab
 def _quality(result: IdentificationResult, posterior: Posterior | None) -> Iterator[str]:
     information = result.information
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
-    yield f"information of {rank}; {_scatter(result)}"
+    if result.freedom <= 0:
+        scatter = "as many values as unknowns: the quality of the fit cannot be tested"
+    elif all(data.has_unknown_noise for data in result.data):
+        scatter = "uncertainty of the data estimated from their scatter"
+    else:
+        widening = result.misfit.widening
+        widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
+        scatter = f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
+    yield f"information of {rank}; {scatter}"
     if posterior is not None:
         worst, fewest = max(posterior.r_hat.values()), min(posterior.effective.values())
         verdict = "converged" if posterior.converged else f"not converged, which is up to {CONVERGED}"
@@ -61,16 +67,6 @@ def _quality(result: IdentificationResult, posterior: Posterior | None) -> Itera
             f"{len(posterior.samples)} samples, as good as {fewest:.0f} independent ones; "
             f"acceptance {posterior.acceptance:.2f}, R-hat {worst:.4f}: {verdict}"
         )
-
-
-def _scatter(result: IdentificationResult) -> str:
-    if result.freedom <= 0:
-        return "as many values as unknowns: the quality of the fit cannot be tested"
-    if all(data.has_unknown_noise for data in result.data):
-        return "uncertainty of the data estimated from their scatter"
-    widening = result.misfit.widening
-    widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
-    return f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
 
 
 def _machine_errors(result: IdentificationResult) -> Table:
@@ -88,7 +84,8 @@ def _machine_errors(result: IdentificationResult) -> Table:
             else:
                 cells += [error.shifts[name], ratio] if ratio > _LEAST_SHIFT_RATIO else [0.0, 0.0]
         rows.append(Row(cells))
-    return Table("sensitivity", "Neglected errors of the machine", columns, rows, [_RATIO])
+    lines = ["ratio: of the shift to half the band"]
+    return Table("sensitivity", "Neglected errors of the machine", columns, rows, lines)
 
 
 def _proposals(result: IdentificationResult) -> Table:

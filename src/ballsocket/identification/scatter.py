@@ -43,41 +43,35 @@ class ScatterModel(Protocol):
 
 
 @dataclass(frozen=True)
-class NormalScatter:
+class NormalScatter(ScatterModel):
     """Normal distribution of the readings about the true value."""
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading about the true value, in 1/uncertainty²: 1."""
         return 1.0
 
     @property
     def constant(self) -> float:
-        """Logarithm of the probability density at 0, for an uncertainty of 1."""
         return -log(2 * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Return the least-squares residual r(z), which equals the standardised residual z."""
         return z
 
     def slope(self, z: Numbers) -> Numbers:
-        """Return the derivative dr/dz of the least-squares residual, which is 1."""
         return numpy.ones_like(z)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the least-squares residual of a saturated reading and its derivative, from z."""
         from scipy.special import log_ndtr
 
         log_probability = log_ndtr(z)
         return _censored_residual(log_probability, numpy.exp(self.constant - z * z / 2 - log_probability))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Draw random readings from the standard normal distribution."""
         return random.standard_normal(count)
 
 
 @dataclass(frozen=True, kw_only=True)
-class HeavyTailed:
+class HeavyTailed(ScatterModel):
     """Student's t distribution of the readings, which limits the influence of outliers.
 
     Parameters
@@ -103,34 +97,24 @@ class HeavyTailed:
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading about the true value, in 1/uncertainty²."""
         return (self.degrees + 1) / (self.degrees + 3)
 
     @property
     def constant(self) -> float:
-        """Logarithm of the probability density at 0, for an uncertainty of 1."""
         n = self.degrees
         return lgamma((n + 1) / 2) - lgamma(n / 2) - log(n * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Compute the least-squares residual r(z) from the standardised residual z.
-
-        r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom.
-        """
+        # r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom
         return numpy.sign(z) * numpy.sqrt((self.degrees + 1) * numpy.log1p(z * z / self.degrees))
 
     def slope(self, z: Numbers) -> Numbers:
-        """Compute the derivative dr/dz of the least-squares residual r(z).
-
-        Its limit at 0 is sqrt((n + 1)/n).
-        """
         n, r = self.degrees, self.misfit(z)
-        at_centre = abs(z) < 1e-6
+        at_centre = abs(z) < 1e-6  # the limit of dr/dz at 0 is sqrt((n + 1)/n)
         slope = (n + 1) * z / (n + z * z) / numpy.where(at_centre, 1.0, r)
         return numpy.where(at_centre, ((n + 1) / n) ** 0.5, slope)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the least-squares residual of a saturated reading and its derivative, from z."""
         from scipy.special import stdtr
 
         probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
@@ -139,7 +123,6 @@ class HeavyTailed:
         )
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
-        """Draw random readings from Student's t distribution."""
         return random.standard_t(self.degrees, count)
 
 

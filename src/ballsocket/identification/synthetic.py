@@ -17,27 +17,13 @@ from .measured import Measured
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Estimates and bands from repeated identifications of synthetic data.
-
-    Attributes
-    ----------
-    names : tuple of str
-    truth : array (unknowns,)
-        True values in standard deviations of the priors, as all that follows.
-    middle, low, high : array (trials, unknowns)
-        Estimates, and the ends of their bands of 95 %.
-    """
+    """Estimates and bands from repeated identifications of synthetic data."""
 
     names: tuple[str, ...]
-    truth: Numbers
-    middle: Numbers
-    low: Numbers
+    truth: Numbers  #: (unknowns,), true values in standard deviations of the priors, as all that follows
+    middle: Numbers  #: (trials, unknowns), estimates
+    low: Numbers  #: (trials, unknowns), lower ends of their bands of 95 %
     high: Numbers
-
-    @property
-    def half_widths(self) -> Numbers:
-        """Half widths of all 95 % bands, in standard deviations of the priors."""
-        return (self.high - self.low) / 2
 
     @property
     def coverage(self) -> dict[str, float]:
@@ -48,7 +34,8 @@ class Trials:
     @property
     def bias(self) -> dict[str, float]:
         """Mean error of the estimates divided by the mean band width, for each unknown by name."""
-        bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half_widths.mean(axis=0))
+        half_widths = (self.high - self.low) / 2
+        bias = (self.middle - self.truth).mean(axis=0) / (2 * half_widths.mean(axis=0))
         return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
@@ -66,10 +53,6 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     count : int
         Sets of data, 1 or more.
     seed : int
-
-    Returns
-    -------
-    Trials
 
     Raises
     ------

@@ -10,8 +10,7 @@ import numpy
 
 from ..core.arrays import Array, Numbers, clip
 
-Constants = tuple[float, ...]
-"""Three numbers, one for each of C1, C2 and C3 in Eq. (18)."""
+Constants = tuple[float, ...]  # three numbers, one for each of C1, C2 and C3 in Eq. (18)
 
 
 class Interval(NamedTuple):

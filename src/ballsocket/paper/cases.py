@@ -22,8 +22,7 @@ from ..studies.calibration import Calibration, as_polynomial, calibrate
 RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance": (0.05, 0.2), "poisson": (0.3, 0.49)}
 """Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
 
-THICKNESS = (3.0, 15.0)
-"""Smallest and largest liner thickness in mm."""
+THICKNESS = (3.0, 15.0)  # smallest and largest liner thickness in mm
 
 RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
 """Ratios R2/L over which Table 3 is refitted."""
@@ -98,22 +97,19 @@ def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:
     return first, second, third
 
 
-POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
-"""Poisson's ratios of Table 3 and Figure 2."""
+POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)  # Poisson's ratios of Table 3 and Figure 2
 
 CLEARANCES = (0.05, 0.1, 0.15, 0.2)
 HEAD_RADII = (11.0, 14.0, 16.0, 20.0, 23.0)
 THICKNESSES = (3.0, 6.0, 9.0, 12.0)
 """Series of Figure 5 in mm. The paper states the ends of each series, and not always the values between them."""
 
-LOAD = 3000.0
-"""Force in N at which pressures and areas are shown."""
+LOAD = 3000.0  # force in N at which pressures and areas are shown
 
 LOADS = numpy.array([1000.0, 1500.0, 2000.0, 2500.0, 3000.0])
 """Forces in N over which the foundation modulus is averaged."""
 
-OUTER_RADII = RANGES["outer_radius"]
-"""Limits of Table 1 for R2 + L in mm, dotted in Figure 6."""
+OUTER_RADII = RANGES["outer_radius"]  # limits of Table 1 for R2 + L in mm, dotted in Figure 6
 
 
 def hip(poisson: Numbers | float = 0.4) -> Joint:

@@ -130,8 +130,7 @@ def _parts(
     }
 
 
-_COARSE = 13
-"""Number of head radii and of liner thicknesses in maps that are solved joint by joint."""
+_COARSE = 13  # number of head radii and of liner thicknesses in maps that are solved joint by joint
 
 
 def _column(name: str, model: Model, poisson: float) -> dict[str, Any]:

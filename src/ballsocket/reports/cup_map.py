@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import ContourSet
 
-BORE = "0.92"
-"""Colour of a bore without pressure."""
+BORE = "0.92"  # colour of a bore without pressure
 
 _POINTS = 321
 _LEVELS = 8

@@ -49,8 +49,7 @@ _SECTIONS = MappingProxyType(
 
 _CHECK_RESULTS = {True: "passed", False: "FAILED", None: "not run"}
 _STATUS_ORDER = (NOT_MET, UNKNOWN, MET)
-_MAPPED = ("max_pressure", "edge_distance", "wear_rate")
-"""Results that are drawn over the matrix."""
+_MAPPED = ("max_pressure", "edge_distance", "wear_rate")  # results that are drawn over the matrix
 
 Rows = list[tuple[str, ...]]
 

@@ -21,21 +21,13 @@ if TYPE_CHECKING:
 
 _NANOMETRES = 1e6
 _LEVELS = 14
-_LARGEST_SHOWN = 2.0
-"""Largest film in the colours of the map, relative to the central film."""
+_LARGEST_SHOWN = 2.0  # largest film in the colours of the map, relative to the central film
 
 _SECTION_POINTS = 301
-_FRAME = 1.15
-"""Half width of the map, relative to the contact on the page."""
-
-_MAPS = 3
-"""Number of instants with a map."""
-
-_SHOWN = 90.0
-"""Percentile of the films of a cycle that ends the colours."""
-
-_CORE_LEVEL = 0.5
-"""Level of the mask of the core at its outline."""
+_FRAME = 1.15  # half width of the map, relative to the contact on the page
+_MAPS = 3  # number of instants with a map
+_SHOWN = 90.0  # percentile of the films of a cycle that ends the colours
+_CORE_LEVEL = 0.5  # level of the mask of the core at its outline
 
 
 def film_figure(film: FilmResult) -> Figure:
@@ -53,7 +45,7 @@ def _title(film: FilmResult) -> str:
     central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
     return (
         f"{film.contact.model.name}, {plain_number(film.contact.force)} N, {numpy.linalg.norm(film.spin):g} rad/s, "
-        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.0f} nm, minimum {least:.0f} nm"
+        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.4g} nm, minimum {least:.4g} nm"
     )
 
 

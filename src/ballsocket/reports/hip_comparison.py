@@ -11,8 +11,8 @@ import numpy
 
 from ..core.answers import named_records
 from ..core.storage.atomic_files import write_csv
-from ..hip.comparison_answer import HipRun
 from ..hip.history import History
+from ..hip.history_answer import HipRun
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
 
@@ -26,13 +26,7 @@ _PANELS = {"volume": "worn volume [mm³]", "penetration": "penetration [mm]"}
 
 
 def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
-    """Draw worn volume and penetration over the cycles, with a line for each hip.
-
-    Parameters
-    ----------
-    histories : mapping of str to History, or sequence of History
-        Simulations by the name in the legend; by default the name of their joint.
-    """
+    """Draw worn volume and penetration over the cycles, with a named line for each hip, by default its joint."""
     if not isinstance(histories, Mapping):
         histories = {history.use.joint.name or f"hip {i + 1}": history for i, history in enumerate(histories)}
     return comparison_figure([HipRun(name=name, history=history) for name, history in histories.items()])

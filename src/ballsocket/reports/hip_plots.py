@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from ..hip.hip_setup import HipSetup
 
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
-_HEADROOM = 1.2
-"""Height of the axes relative to the largest value, which leaves room for a legend."""
+_HEADROOM = 1.2  # height of the axes relative to the largest value, which leaves room for a legend
 
 
 def wear_map(history: History, report: Report | None = None) -> Figure:

@@ -12,8 +12,7 @@ from ..core.unit_systems import Units
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
 from ..hip.bands_answer import describe_bands
-from ..hip.film import WAVE_NOTE
-from ..hip.hamrock_dowson import CONFORMITY_NOTE
+from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
 from ..hip.history import History
 from ..hip.history_answer import describe_history
 from . import hip_plots
@@ -62,10 +61,7 @@ def hip_report(
 ) -> str:
     """Return the page of a wear simulation as HTML; bands of patients who differ have sections of their own.
 
-    Raises
-    ------
-    ValueError, OSError
-        As `pages.logo_address`, for the logo of the head.
+    Raises ValueError, OSError: as `pages.logo_address`, for the logo of the head.
     """
     answer = describe_history(history)
     sections = answer_sections(answer, units)
@@ -91,16 +87,11 @@ def _figures(history: History, bands: Bands | None) -> dict[str, tuple[str, Call
         figures["film_course"] = ("Film over the cycle", lambda run: hip_plots.film_figure(run.use, film), caption)
     if bands is not None:
         curve = partial(hip_plots.penetration_curve, bands=bands)
-        figures["penetration"] = ("Penetration", curve, _band_caption(bands))
+        caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
+        if bands.shared is not None:
+            caption += ", the dark band the same share of the patients at the median coefficient"
+        figures["penetration"] = ("Penetration", curve, f"{caption}.")
         if bands.indices is not None:
             caption = "Sobol's indices with 95 % intervals."
             figures["matters"] = ("Sensitivity", lambda _: hip_plots.share_figure(bands), caption)
     return figures
-
-
-def _band_caption(bands: Bands) -> str:
-    caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
-    shared = (
-        "." if bands.shared is None else ", the dark band the same share of the patients at the median coefficient."
-    )
-    return caption + shared

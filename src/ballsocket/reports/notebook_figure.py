@@ -25,10 +25,7 @@ class NotebookFigure(Figure):
     def show(self, warn: bool = True) -> None:
         """Display the figure in a notebook.
 
-        Raises
-        ------
-        RuntimeError
-            Python runs elsewhere, and pyplot does not know the figure.
+        Raises RuntimeError: Python runs elsewhere, and pyplot does not know the figure.
         """
         ipython: Any = sys.modules.get("IPython")
         if self.canvas.manager is not None:

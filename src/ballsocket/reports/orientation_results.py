@@ -13,12 +13,12 @@ from rich.text import Text
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
-from ..core.unit_systems import Units
+from ..core.unit_systems import Units, joint_sentence
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
 from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
-from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -147,7 +147,6 @@ def _draw_rim(axes: Axes, orientations: Orientations, x: Numbers, y: Numbers) ->
 
 
 def _hatch(axes: Axes, x: Numbers, y: Numbers, where: Numbers, hatch: str, label: str) -> None:
-    """Hatch all cells at the points of a mask."""
     from matplotlib.patches import Rectangle
 
     if not where.any():
@@ -185,8 +184,7 @@ def load_text(orientations: Orientations) -> str:
     return f"{load} along ({along}); arc of cover {degrees(orientations.model.cup.arc_of_cover):.4g}°"
 
 
-LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")
-"""Fields of orientations that can be limited."""
+LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")  # fields of orientations that can be limited
 
 
 def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
@@ -246,7 +244,7 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (),
     Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
     """
     terminal = Terminal(units)
-    print_joint(terminal, orientations.joint)
+    print_folded(terminal, joint_sentence(orientations.joint), "bold")
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():
@@ -307,8 +305,7 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit],
     return table
 
 
-_MARKS = ("", "?", "*")
-"""Marks of the verdicts on the limits."""
+_MARKS = ("", "?", "*")  # marks of the verdicts on the limits
 
 
 def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str, digits: int) -> Text:

@@ -43,8 +43,7 @@ def _environment() -> Environment:
     )
 
 
-PAGE_FORMATS = (".html", ".pdf")
-"""Endings of the files that `write_page` writes."""
+PAGE_FORMATS = (".html", ".pdf")  # endings of the files that `write_page` writes
 
 _MAX_LOGO_SIZE = 1_000_000
 _LOGO_FORMATS = {".png": "png", ".svg": "svg+xml"}
@@ -53,12 +52,8 @@ _LOGO_FORMATS = {".png": "png", ".svg": "svg+xml"}
 def check_page_path(path: Path) -> None:
     """Check that a page can be written to a path.
 
-    Raises
-    ------
-    ValueError
-        Another ending than .html or .pdf, or a folder that does not exist.
-    ImportError
-        A .pdf, and the writer of PDF is not installed.
+    Raises ValueError: another ending than .html or .pdf, or a folder that does not exist.
+    Raises ImportError: a .pdf, and the writer of PDF is not installed.
     """
     check_ending("report", path, *PAGE_FORMATS)
     if path.suffix.lower() == ".pdf":
@@ -68,12 +63,8 @@ def check_page_path(path: Path) -> None:
 def write_page(page: str, path: Path, paper: str = "A4") -> None:
     """Write a page as HTML, or printed as PDF on sheets of "A4" or "letter", according to the ending of `path`.
 
-    Raises
-    ------
-    ValueError, ImportError
-        As `check_page_path`.
-    OSError
-        The path cannot be written to.
+    Raises ValueError, ImportError: as `check_page_path`.
+    Raises OSError: the path cannot be written to.
     """
     check_page_path(path)
     with write_atomically(path) as draft:
@@ -95,10 +86,7 @@ def pdf_of(page: str, paper: str = "A4") -> bytes:
 def _weasyprint() -> Any:
     """Import the writer of PDF.
 
-    Raises
-    ------
-    ImportError
-        It is not installed, or a library of the system that it needs.
+    Raises ImportError: it is not installed, or a library of the system that it needs.
     """
     needs("pdf", "weasyprint")
     try:
@@ -113,12 +101,8 @@ def _weasyprint() -> Any:
 def logo_address(path: Path) -> str:
     """Return a picture in a file as an address inside the page.
 
-    Raises
-    ------
-    ValueError
-        Another format than PNG and SVG, or a file that is too large.
-    OSError
-        The file cannot be read.
+    Raises ValueError: another format than PNG and SVG, or a file that is too large.
+    Raises OSError: the file cannot be read.
     """
     form = _LOGO_FORMATS.get(path.suffix.lower())
     if form is None:
@@ -132,17 +116,13 @@ def logo_address(path: Path) -> str:
     return data_address(data, form)
 
 
-HEAD_TEXTS = ("customer", "project", "author")
-"""Texts of the head of a report."""
+HEAD_TEXTS = ("customer", "project", "author")  # texts of the head of a report
 
 
 def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any]:
     """Return the head of a report as values of its template; the date is by default today.
 
-    Raises
-    ------
-    ValueError, OSError
-        As `logo_address`.
+    Raises ValueError, OSError: as `logo_address`.
     """
     rows = [(name, getattr(details, name)) for name in HEAD_TEXTS if getattr(details, name)]
     return {
@@ -152,22 +132,10 @@ def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any
 
 
 def render_page(template: str, title: str, sections: Sections, **context: Any) -> str:
-    """Render a page with links to its sections.
+    """Render a page with links to its sections, and return its HTML.
 
-    Parameters
-    ----------
-    template : str
-        Name of a template that extends `page.html`.
-    title : str
-    sections : mapping of str to tuple
-        Title and HTML of each section by its id. A section without HTML is the block of that id in the template.
-    **context : Any
-        Values that the blocks of the template use.
-
-    Returns
-    -------
-    str
-        HTML of the complete page.
+    The template extends `page.html`. A section has a title and HTML by its id; without HTML it is the block of that id
+    in the template. The blocks of the template use the values of `context`.
     """
     parts = {
         name: {"title": head, "html": None if html is None else trusted_html(html)}

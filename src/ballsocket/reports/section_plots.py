@@ -39,13 +39,11 @@ if TYPE_CHECKING:
     Points = tuple[numpy.ndarray, numpy.ndarray]
     from ..elasticity.finite_elements.section import Part
 
-_UNBOUNDED_THICKNESS = 0.8
-"""Drawn thickness of an unbounded layer, relative to the socket radius."""
+_UNBOUNDED_THICKNESS = 0.8  # drawn thickness of an unbounded layer, relative to the socket radius
 
 _FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
-_MAX_GAP = 0.09
-"""Largest drawn gap beside the ball, relative to the socket radius."""
+_MAX_GAP = 0.09  # largest drawn gap beside the ball, relative to the socket radius
 
 
 def radii_of(joint: Joint) -> list[float]:
@@ -158,8 +156,7 @@ def _draw_load(axes: Axes, joint: Joint, contact: Contact, units: Units) -> None
     )
 
 
-_RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
-"""Nodes around an element in order, by its number of nodes."""
+_RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}  # nodes around an element in order, by its number of nodes
 
 _LEVELS = 14
 _SCALES = {"backing": "magma", "liner": "viridis", "ball": "cividis"}

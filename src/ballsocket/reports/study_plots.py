@@ -12,7 +12,6 @@ import numpy
 from ..contact.verdict import Verdict
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Sentence, Units
-from ..studies.extremes import amount_of
 from ..studies.limits import (
     Limit,
     allowed,
@@ -22,6 +21,7 @@ from ..studies.limits import (
     undecided_reason,
     verdicts,
 )
+from ..studies.study_answer import amount_of
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, in_units, new_figure, single_axes
 
 if TYPE_CHECKING:
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
 SHOWN = ("max_pressure", "area", "half_angle")
 """Results that a design map shows by default."""
 
-_VEIL = 0.65
-"""Opacity of the white veil over forbidden areas."""
+_VEIL = 0.65  # opacity of the white veil over forbidden areas
 
 
 def design_map(

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-INK = "black"
-"""Colour of text; a light one on a dark page."""
+INK = "black"  # colour of text; a light one on a dark page
 
 BLUE, VERMILLION, GREEN, PINK, SKY, ORANGE, GREY = (
     "#0072B2",
@@ -37,8 +36,7 @@ _LONG, _SHORT, _DOTS = (6.0, 2.0), (2.0, 1.5), (1.0, 1.0)
 _DOT, _TWO_DOTS, _EVEN = (7.0, 2.0, 1.5, 2.0), (4.0, 1.5, 1.0, 1.5, 1.0, 1.5), (4.0, 4.0)
 _DASHES = (_THROUGH, _LONG, _SHORT, _DOT, _TWO_DOTS, _DOTS, _EVEN)
 
-THICK, THIN = 2.0, 1.0
-"""Line widths of a valid and of an invalid contact, in points or in pixels of a browser."""
+THICK, THIN = 2.0, 1.0  # line widths of a valid and of an invalid contact, in points or in pixels of a browser
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     from .file import read_study
     from .file_formats import export
     from .limits import Limit, allowed
-    from .optimisation import Optimum, optimise
+    from .optimisation import Optimum, optimise, pareto
     from .parameters import PARAMETERS
-    from .pareto_front import pareto
     from .run import Progress, study
     from .sampling import Method
     from .store import read
@@ -80,9 +79,8 @@ _NAMES_BY_MODULE = {
     "file": "read_study",
     "file_formats": "export",
     "limits": "Limit allowed",
-    "optimisation": "Optimum optimise",
+    "optimisation": "Optimum optimise pareto",
     "parameters": "PARAMETERS",
-    "pareto_front": "pareto",
     "run": "Progress study",
     "sampling": "Method",
     "store": "read",

@@ -1,4 +1,4 @@
-"""Calibration of a foundation modulus to a reference model, with the error of the closed form."""
+"""Calibration of a foundation modulus to a reference model, with the error of the closed form, and its description."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ import numpy
 
 from ..contact import Model
 from ..core import arrays
+from ..core.answers import Answer, Column, Row, Table
 from ..core.arrays import Array
+from ..core.kinds import NEWTONS, PERCENT, PLAIN, Kind
+from ..core.unit_systems import Amount, Sentence, joint_sentence
 from ..model_catalogue import reference as exact
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, spherical_vessel
@@ -36,10 +39,7 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
     The constants are 0 or more.
 
-    Raises
-    ------
-    ValueError
-        A joint with fewer than three thicknesses.
+    Raises ValueError: a joint with fewer than three thicknesses.
     """
     from scipy.optimize import nnls
 
@@ -74,28 +74,13 @@ def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """Foundation modulus fitted to a reference model, with its errors.
+    """Foundation modulus fitted to a reference model, with its errors."""
 
-    Attributes
-    ----------
-    modulus : Modulus
-        Fitted modulus; `model` is the closed form with it.
-    joint : Joint
-        Joints of the fit (numbers or arrays).
-    force : array
-        Loads in N.
-    wanted : array
-        Target: p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint.
-    spread : float
-        Largest relative deviation of p0/d at a single load from that mean.
-    reference : Model
-    """
-
-    modulus: Modulus
-    joint: Joint
-    force: numpy.ndarray
-    wanted: numpy.ndarray
-    spread: float
+    modulus: Modulus  #: fitted modulus; `model` is the closed form with it
+    joint: Joint  #: joints of the fit (numbers or arrays)
+    force: numpy.ndarray  #: loads in N
+    wanted: numpy.ndarray  #: target: p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint
+    spread: float  #: largest relative deviation of p0/d at a single load from that mean
     reference: Model
 
     @property
@@ -159,10 +144,6 @@ def calibrate(
     reference : Model
         `Exact()` by default.
 
-    Returns
-    -------
-    Calibration
-
     Raises
     ------
     ValueError
@@ -193,6 +174,27 @@ def calibrate(
         wanted=wanted,
         spread=float(numpy.max(abs(moduli / wanted - 1))),
         reference=model,
+    )
+
+
+def describe_calibration(fit: Calibration) -> Answer:
+    """Describe a fitted modulus with its residual and the error of the closed form that uses it."""
+    foundation = Kind.FOUNDATION.written
+    unit = foundation if fit.modulus.name == "constant" else PLAIN
+    amounts = [(fit.modulus.name, Amount(constant, unit, 6)) for constant in map(float, fit.modulus.constants)]
+    ends = dict.fromkeys([float(numpy.min(fit.wanted)), float(numpy.max(fit.wanted))])
+    amounts += [("K = p0/d of the reference", Amount(end, foundation, 5)) for end in ends]
+    low, high = (Amount(float(end), NEWTONS) for end in (fit.force.min(), fit.force.max()))
+    shares = {
+        Sentence("spread over {} to {}", low, high): fit.spread,
+        "largest residual of the fit": float(numpy.max(abs(fit.residual))),
+    }
+    shares |= {f"closed form, worst error in {name.replace('_', ' ')}": error for name, error in fit.error.items()}
+    amounts += [(title, Amount(share, PERCENT, 3)) for title, share in shares.items()]
+    columns = [Column.of_words("number"), Column.of_number("value")]
+    return Answer(
+        title=joint_sentence(fit.joint),
+        tables=[Table("calibration", "Calibration", columns, [Row(cells) for cells in amounts])],
     )
 
 

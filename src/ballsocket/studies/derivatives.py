@@ -71,19 +71,23 @@ def finite_differences(
     """
     names = _check_arguments(quantities, at)
     steps = {name: _choose_steps(joint, at, name, model.smooth_step) for name in at}
-    # row 0 is the point; rows 2i + 1 and 2i + 2 have the two steps of parameter i
-    rows = {name: numpy.full(2 * len(at) + 1, float(value)) for name, value in at.items()}
-    for index, name in enumerate(at):
-        rows[name][2 * index + 1 : 2 * index + 3] += steps[name]
-    results = press_quantities(model, joint, rows, names)
-    values = {quantity: float(row[0]) for quantity, row in results.items()}
-    return values, {
-        quantity: {
-            name: _parabola_derivative(row[2 * index + 1 : 2 * index + 3] - row[0], steps[name])
-            for index, name in enumerate(at)
-        }
-        for quantity, row in results.items()
-    }
+    results = press_quantities(model, joint, _star(at, steps), names)
+    derivatives: Derivatives = {}
+    for quantity, row in results.items():
+        derivatives[quantity] = {}
+        for index, (name, (a, b)) in enumerate(steps.items()):
+            # slope at 0 of the parabola through 0 and the rises at both steps
+            rise_a, rise_b = row[2 * index + 1 : 2 * index + 3] - row[0]
+            derivatives[quantity][name] = float((b * b * rise_a - a * a * rise_b) / (a * b * (b - a)))
+    return {quantity: float(row[0]) for quantity, row in results.items()}, derivatives
+
+
+def _star(centre: Mapping[str, float], steps: Mapping[str, tuple[float, float]]) -> dict[str, Numbers]:
+    """Return a point in row 0, and in rows 2i + 1 and 2i + 2 the two steps of its parameter i."""
+    rows = {name: numpy.full(2 * len(steps) + 1, float(value)) for name, value in centre.items()}
+    for index, (name, pair) in enumerate(steps.items()):
+        rows[name][2 * index + 1 : 2 * index + 3] += pair
+    return rows
 
 
 def _choose_steps(joint: Joint, at: Mapping[str, float], name: str, relative_step: float) -> tuple[float, float]:
@@ -102,12 +106,6 @@ def _choose_steps(joint: Joint, at: Mapping[str, float], name: str, relative_ste
     return allowed[0]
 
 
-def _parabola_derivative(rises: Numbers, steps: tuple[float, float]) -> float:
-    """Compute the derivative at 0 of the parabola through 0 and the two points (steps, rises)."""
-    (rise_a, rise_b), (a, b) = rises, steps
-    return float((b * b * rise_a - a * a * rise_b) / (a * b * (b - a)))
-
-
 def jax_derivatives(
     model: Model, joint: Joint, quantities: Iterable[str], at: Mapping[str, float]
 ) -> tuple[dict[str, float], Derivatives]:
@@ -115,12 +113,8 @@ def jax_derivatives(
 
     The first call compiles. Parameters and results are those of `finite_differences`.
 
-    Raises
-    ------
-    ValueError
-        A model that JAX cannot trace; an unknown name; no load.
-    ImportError
-        JAX is not installed.
+    Raises ValueError: a model that JAX cannot trace; an unknown name; no load.
+    Raises ImportError: JAX is not installed.
     """
     names = _check_arguments(quantities, at)
     if not model.differentiable:
@@ -216,33 +210,31 @@ def local_uncertainty(
 ) -> LocalUncertainty:
     """Compute the elasticities of a contact, and its bands for tolerances.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of plain numbers.
-    cup : Cup
-        Rim of the socket.
-    load : mapping of str to float
-        One of force (N), indentation (mm), half_angle (rad), above 0.
-    tolerances : mapping of str to Rectangular, Normal or LogNormal
-        Independent distributions, by parameter.
+    The joint has plain numbers; the load is one of force (N), indentation (mm), half_angle (rad), above 0. Tolerances
+    are independent distributions, by parameter.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, a load of 0, joints without a result, or a joint or load outside its own tolerances.
+    Raises ValueError: an unknown name, a load of 0, joints without a result, or a joint or load outside its own
+    tolerances.
     """
     model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
     check_aims(model, tolerances)
-    for name, distribution in tolerances.items():
-        value = load.get(name) if name in LOADS else nominal_value(joint, name)
-        if value is not None:
-            check_nominal(name, value, distribution, PARAMETERS[name].written)
+    _check_nominal_values(joint, load, tolerances)
     numbers = {name: float(getattr(joint, name)) for name in _VARIED_LENGTHS}
     numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
     point = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
-    bands = _compute_bands(joint, cup, load, tolerances) if tolerances else {}
+    if not tolerances:
+        return LocalUncertainty(model=model.name, changes=changes, band={})
+    design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
+    check_values(design)
+    samples = design.values_in([slice(None)])
+    fixed = {} if set(samples) & set(load) else dict(load)
+    ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
+    scattered = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
+    results = press_quantities(scattered, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
+    if not all(numpy.isfinite(values).all() for values in results.values()):
+        raise ValueError(_NO_RESULT)
+    bands = {name: _ends(values) for name, values in results.items()}
     return LocalUncertainty(model=model.name, changes=changes, band=bands)
 
 
@@ -258,34 +250,22 @@ def off_axis_uncertainty(
     Each quantity is a sum of quadratics, one of each toleranced parameter through three presses. Interactions of the
     parameters are neglected. `band` also has the edge distance.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of plain numbers.
-    model : OffAxisContactModel
-        Model with its cup and the direction of the load.
-    load : mapping of str to float
-        One of force (N), indentation (mm), half_angle (rad), above 0.
-    tolerances : mapping of str to Rectangular, Normal or LogNormal
-        Independent distributions of parameters of the joint, of the load, or of its direction; at least one.
-    tilt : float, optional
-        Angle (rad) between load and cup's axis, if it sets the direction of the load.
+    Joint, load and tolerances are those of `local_uncertainty`, with at least one tolerance: of the joint, of the load,
+    or of its direction. The model has its cup and the direction of the load, unless the `tilt` (rad) between load and
+    cup's axis sets it.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, joints without a result, or a number outside its own tolerances.
+    Raises ValueError: an unknown name, joints without a result, or a number outside its own tolerances.
     """
     angles = {name: getattr(model.cup, name) for name in _ORIENTATION} if tilt is None else {"tilt": tilt}
-    for name, distribution in tolerances.items():
+    for name in tolerances:
         if name in AIMS and name not in angles:
             raise ValueError(f"{name} has a tolerance, and the direction of the load is set by {' and '.join(angles)}")
-        nominal = {**angles, **load}.get(name) if name in (*AIMS, *LOADS) else nominal_value(joint, name)
-        if nominal is not None:
-            check_nominal(name, float(nominal), distribution, PARAMETERS[name].written)
+    _check_nominal_values(joint, {**angles, **load}, tolerances)
     means = {name: float(distribution.frozen.mean()) for name, distribution in tolerances.items()}
     steps = numpy.array([_NODE * float(distribution.frozen.std()) for distribution in tolerances.values()])
-    results = press_quantities(model, joint, _star(means, steps, load), (*REPORTED_QUANTITIES, EDGE_DISTANCE))
+    fixed = {} if set(means) & set(load) else load
+    star = _star({**means, **fixed}, {name: (step, -step) for name, step in zip(means, steps, strict=True)})
+    results = press_quantities(model, joint, star, (*REPORTED_QUANTITIES, EDGE_DISTANCE))
     if not all(numpy.isfinite(values).all() for values in results.values()):
         raise ValueError(_NO_RESULT)
     design = sample(_QUADRATIC_SAMPLE_COUNT, **dict[str, Any](tolerances))
@@ -303,27 +283,13 @@ def off_axis_uncertainty(
     return LocalUncertainty(model=model.name, changes=changes, band=bands, presses=2 * len(means) + 1)
 
 
-def _star(means: Mapping[str, float], steps: Numbers, load: Mapping[str, float]) -> dict[str, Numbers]:
-    """Return the means, and for each parameter one point above and one below; the load stays if it has no tolerance."""
-    fixed = {} if set(means) & set(load) else dict(load)
-    rows = {name: numpy.full(2 * len(means) + 1, value) for name, value in {**means, **fixed}.items()}
-    for index, (name, step) in enumerate(zip(means, steps, strict=True)):
-        rows[name][2 * index + 1 : 2 * index + 3] += (step, -step)
-    return rows
+def _check_nominal_values(joint: Joint, stated: Mapping[str, float], tolerances: Mapping[str, Distribution]) -> None:
+    """Check that loads and angles, and the numbers of the joint, lie within their own tolerances."""
+    for name, distribution in tolerances.items():
+        nominal = stated.get(name) if name in (*AIMS, *LOADS) else nominal_value(joint, name)
+        if nominal is not None:
+            check_nominal(name, float(nominal), distribution, PARAMETERS[name].written)
 
 
 def _ends(values: Numbers) -> tuple[float, ...]:
     return tuple(float(end) for end in numpy.quantile(values, _BAND_PROBABILITIES))
-
-
-def _compute_bands(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances: Mapping[str, Distribution]) -> Bands:
-    design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
-    check_values(design)
-    samples = design.values_in([slice(None)])
-    fixed = {} if set(samples) & set(load) else dict(load)
-    ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
-    model = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
-    results = press_quantities(model, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
-    if not all(numpy.isfinite(values).all() for values in results.values()):
-        raise ValueError(_NO_RESULT)
-    return {name: _ends(values) for name, values in results.items()}

@@ -1,17 +1,18 @@
-"""Short texts of command options and links: ranges, lists, limits, tolerances and correlations of parameters."""
+"""Ranges, lists, limits, distributions and correlations of parameters: short texts, and tables of files."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ..core.checks import check_names, shown
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
-from ..files.units import parse
+from ..files.schema import QUANTITY_SCHEMA
+from ..files.units import as_given, parse
 from ..problem.presets import named_material
-from .distributions import Correlation, Distribution, Rectangular, tolerance
+from .distributions import Correlation, Distribution, LogNormal, Normal, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
 
@@ -19,20 +20,12 @@ _MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could t
 
 
 def parse_range(text: str) -> tuple[str, float, float]:
-    """Parse a name and the two ends of its range, as in "ball_radius=11..23 mm".
-
-    Returns
-    -------
-    name : str
-    low, high : float
-        In mm, N, MPa, rad.
+    """Parse a name and the two ends of its range in mm, N, MPa or rad, as in "ball_radius=11..23 mm".
 
     Raises ValueError: another form, or an unknown name.
     """
-    match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'")
-    name, low, high = match.groups()
+    form = f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'"
+    name, low, high = _parts(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text, form)
     check_names([name], PARAMETERS, "among what can vary")
     kind = PARAMETERS[name].kind
     return name, parse(name, _add_unit(low, high), kind), parse(name, high, kind)
@@ -43,10 +36,8 @@ def parse_ends(name: str, text: str, kind: str) -> tuple[float, float]:
 
     Raises ValueError: another form; the message has the `name`.
     """
-    match = _match(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{name} = {shown(text)} is not a range, such as '30..60 deg'")
-    low, high = match.groups()
+    form = f"{name} = {shown(text)} is not a range, such as '30..60 deg'"
+    low, high = _parts(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text, form)
     return parse(name, _add_unit(low, high), kind), parse(name, high, kind)
 
 
@@ -83,41 +74,30 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
     return name, tolerance(parse(name, _add_unit(nominal, plus_minus), kind), parse(name, plus_minus, kind))
 
 
-def parse_correlation(text: str) -> tuple[tuple[str, str], float]:
-    """Parse two names and their rank correlation, as in "clearance, liner_young = 0.5".
-
-    Raises ValueError: another form, or an unknown name.
-    """
-    match = _match(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'")
-    one, other, rank = match.groups()
-    check_names([one, other], PARAMETERS, "among what can scatter")
-    return (one, other), parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
-
-
 def parse_correlations(texts: Iterable[str]) -> Correlation:
-    """Parse several rank correlations; raise ValueError for another form or a pair that occurs twice."""
+    """Parse several rank correlations, as in "clearance, liner_young = 0.5".
+
+    Raises ValueError: another form, an unknown name, or a pair that occurs twice.
+    """
     correlation: dict[tuple[str, str], float] = {}
-    for (one, other), rank in map(parse_correlation, texts):
+    for text in texts:
+        form = f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'"
+        one, other, rank = _parts(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text, form)
+        check_names([one, other], PARAMETERS, "among what can scatter")
+        value = parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
         if (one, other) in correlation:
             raise ValueError(f"the correlation of {one} and {other} is given twice; one is needed")
-        correlation[one, other] = rank
+        correlation[one, other] = value
     return correlation
 
 
 def parse_limit(text: str) -> Limit:
     """Parse a limit, as in "outer_radius<=26 mm" or "edge_distance>=5 mm"; < is read as <=, since limits include ends.
 
-    Raises
-    ------
-    ValueError
-        Another form, or an unknown name.
+    Raises ValueError: another form, or an unknown name.
     """
-    match = _match(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'")
-    name, sign, end = match.groups()
+    form = f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'"
+    name, sign, end = _parts(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text, form)
     if "=" in (sign, sign[:1]):
         raise ValueError(f"{shown(text)} is not a limit: it needs <= or >=, such as 'outer_radius<=26 mm'")
     check_names([name], LIMITED_NAMES, "among what can be limited")
@@ -130,8 +110,55 @@ def _match(pattern: str, text: str) -> re.Match[str] | None:
     return re.fullmatch(pattern, text) if len(text) <= _MAX_CHARACTERS else None
 
 
+def _parts(pattern: str, text: str, message: str) -> tuple[str, ...]:
+    match = _match(pattern, text)
+    if match is None:
+        raise ValueError(message)
+    return match.groups()
+
+
 def _add_unit(number: str, last: str) -> str:
     """Return a number with the unit of the last number if it has no unit."""
     unit = re.fullmatch(r"[-+\d.eE]+\s*(.*)", last)
     bare = re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", number)
     return f"{number} {unit.group(1)}".strip() if unit and bare else number
+
+
+Read = Callable[[str, Any], float]
+"""Function from name and value of a number in a file to the number."""
+
+_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
+    (("low", "high"), Rectangular),
+    (("mean", "deviation"), Normal),
+    (("mean", "deviation", "low"), Normal),
+    (("mean", "deviation", "high"), Normal),
+    (("mean", "deviation", "low", "high"), Normal),
+    (("median", "factor"), LogNormal),
+    (("nominal", "plus_minus"), tolerance),
+)
+"""Keys of the tables, and the distributions that they describe."""
+
+DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
+    "type": "object",
+    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
+    "additionalProperties": False,
+}
+"""JSON schema of a distribution."""
+
+
+def distribution_of(name: str, content: Any, read: Read) -> Distribution:
+    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
+
+    Raises ValueError: other keys, or numbers that are not allowed.
+    """
+    for keys, make in _DISTRIBUTIONS:
+        if isinstance(content, Mapping) and set(content) == set(keys):
+            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
+            if "factor" in keys:  # it has no unit
+                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
+            with as_given(content, f"{name}."):
+                return make(**numbers)
+    raise ValueError(
+        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
+        "{median, factor}, or {nominal, plus_minus}"
+    )

@@ -35,9 +35,8 @@ from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
 from .design import Design, check_values, grid, sample, table
-from .distribution_tables import DISTRIBUTION_SCHEMA, distribution_of
 from .distributions import Distribution
-from .expressions import parse_correlations
+from .expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_correlations
 from .parameters import LOADS, PARAMETERS
 from .sampling import Method
 from .task import EDGE_DISTANCE, QUANTITIES

@@ -1,4 +1,4 @@
-"""Description of a sensitivity: shares of the variance with their intervals, and elasticities."""
+"""Descriptions of sensitivities: shares of the variance with their intervals, elasticities, and local bands."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.arrays import to_list
+from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Sentence
-from .extremes import amount_of
 from .metadata import held_in, held_lines
+from .study_answer import amount_of
 
 if TYPE_CHECKING:
     import xarray
+
+    from .derivatives import LocalUncertainty
 
 _HEADS = {
     "shapley": "Shapley effect",
@@ -120,3 +123,28 @@ def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
 
 def _numbers(part: xarray.Dataset) -> dict[str, Any]:
     return {str(name): to_list(value.values) for name, value in part.data_vars.items()}
+
+
+def uncertainty_tables(surroundings: LocalUncertainty) -> list[Table]:
+    """List the elasticities of a contact, and its bands."""
+    names = list(next(iter(surroundings.changes.values())))
+    heads = [Column.of_words("quantity", "change in % if 1 % is added to the")]
+    heads += [Column.of_number(name, QUANTITIES[name].title, digits=3) for name in names]
+    changes = [
+        Row([QUANTITIES[name].title, *(rounded(slopes[parameter]) for parameter in names)])
+        for name, slopes in surroundings.changes.items()
+    ]
+    ends = (
+        Column.of_words("quantity", "95 % band from the tolerances"),
+        *map(Column.of_number, ("low", "median", "high")),
+    )
+    bands = [
+        Row([QUANTITIES[name].title, *(amount_of(name, end) for end in band)])
+        for name, band in surroundings.band.items()
+    ]
+    method = f"From {surroundings.presses} presses by {surroundings.model}: a quadratic of each tolerance."
+    lines = [] if bands else ["No tolerances are stated."]
+    return [
+        Table("elasticities", "Elasticities", heads, changes),
+        Table("bands", "Bands", ends, bands, [method] if surroundings.presses else lines),
+    ]

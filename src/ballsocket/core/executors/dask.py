@@ -23,11 +23,8 @@ _LOG = logging.getLogger("ballsocket.executors")
 _ADDRESS = re.compile(r"((tcp|tls|ws|wss|ucx)://)?[^\s/]+:\d{1,5}|inproc://\S+")
 """Addresses of a scheduler that Dask connects to."""
 
-_CONNECTION_TIMEOUT = 10
-"""Seconds to wait for a scheduler."""
-
-_WORKER_CHECK_INTERVAL = 3.0
-"""Seconds between two checks that the scheduler has workers."""
+_CONNECTION_TIMEOUT = 10  # seconds to wait for a scheduler
+_WORKER_CHECK_INTERVAL = 3.0  # seconds between two checks that the scheduler has workers
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,26 +25,19 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-MAX_WORKERS = 1000
-"""Largest number of worker processes."""
+MAX_WORKERS = 1000  # largest number of worker processes
 
 Work = Callable[[int], Any]
 """Function that computes the piece with a given number. It must be picklable: no lambda, no local function."""
 
-_QUEUED_PER_WORKER = 2
-"""Submitted pieces per worker: one is computed while the next one waits."""
-
-_PARENT_CHECK_INTERVAL = 0.5
-"""Seconds between two checks that the parent process still runs."""
-
-_PARENT_ENDED = 1
-"""Exit status of a process whose parent process has ended."""
+_QUEUED_PER_WORKER = 2  # submitted pieces per worker: one is computed while the next one waits
+_PARENT_CHECK_INTERVAL = 0.5  # seconds between two checks that the parent process still runs
+_PARENT_ENDED = 1  # exit status of a process whose parent process has ended
 
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 """Environment variables that limit the threads of linear algebra."""
 
-_WORKER_DIED: Any = object()
-"""Result of a piece whose worker process died."""
+_WORKER_DIED: Any = object()  # result of a piece whose worker process died
 
 
 class Engine(Protocol):
@@ -81,10 +74,7 @@ class Processes:
     retries : int
         Number of times that the worker process of one piece may die before an error is raised.
 
-    Raises
-    ------
-    ValueError
-        Fewer than one worker, or more than `MAX_WORKERS`.
+    Raises ValueError: fewer than one worker, or more than `MAX_WORKERS`.
     """
 
     workers: int | None = None
@@ -149,7 +139,6 @@ def _submit_until_worker_dies(
 
 @contextmanager
 def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
-    """Start worker processes, and stop them at the end of the block."""
     with limit_threads():
         pool = ProcessPoolExecutor(
             workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)
@@ -162,10 +151,7 @@ def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
 
 @contextmanager
 def limit_threads() -> Iterator[None]:
-    """Limit linear algebra to one thread in processes that are started within the block.
-
-    Threads of several processes on the same cores are many times slower.
-    """
+    """Limit linear algebra to one thread in processes started within the block: more threads than cores are slow."""
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
     try:
@@ -183,10 +169,7 @@ _work: Work | None = None
 
 
 def _initialize_worker(work: Work) -> None:
-    """Initialise a worker process: store its work function, and ignore Ctrl-C.
-
-    The parent process handles Ctrl-C.
-    """
+    """Store the work function of a worker process, and ignore Ctrl-C, which the parent process handles."""
     global _work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exit_with_parent()
@@ -223,8 +206,7 @@ def _watch_parent(parent: int) -> None:
     os._exit(_PARENT_ENDED)
 
 
-_ASSUMED_MEMORY = 4_000_000_000
-"""Memory in bytes that is assumed if the system does not state it."""
+_ASSUMED_MEMORY = 4_000_000_000  # memory in bytes that is assumed if the system does not state it
 
 
 def check_memory(subject: str, size: float) -> None:

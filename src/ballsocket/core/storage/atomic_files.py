@@ -31,8 +31,7 @@ _DRAFT_SUFFIX = ".draft"
 _PREFIX_LENGTH = 40
 """Characters of the final name in the name of its draft folder, which keeps that below the system's limit."""
 
-_MIN_AGE = 60.0
-"""Age in s below which an unlocked draft folder is not removed: its process may be about to lock it."""
+_MIN_AGE = 60.0  # age in s below which an unlocked draft folder is not removed: its process may be about to lock it
 
 
 def is_draft_folder(name: str) -> bool:
@@ -170,14 +169,9 @@ def write_csv(path: Path, rows: Iterable[Iterable[Any]]) -> Path:
     return path
 
 
-_END_RECORD_LENGTH = 22
-"""Length in bytes of the end record of a zip archive without a comment."""
-
-_CACHE_VERSION = 3
-"""Version of the cached arrays: raise it when the elements or the rings of off-axis models change."""
-
-_MAX_CACHE_SIZE = 2 * 2**30
-"""Size in bytes of the cache folder above which the oldest files are removed."""
+_END_RECORD_LENGTH = 22  # length in bytes of the end record of a zip archive without a comment
+_CACHE_VERSION = 3  # version of the cached arrays: raise it when the elements or the rings of off-axis models change
+_MAX_CACHE_SIZE = 2 * 2**30  # size in bytes of the cache folder above which the oldest files are removed
 
 
 def write_arrays(path: Path, **arrays: Any) -> None:
@@ -218,10 +212,7 @@ def unpack_arrays(stream: BinaryIO, name: str) -> dict[str, Numbers]:
 
 
 def _count_zip_members(stream: BinaryIO) -> int:
-    """Read the number of members from the end record of a zip archive.
-
-    A damaged archive lists fewer members than it has.
-    """
+    """Read the number of members from the end record of a zip archive: a damaged archive lists fewer."""
     stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)
     return int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little")
 
@@ -230,13 +221,7 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
     """Read an array from the cache folder; compute and store it if it is missing.
 
     Processes share the cache. A damaged file is replaced. If the folder is not writable, the array is only computed.
-
-    Parameters
-    ----------
-    key : object
-        All inputs of the array. Their `repr` identifies the file.
-    compute : function
-        Computes the array.
+    The `repr` of the key, which has all inputs of the array, identifies the file.
     """
     path = _cached_path(key)
     with suppress(OSError, ValueError, KeyError):  # missing or damaged
@@ -259,10 +244,7 @@ def _cached_path(key: object) -> Path:
 
 
 def cache_folder() -> Path:
-    """Return the path of the cache folder.
-
-    It is the environment variable BALLSOCKET_CACHE, or `ballsocket` in the user's cache folder.
-    """
+    """Return the cache folder: BALLSOCKET_CACHE of the environment, or `ballsocket` in the user's cache folder."""
     folder = os.environ.get("BALLSOCKET_CACHE")
     if folder:
         return Path(folder)

@@ -20,8 +20,7 @@ from ..input_files import open_input
 from .atomic_files import address_of, pack_arrays, unpack_arrays, write_atomically
 from .pieces import PieceStore
 
-_LOCAL = "file://"
-"""Beginning of the address of a local file."""
+_LOCAL = "file://"  # beginning of the address of a local file
 
 
 class ResultFolder(ABC):
@@ -124,10 +123,7 @@ class LocalFolder(ResultFolder):
 
 @dataclass(frozen=True)
 class RemoteFolder(ResultFolder):
-    """Folder in a remote store, such as "s3://bucket/hips.zarr".
-
-    Each call opens the address anew, so that a copy of this object works in another process.
-    """
+    """Folder in a remote store, such as "s3://bucket/hips.zarr"; a copy works in another process."""
 
     address: str
 

@@ -26,10 +26,7 @@ _SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
 @cache
 def fingerprint() -> str:
-    """Compute an identifier of the installed code: version and eight characters of a hash.
-
-    It changes with any line of code, data or page template of the package.
-    """
+    """Compute an identifier of the installed code, data and templates: the version and eight characters of a hash."""
     package = Path(__file__).parents[2]
     digest = sha256()
     for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
@@ -39,15 +36,7 @@ def fingerprint() -> str:
 
 
 def check_worker_code(code: str) -> None:
-    """Check that this worker runs the code of the process that started the run.
-
-    Parameters
-    ----------
-    code : str
-        `fingerprint` of the process that started the run.
-
-    Raises ValueError: this process runs another code.
-    """
+    """Raise ValueError unless this worker runs the code with the `fingerprint` of the process that started the run."""
     if fingerprint() != code:
         raise ValueError(f"this worker has ballsocket {fingerprint()}, but the run was started by {code}")
 
@@ -58,10 +47,7 @@ def hash_inputs(*inputs: object) -> str:
 
 
 class PieceStore(ABC):
-    """Base class of stores for the results of numbered pieces of work.
-
-    Each worker process receives a copy of the store.
-    """
+    """Base class of stores for the results of numbered pieces of work; each worker process receives a copy."""
 
     @abstractmethod
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
@@ -107,11 +93,8 @@ def _compute_and_store(work: Work, store: PieceStore, number: int) -> Any:
     return store.save(number, work(number))
 
 
-Piece = Callable[[], Any]
-"""Function that computes a result for a JSON file."""
-
-Results = dict[str, list[Any]]
-"""Results of the pieces, by part."""
+Piece = Callable[[], Any]  # function that computes a result for a JSON file
+Results = dict[str, list[Any]]  # results of the pieces, by part
 
 _SERIAL = Serial()
 
@@ -148,15 +131,9 @@ class Plan:
     def results(
         self, folder: Path, progress: Callable[[str], None] = lambda name: None, engine: Engine = _SERIAL
     ) -> Results:
-        """Return all results by part, in the order of the pieces; compute only those without a stored result.
+        """Return all results by part, in the order of the pieces; compute only those that the folder does not store.
 
-        Parameters
-        ----------
-        folder : Path
-            Folder of the stored results.
-        progress : callable
-            Called with part and name of each piece whose result is present.
-        engine : Engine
+        `progress` is called with part and name of each piece whose result is present.
         """
         results: dict[tuple[str, str], Any] = {}
         for part, name, result in self.run(folder, engine):

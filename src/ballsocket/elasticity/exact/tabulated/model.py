@@ -303,6 +303,7 @@ class Tabulated(Model):
     file: str = ""
 
     seconds_a_press: ClassVar[float] = 4e-6
+    is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
