@@ -21,12 +21,8 @@ from ...core.stress import Stress
 from ...problem import Support
 from .modes import Socket
 
-MODES = 40
-"""Number of modes of pressure whose tractions on the equator are released."""
-
-POLAR_TERMS = 12
-"""Number of polynomials along the meridian."""
-
+MODES = 40  # number of modes of pressure whose tractions on the equator are released
+POLAR_TERMS = 12  # number of polynomials along the meridian
 _RADIAL = 5  # degree of the polynomials through each layer
 
 

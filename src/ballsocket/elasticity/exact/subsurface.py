@@ -18,8 +18,7 @@ from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisp
 from .kernel import Intervals
 from .load_curve import LoadCurve
 
-MIN_HALF_ANGLE = radians(1.0)
-"""Half angle in rad of the narrowest contact whose interior is computed."""
+MIN_HALF_ANGLE = radians(1.0)  # half angle in rad of the narrowest contact whose interior is computed
 
 _SIMILAR_ANGLE = radians(1.5)
 """Half angle in rad of the contact whose stress ratio stands for narrower ones; it needs fewer modes than 1°."""
@@ -100,9 +99,7 @@ def estimate_von_mises(state: AbelState) -> Numbers:
     return _evaluate_contacts(estimate_peak, state, numpy.ones_like(state.half_angle, dtype=bool))
 
 
-VON_MISES_TOLERANCE = 0.1
-"""Relative error of `estimate_von_mises`."""
-
+VON_MISES_TOLERANCE = 0.1  # relative error of `estimate_von_mises`
 _FEWER_MODES = 8  # the estimate divides the number of modes by this
 _MAX_SEARCH_ANGLE = radians(85.0)  # the stress in the corner of the rim is unbounded
 

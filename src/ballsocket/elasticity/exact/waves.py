@@ -25,9 +25,7 @@ Matrix = numpy.ndarray
 
 _MAX_LOG_RATIO = 100.0  # ln(b/R2) of a layer that counts as infinite
 _MIN_DENOMINATOR = 1e-17  # for an incompressible layer at n = 0, which is rigid
-
-UNIT: Matrix = numpy.eye(2)[:, :, None]
-"""Unit matrix for all degrees."""
+UNIT: Matrix = numpy.eye(2)[:, :, None]  # unit matrix for all degrees
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:

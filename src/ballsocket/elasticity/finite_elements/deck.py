@@ -35,9 +35,7 @@ from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
 from .deck_lines import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .model import MeshedContact
 
-MAX_STEPS = 1000
-"""Largest number of steps of a deck; the expected result of each is computed."""
-
+MAX_STEPS = 1000  # largest number of steps of a deck; the expected result of each is computed
 _PENALTY_FACTOR = 2000.0
 _MAX_FACETING_GAP = 2e-3  # over the indentation
 _LINE_WIDTH = 100

@@ -11,18 +11,16 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem import Joint
-from .bodies import ball_body, socket_body
+from .bodies import SurfacePair, ball_body, socket_body
 from .load_search import Solved
 from .mesh import Block, mesh_block, socket_shape
 from .model import MeshedContact
-from .surfaces import SurfacePair
 
 _RING_THICKNESS = 0.05  # meshed part of a rigid ball, over its radius
 _ANGLE_TOLERANCE = 1e-9  # rad
 
 
-TYPES = {1: "CAX4", 2: "CAX8R"}
-"""Names of bilinear and biquadratic elements in CalculiX and Abaqus."""
+TYPES = {1: "CAX4", 2: "CAX8R"}  # names of bilinear and biquadratic elements in CalculiX and Abaqus
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

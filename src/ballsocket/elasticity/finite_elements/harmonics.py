@@ -17,10 +17,9 @@ from scipy.sparse import csc_matrix
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
-from .bodies import elimination_ranks, factorize, socket_block, socket_elastic
+from .bodies import elimination_ranks, factorize, lagrange, socket_block, socket_elastic
 from .elasticity import ElasticBlock, assemble, element_quadrature
 from .mesh import Block, Resolution, SocketShape
-from .surfaces import lagrange
 
 _DIRECT, _HOOP, _SHEARS = 4, 3, (4, 5)
 _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0, 1.0, 1.0]))[:, None]

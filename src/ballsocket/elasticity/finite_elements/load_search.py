@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from ...core.arrays import gauss_legendre
 from ...problem.gaps import Gap
+from .bodies import SurfacePair
 from .pair_contact import FullContact, PartialContact, partial_contact
-from .surfaces import SurfacePair
 
 _SAMPLES = 10
 _SECANT_STEPS = 4

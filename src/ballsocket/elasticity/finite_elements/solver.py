@@ -17,17 +17,14 @@ from ...core.checks import require
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
 from ...problem.gaps import CircularGap, Gap, LinearGap
-from .bodies import ball_compliance, socket_compliance
+from .bodies import ContactSurface, SurfacePair, ball_compliance, socket_compliance
 from .load_search import ContactBracket, Solved, is_pressed, stiffness, work
 from .mesh import Resolution, socket_shape
 from .pair_contact import FullContact, partial_contact
 from .progress import report_progress
 from .spacing import Spacing, Uniform, check_memory, mesh_size
-from .surfaces import ContactSurface, SurfacePair
 
-FINE, COARSE = 0, 1
-"""Indices of the two meshes."""
-
+FINE, COARSE = 0, 1  # indices of the two meshes
 _STRIDE = 4  # number of classes whose contacts one coarse mesh resolves
 _CLASS_MARGIN = 1.12  # factor by which the half angle may differ from its class on another mesh
 
@@ -192,13 +189,9 @@ def estimate_errors(kind: str, fine: MeshedStates, coarse: MeshedStates, order: 
     return errors
 
 
-LIMIT = radians(88.0)
-"""Largest half angle in rad that is solved."""
-
+LIMIT = radians(88.0)  # largest half angle in rad that is solved
 _REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
-
-MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000
-"""Limits on the number of elements of one size along the bore."""
+MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000  # limits on the number of elements of one size along the bore
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,19 +28,11 @@ import numpy
 from ...core import arrays
 from ...core.arrays import Array
 
-COARSE_TOLERANCE = 1e-3
-"""Residuals of forces and overlaps at the end of the search in wide cells."""
-
-COARSE_ROUNDS = 4
-"""Number of rounds of the search in wide cells; each starts with a new sensitivity."""
-
-COARSE_ITERATIONS = 7
-"""Number of iterations in a round."""
-
+COARSE_TOLERANCE = 1e-3  # residuals of forces and overlaps at the end of the search in wide cells
+COARSE_ROUNDS = 4  # number of rounds of the search in wide cells; each starts with a new sensitivity
+COARSE_ITERATIONS = 7  # number of iterations in a round
 _WARM_UP_ITERATIONS = 2  # number of iterations at a fixed displacement before the first Newton step
-
-SENSITIVITY_ITERATIONS = 3
-"""Number of iterations for the sensitivity of the pressures in wide cells, for Newton steps."""
+SENSITIVITY_ITERATIONS = 3  # number of iterations for the sensitivity of the pressures in wide cells, for Newton steps
 
 TANGENT_ITERATIONS = 4
 """Number of iterations for the tangent stiffness, whose error is the square of that of the sensitivity."""

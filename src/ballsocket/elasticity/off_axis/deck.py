@@ -198,7 +198,12 @@ class TiltedDeck(InputDeck):
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
         yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
-        yield from self._mesh_lines()
+        yield "*NODE, NSET=ALL"
+        for body in (self.socket, self.ball):
+            yield from body.node_lines()
+        ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
+        yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
+        yield from _element_lines(self.ball, lambda k: "SKIN")
         # the skin of the ball is almost rigid
         liner = float(self.joint.liner.young)
         layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
@@ -220,14 +225,6 @@ class TiltedDeck(InputDeck):
             "force_vector": [float(component) for component in contact.force_vector],
             "max_pressure": float(contact.max_pressure),
         }
-
-    def _mesh_lines(self) -> Iterator[str]:
-        yield "*NODE, NSET=ALL"
-        for body in (self.socket, self.ball):
-            yield from body.node_lines()
-        ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
-        yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
-        yield from _element_lines(self.ball, lambda k: "SKIN")
 
     def _support_lines(self) -> Iterator[str]:
         """Yield the lines of the symmetry plane, of the fixed nodes, and of the ball's skin, which is displaced."""

@@ -191,13 +191,6 @@ class Operators(NamedTuple):
     coarse_softness: Array
     coarse_stiffness: Array
 
-    def replace_in(self, grids: Grids) -> Grids:
-        """Return the arrays of a bore with these matrices."""
-        return Grids(
-            fine=grids.fine._replace(softness=self.softness, stiffness=self.stiffness),
-            coarse=grids.coarse._replace(softness=self.coarse_softness, stiffness=self.coarse_stiffness),
-        )
-
 
 @dataclass(frozen=True, kw_only=True)
 class LinerCompliance:

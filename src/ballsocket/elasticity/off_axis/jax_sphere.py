@@ -266,10 +266,12 @@ class JaxSphere:
         check_domain(self.model.domain, varied, self.model.name)
         operators = self._operators(xp.stack([young, poisson, thickness]))
         softening = self.joint.effective_modulus / varied.effective_modulus
-        return self._bores._replace(
-            grids=operators.replace_in(self._bores.grids),
-            edge_compliance=self._bores.edge_compliance * softening,
+        fine, coarse = self._bores.grids
+        grids = Grids(
+            fine=fine._replace(softness=operators.softness, stiffness=operators.stiffness),
+            coarse=coarse._replace(softness=operators.coarse_softness, stiffness=operators.coarse_stiffness),
         )
+        return self._bores._replace(grids=grids, edge_compliance=self._bores.edge_compliance * softening)
 
 
 def _check_bore(model: Any, joint: Any) -> None:

@@ -37,9 +37,7 @@ from .surfaces import ClosedShell, RealCup, Springs, Surface
 if TYPE_CHECKING:
     from .bore_contact import BoreContact
 
-KEPT = ("fields", "summary")
-"""Allowed values of `keep` of a `Sphere`."""
-
+KEPT = ("fields", "summary")  # allowed values of `keep` of a `Sphere`
 _MIN_RING_WIDTH, MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 

@@ -16,9 +16,7 @@ from ...core import arrays
 from ...core.arrays import Array, Numbers
 from .grid import Grid
 
-RAYS = 90
-"""Number of rays from the centre of a contact to its outline."""
-
+RAYS = 90  # number of rays from the centre of a contact to its outline
 _SECANTS = 5  # number of secants that locate the edge in a step of half a ring's width: half angles within 3e-7 rad
 _FIT_RADIUS = 2.2  # radius of the quadratic fit around the largest pressure, in widths of a ring
 _FLAT = 2e-5  # relative difference of two pressures of the fit that the points of the lattice do not resolve

@@ -29,18 +29,13 @@ from ..modes import ElasticBall, Shell, Socket
 from . import chebyshev
 from . import model as table
 
-SHIPPED = Path(__file__).parents[3] / "data" / "exact_tables.npz"
-"""Path of the tables of the package."""
+SHIPPED = Path(__file__).parents[3] / "data" / "exact_tables.npz"  # path of the tables of the package
 
 BY_ANGLE = ("indentation", "force", "pole_pressure", "stiffness", "energy", "pressure_integral")
 """Quantities that are checked by half angle."""
 
-BY_FORCE = ("half_angle", "indentation", "pole_pressure")
-"""Quantities that are checked by force."""
-
-QUANTITIES = (*BY_ANGLE, "half_angle")
-"""All quantities that are checked."""
-
+BY_FORCE = ("half_angle", "indentation", "pole_pressure")  # quantities that are checked by force
+QUANTITIES = (*BY_ANGLE, "half_angle")  # all quantities that are checked
 _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARE_POINTS = 5  # of the ball's share of the compliance
 _PROFILE_POINTS = 11  # along the contact

@@ -33,8 +33,7 @@ from .chebyshev import (
     thickness_coordinate,
 )
 
-ONE, TWO, ALL = (0,), (0, 1), (0, 1, 2)
-"""Indices of the functions to evaluate."""
+ONE, TWO, ALL = (0,), (0, 1), (0, 1, 2)  # indices of the functions to evaluate
 
 
 class CurveCoefficients(NamedTuple):
@@ -264,5 +263,4 @@ def derivative_series(functions: Array) -> Array:
     return arrays.namespace(functions).stack([derivative @ functions[row, ...] for row in range(functions.shape[0])])
 
 
-SMALL_LOAD = 1e-3
-"""Load in place of one that is not positive."""
+SMALL_LOAD = 1e-3  # load in place of one that is not positive
