@@ -20,7 +20,7 @@ from ballsocket.studies import store as store_module
 from ballsocket.studies.file import read_study
 from ballsocket.studies.file_formats import export
 from ballsocket.studies.run import _create_task, read
-from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, StudyStore
+from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, BlockStore
 
 from ..cli.command import run
 from ..hip.test_uncertainty import short_file
@@ -169,16 +169,16 @@ def test_two_studies_that_begin_together_share_their_store(tmp_path, finished, m
 @contextmanager
 def stopped_at(block, error):
     """Let the store raise an error instead of writing a block."""
-    write = StudyStore.write
+    save = BlockStore.save
 
-    def stop(self, task, number, answers):
-        with self.folder.errors():
+    def stop(self, number, answers):
+        with self.store.folder.errors():
             if number == block:
                 raise error
-            write(self, task, number, answers)
+            save(self, number, answers)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(StudyStore, "write", stop)
+        patch.setattr(BlockStore, "save", stop)
         yield
 
 

@@ -26,6 +26,7 @@ from ..core.kinds import (
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Amount, Sentence, joint_sentence
 from ..lubrication.friction import Stribeck
+from ..lubrication.lubricant import Lubricant
 from .bands import Bands
 from .contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from .film import Film
@@ -144,6 +145,9 @@ def film_table(film: Film) -> Table:
     return Table("film", "Film and friction", columns, rows, list(_film_lines(film)))
 
 
+_STATED = "viscosity", "ball_roughness", "cup_roughness"
+
+
 def _film_lines(film: Film) -> Iterator[str]:
     summary, lubricant = film.summary(), film.lubricant
     if not summary:
@@ -163,7 +167,9 @@ def _film_lines(film: Film) -> Iterator[str]:
         )
     roughness = (Amount(size, Unit("µm", 1e3)) for size in (lubricant.ball_roughness, lubricant.cup_roughness))
     viscosity = f"{1e3 * lubricant.viscosity:g} mPa s"
-    yield Sentence("assumed for the film: viscosity {}, roughness Ra {} (ball) and {} (cup)", viscosity, *roughness)
+    defaults = [name for name in _STATED if getattr(lubricant, name) == getattr(Lubricant(), name)]
+    assumed = f"; by default: {', '.join(defaults)}" if defaults else ""
+    yield Sentence(f"film with viscosity {{}}, roughness Ra {{}} (ball) and {{}} (cup){assumed}", viscosity, *roughness)
 
 
 _COMPARED = ("volume", "depth", "penetration", "max_pressure")

@@ -37,6 +37,7 @@ _MAX_CENTRES = 6
 _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
 _MAX_LOG_RANGE = 20.0  # range of ln(coefficient) to both sides in which other readings of a rate are searched
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
+_FEW_CYCLES = 1e4  # number of cycles below which no wear is measured
 _MIN_NOTED_WIDENING = 1.05
 _ROUNDING = 1e-9  # width of a band, relative to the coefficient, that is rounding alone
 _PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
@@ -303,6 +304,9 @@ class WearFit:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
         for density in dict.fromkeys(measured.density for measured in self.data if measured.density is not None):
             yield f"the measured mass is a volume by the density {density:g} mg/mm³"
+        last = max((measured.cycles.max() for measured in self.data if measured.cycles is not None), default=inf)
+        if last < _FEW_CYCLES:
+            yield f"the last reading is after {last:g} cycles: if these are millions, write 'cycles [Mc]' or {last:g}e6"
         yield from self._specimen_notes()
         if not isfinite(self.high):
             yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"

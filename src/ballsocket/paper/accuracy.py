@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from ..contact import Contact, Model
+from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.validity import OutsideDomainError
 from ..model_catalogue import catalogue, reference, with_gap
@@ -107,8 +107,12 @@ def accuracies(
     """
     chosen = catalogue if models is None else models
     within = paper_joints() if joints is None else joints
-    family = _concatenate(within, edge_joints() if edges is None else edges)
-    inner = slice(0, len(within.ball_radius))
+    extremes = edge_joints() if edges is None else edges
+    n_within, n_edges = len(within.ball_radius), len(extremes.ball_radius)
+    pairs = zip(within.numbers(), extremes.numbers(), strict=True)
+    family = within.with_numbers(
+        [numpy.concatenate([a * numpy.ones(n_within), b * numpy.ones(n_edges)]) for a, b in pairs]
+    )
     exact = with_gap(reference, "linear").press(family, force=FORCES[:, None])
     rows = []
     for name, model in chosen.items():
@@ -119,34 +123,16 @@ def accuracies(
             at_indentation = model.press(family, indentation=exact.indentation)
         except OutsideDomainError:
             continue
-        rows.append(_accuracy(name, family, inner, exact, at_force, at_indentation))
+        spreads = {}
+        for quantity in QUANTITIES:
+            value = getattr(at_indentation if quantity == "force" else at_force, quantity)
+            spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), family, slice(0, n_within))
+        answered = float(numpy.mean(numpy.isfinite(at_force.indentation)))
+        rows.append(Accuracy(model=name, spreads=spreads, answered=answered, valid=float(numpy.mean(at_force.valid))))
     return tuple(sorted(rows, key=lambda row: row.spreads["max_pressure"].median))
 
 
-def _concatenate(first: Joint, second: Joint) -> Joint:
-    pairs = zip(first.numbers(), second.numbers(), strict=True)
-    shapes = [numpy.ones(len(joint.ball_radius)) for joint in (first, second)]
-    return first.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
-
-
-def _accuracy(
-    name: str, joints: Joint, inner: slice, exact: Contact, at_force: Contact, at_indentation: Contact
-) -> Accuracy:
-    """Compute the errors of one model from its contacts at given force and at given indentation."""
-    contacts = {"force": at_indentation}
-    spreads = {}
-    for quantity in QUANTITIES:
-        value = getattr(contacts.get(quantity, at_force), quantity)
-        spreads[quantity] = _error_statistics(abs(value / getattr(exact, quantity) - 1), joints, inner)
-    return Accuracy(
-        model=name,
-        spreads=spreads,
-        answered=float(numpy.mean(numpy.isfinite(at_force.indentation))),
-        valid=float(numpy.mean(at_force.valid)),
-    )
-
-
-def _error_statistics(error: Numbers, joints: Joint, inner: slice) -> Spread:
+def _spread(error: Numbers, joints: Joint, inner: slice) -> Spread:
     """Compute median and percentile of errors (loads, joints) over the inner joints, and the maximum over all."""
     inside = error[:, inner]
     known = inside[numpy.isfinite(inside)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,7 +29,7 @@ _SIDES = MappingProxyType({"right": ("right", "r"), "left": ("left", "l")})
 _ASIS = ("asis", "sias", "anteriorsuperioriliacspine")
 _TUBERCLE = ("pubictubercle", "tubercle", "pt")
 _SYMPHYSIS = ("pubicsymphysis", "symphysis", "symphysispubis", "ps")
-_RIMS = ("rim", "cuprim", "linerrim", "acetabularrim", "acetabulumrim")
+_RIM = re.compile("(?P<side>right|r|left|l)?(cup|liner|acetabular|acetabulum)?rim")
 
 
 def _with_side(side: str, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -49,26 +50,15 @@ ROLES = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Landmarks:
-    """Named points of a patient.
+    """Named points of a patient."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        Names as in the file; several points may have one name.
-    points : array (n, 3)
-        Coordinates in mm: to the right, to the front, upwards (RAS).
-    """
-
-    names: tuple[str, ...]
-    points: Numbers
+    names: tuple[str, ...]  #: names as in the file; several points may have one name
+    points: Numbers  #: (n, 3), coordinates in mm: to the right, to the front, upwards (RAS)
 
     def find(self, role: str) -> Numbers | None:
         """Return the point (3,) of a role, such as "right_asis"; None without one.
 
-        Raises
-        ------
-        ValueError
-            Several points have the role.
+        Raises ValueError: several points have the role.
         """
         allowed = (_squeeze(role), *ROLES[role])
         indices = [index for index, name in enumerate(self.names) if _squeeze(name) in allowed]
@@ -83,13 +73,15 @@ class Landmarks:
         Points of the rim have names that begin with "rim", after "cup", "liner" or "acetabular" and a side if needed:
         "rim-1", "cup rim 2", "left rim 3".
 
-        Raises
-        ------
-        ValueError
-            Points of both sides without `side`.
+        Raises ValueError: points of both sides without `side`.
         """
-        squeezed = [_squeeze(name) for name in self.names]
-        sides = {index: _rim_side(name) for index, name in enumerate(squeezed) if _is_rim(name)}
+        sides: dict[int, str | None] = {}
+        for index, name in enumerate(map(_squeeze, self.names)):
+            match = _RIM.match(name)
+            if match is not None:  # the side stands before the rim, or is the last word
+                begins, end = match["side"] or "", name.rstrip("0123456789")
+                words = (word for word in _SIDES if begins[:1] == word[0] or end.endswith(word))
+                sides[index] = next(words, None)
         stated = {word for word in sides.values() if word}
         if side is None and len(stated) > 1:
             raise ValueError("the landmarks have rim points of both sides: choose the side, right or left")
@@ -97,21 +89,6 @@ class Landmarks:
         indices = [index for index, word in sides.items() if word is None or word == chosen]
         named = Side(chosen) if chosen in stated else None
         return tuple(self.names[index] for index in indices), self.points[indices], named
-
-
-def _is_rim(name: str) -> bool:
-    """Check if a squeezed name is that of a point on the rim, with or without a side before it."""
-    sides = ("", *(word for words in _SIDES.values() for word in words))
-    return name.startswith(tuple(side + rim for side in sides for rim in _RIMS))
-
-
-def _rim_side(name: str) -> str | None:
-    """Return the side in the squeezed name of a point on the rim: before it, or as its last word."""
-    for side, words in _SIDES.items():
-        before = name.startswith(tuple(word + rim for word in words for rim in _RIMS))
-        if before or name.rstrip("0123456789").endswith(side):
-            return side
-    return None
 
 
 def read_side(side: Side | str | None) -> Side | None:
@@ -160,7 +137,7 @@ def read_landmarks(
         raise ValueError(f"{len(named)} landmarks: at most {_MAX_POINTS} are read")
     names = [name for name, _ in named]
     for role, name in (rename or {}).items():
-        if role not in ROLES and not _is_rim(_squeeze(role)):
+        if role not in ROLES and not _RIM.match(_squeeze(role)):
             raise ValueError(f"landmark {shown(role)} is not known: {', '.join(ROLES)} or rim")
         if name not in names:
             raise ValueError(f"point {shown(name)} does not exist; the points are {_list(names)}")

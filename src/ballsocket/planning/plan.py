@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import degrees, pi, radians
+from math import degrees, radians
 from typing import Any
 
 import numpy
@@ -35,17 +35,7 @@ _LPS = numpy.diag([-1.0, -1.0, 1.0])
 class HipPlan:
     """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
 
-    Attributes
-    ----------
-    frame : PelvicFrame or None
-    orientation : CupOrientation or None
-    liner, head : ImplantFit or None
-    worn : WornBore or None
-
-    Raises
-    ------
-    ValueError
-        A head that does not belong to the bore.
+    Raises ValueError: a head that does not belong to the bore.
     """
 
     frame: PelvicFrame | None = None
@@ -172,13 +162,20 @@ class HipPlan:
 
     def summary(self) -> dict[str, Any]:
         """Return all results for JSON, in mm and degrees; a missing number is None."""
+        frame, worn = (
+            "origin axes asis_distance height tilt_deg obliquity_deg",
+            (
+                "points volume volume_error depth depth_error radius radius_error noise form unworn cover ambiguous "
+                "hidden_shift centre pole deepest reach_deg"
+            ),
+        )
         return {
             "side": None if self.orientation is None else self.orientation.side.value,
-            "pelvis": None if self.frame is None else _pelvis_summary(self.frame),
+            "pelvis": None if self.frame is None else _attributes(self.frame, frame),
             "cup": None if self.orientation is None else _cup_summary(self.orientation),
             "liner": None if self.liner is None else _fit_summary(self.liner),
             "head": None if self.head is None else _fit_summary(self.head),
-            "worn": None if self.worn is None else _worn_summary(self.worn),
+            "worn": None if self.worn is None else {"file": self.worn.name, **_attributes(self.worn, worn)},
             "notes": list(self.notes),
         }
 
@@ -235,17 +232,6 @@ def _rounded(cup: Cup) -> Cup:
     return replace(cup, arc_of_cover=arc, inclination=inclination, anteversion=anteversion)
 
 
-def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:
-    return {
-        "origin": frame.origin.tolist(),
-        "axes": frame.axes.tolist(),
-        "asis_distance": frame.asis_distance,
-        "height": frame.height,
-        "tilt_deg": _degrees(frame.tilt),
-        "obliquity_deg": _degrees(frame.obliquity),
-    }
-
-
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
     in_pelvis, in_body = orientation.cup(upright=False), orientation.cup()
     return {
@@ -253,39 +239,28 @@ def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
         "anteversion_deg": degrees(in_body.anteversion),
         "pelvic_inclination_deg": degrees(in_pelvis.inclination),
         "pelvic_anteversion_deg": degrees(in_pelvis.anteversion),
-        "axis": orientation.axis.tolist(),
-        "centre": orientation.centre.tolist(),
-        "points": orientation.points,
-        "residual": orientation.residual,
-        "angle_error_deg": _degrees(orientation.angle_error),
+        **_attributes(orientation, "axis centre points residual angle_error_deg"),
     }
 
 
 def _fit_summary(fit: ImplantFit) -> dict[str, Any]:
     return {
         "file": fit.name,
-        "radius": fit.radius,
-        "residual": fit.residual,
-        "facet_depth": fit.facet_depth,
-        "centre": fit.centre.tolist(),
-        "axis": None if fit.axis is None else fit.axis.tolist(),
-        "arc_of_cover_deg": degrees(fit.arc_of_cover),
-        "rim_deviation_deg": degrees(fit.rim_deviation),
-        "rim": [{"normal": plane.normal.tolist(), "height": plane.height, "share": plane.share} for plane in fit.rim],
-        "lip_angle_deg": _degrees(fit.lip_angle),
+        **_attributes(fit, "radius residual facet_depth centre axis arc_of_cover_deg rim_deviation_deg"),
+        "rim": [_attributes(plane, "normal height share") for plane in fit.rim],
+        "lip_angle_deg": None if fit.lip_angle is None else degrees(fit.lip_angle),
         "axis_is_ambiguous": fit.ambiguous,
-        "wall_thickness": fit.wall_thickness,
-        "wall_range": None if fit.wall_range is None else list(fit.wall_range),
-        "wall_residual": fit.wall_residual,
+        **_attributes(fit, "wall_thickness wall_range wall_residual"),
     }
 
 
-def _worn_summary(worn: WornBore) -> dict[str, Any]:
-    numbers = ("points", "volume", "volume_error", "depth", "depth_error", "radius", "radius_error", "noise", "form")
-    values = {name: getattr(worn, name) for name in (*numbers, "unworn", "cover", "ambiguous", "hidden_shift")}
-    directions = {name: getattr(worn, name).tolist() for name in ("centre", "pole", "deepest")}
-    return {"file": worn.name, **values, **directions, "reach_deg": degrees(worn.reach)}
-
-
-def _degrees(angle: float | None) -> float | None:
-    return None if angle is None else angle * 180 / pi
+def _attributes(item: Any, names: str) -> dict[str, Any]:
+    """Return attributes as data for JSON; a name that ends in _deg is an angle in degrees."""
+    values: dict[str, Any] = {}
+    for name in names.split():
+        value = getattr(item, name.removesuffix("_deg"))
+        if isinstance(value, numpy.ndarray | tuple):
+            values[name] = numpy.asarray(value).tolist()
+        else:
+            values[name] = value if value is None or not name.endswith("_deg") else degrees(value)
+    return values

@@ -115,21 +115,10 @@ class Dimensions:
 
 
 def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], shell: Array) -> dict[str, Any]:
-    """Check lengths, and derive ball radius, clearance and liner thickness of a joint in mm.
+    """Check new lengths, and derive the `STORED_LENGTHS` of a joint in mm; `given` has the names that determine them.
 
-    Parameters
-    ----------
-    lengths : mapping of str to array
-        New lengths in mm by their names in `Lengths`.
-    given : mapping of str to array
-        Lengths that an existing joint was made from, kept as far as the new ones allow; empty for a new joint.
-    shell : array
-        Thickness of the shell in mm, see `Dimensions`.
-
-    Returns
-    -------
-    dict of str to array
-        The lengths of `STORED_LENGTHS` in mm, and in `given` the names of those that determine them.
+    The given lengths, those that an existing joint was made from, stay as far as the new ones allow; a new joint has
+    none. `shell` is that of `Dimensions`.
 
     Raises ValueError: a length that is not allowed; too few or too many lengths; a given length that would change
     although nothing says which one.
@@ -183,9 +172,8 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
     if len(choices) > 1:
         kept = [[old[name] for name in _STAYING_ORDER if name in basis - new] for basis in choices]
         shared = set.intersection(*map(set, kept))
-        ways = " or ".join(
-            " and ".join(f"{name}{_value_text(given[name])}" for name in names if name not in shared) for names in kept
-        )
+        texts = {name: f"{name} = {value:g} mm" if is_plain_number(value) else name for name, value in given.items()}
+        ways = " or ".join(" and ".join(texts[name] for name in names if name not in shared) for names in kept)
         raise ValueError(
             f"{' and '.join(changed_names)} would change another length that the joint gives: add the one that stays, "
             f"{ways}"
@@ -235,11 +223,6 @@ def give(name: str, given: Sequence[str]) -> tuple[str, ...]:
     """
     fitting = fit_beside((name,), sorted(given, key=lambda other: _STAYING_ORDER.index(canonical(other))))
     return (*(other for other in given if other in fitting), name)
-
-
-def _value_text(value: Array) -> str:
-    """Format a length in mm behind its name; empty for an array."""
-    return f" = {value:g} mm" if is_plain_number(value) else ""
 
 
 def derive_lengths(lengths: Mapping[str, Array], shell: Array) -> dict[str, Array]:

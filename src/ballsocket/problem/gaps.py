@@ -24,15 +24,10 @@ class LinearGap:
     """Linearised surface displacement under a rigid ball, u = d cos φ - c (1 - cos φ).
 
     Eq. (6) of Heß & Forsbach 2021, doi 10.3390/app112311170.
-
-    Parameters
-    ----------
-    clearance, socket_radius : float
-        c and R2 in mm.
     """
 
-    clearance: float
-    socket_radius: float
+    clearance: float  #: c in mm
+    socket_radius: float  #: R2 in mm
     steps: ClassVar[int] = 1
     """Number of Newton steps from d = 0; u is linear in d."""
 
@@ -65,12 +60,7 @@ class LinearGap:
 class CircularGap:
     """Surface displacement under a circular ball, u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5).
 
-    The transforms are those of `LinearGap`.
-
-    Parameters
-    ----------
-    clearance, socket_radius : float
-        c and R2 in mm.
+    Fields and transforms are those of `LinearGap`.
     """
 
     clearance: float
@@ -241,26 +231,13 @@ Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""
 
 
-def _evaluate_at_nodes(t: Numbers, derivatives: Derivatives) -> tuple[Numbers, tuple[Numbers, ...]]:
-    """Evaluate the displacement and its derivatives at the quadrature nodes θ, where w = (1 - cos t) sin² θ.
-
-    Returns sin θ along a new first axis, and the values.
-    """
-    sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
-    return sine, derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
-
-
-def _sine_weighted_mean(values: Numbers) -> Numbers:
-    """Compute the mean of values over θ in [0, π/2] with the weight sin θ."""
-    return numpy.tensordot(pi / 2 * _WEIGHTS * _SINES, values, axes=1)
-
-
 def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:
-    """Compute the Abel transform of a displacement by quadrature over θ in [0, π/2].
+    """Compute the Abel transform of a displacement by quadrature over θ in [0, π/2], with w = (1 - cos t) sin² θ.
 
     A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ.
     """
-    sine, (u, u1) = _evaluate_at_nodes(t, derivatives)
+    sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
+    u, u1 = derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
     return numpy.cos(t / 2) * _sine_weighted_mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _sine_weighted_mean(
         sine**2 * u1
     )
@@ -268,7 +245,8 @@ def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:
 
 def _abel_transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
     """Compute the derivative of the Abel transform of a displacement with respect to t."""
-    sine, (u, u1, u2) = _evaluate_at_nodes(t, derivatives)
+    sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
+    u, u1, u2 = derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
     half = numpy.sin(t / 2)
     first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
     second = 2 * half * numpy.sin(t) ** 2
@@ -277,3 +255,7 @@ def _abel_transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
         + first * _sine_weighted_mean(sine**2 * u1)
         + second * _sine_weighted_mean(sine**4 * u2)
     )
+
+
+def _sine_weighted_mean(values: Numbers) -> Numbers:
+    return numpy.tensordot(pi / 2 * _WEIGHTS * _SINES, values, axes=1)

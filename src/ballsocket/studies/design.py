@@ -36,22 +36,12 @@ from .sampling import MAX_SOBOL_COUNT, Method
 class Design:
     """Points of a study: all combinations of its axes, with fixed parameters.
 
-    Attributes
-    ----------
-    axes : tuple of Axis
-    fixed : mapping of str to float
-    held : mapping of str to float
-        Lengths of the joint that stay while others vary, see `holding`.
-
-    Raises
-    ------
-    ValueError
-        An unknown parameter, one that varies twice, or parameters that contradict each other.
+    Raises ValueError: an unknown parameter, one that varies twice, or parameters that contradict each other.
     """
 
     axes: tuple[Axis, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
-    held: Mapping[str, float] = field(default_factory=dict)
+    held: Mapping[str, float] = field(default_factory=dict)  #: lengths that stay while others vary, see `holding`
 
     def __post_init__(self) -> None:
         names = self.names
@@ -101,17 +91,9 @@ class Design:
         return (*(name for axis in self.axes for name in axis.names), *self.constants)
 
     def values_in(self, box: Sequence[slice]) -> dict[str, Numbers]:
-        """Return the values of all parameters in a box of points.
+        """Return the values of all parameters in a box of points, given by its range along each axis.
 
-        Parameters
-        ----------
-        box : sequence of slice
-            Range along each axis.
-
-        Returns
-        -------
-        dict of str to array
-            Arrays with one dimension per axis, which broadcast against each other.
+        The arrays have one dimension per axis, and broadcast against each other.
         """
         arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.constants.items()}
         for dimension, (axis, section) in enumerate(zip(self.axes, box, strict=True)):
@@ -161,16 +143,21 @@ def check_values(design: Design) -> None:
 
     Of a span only the ends are checked.
 
-    Raises
-    ------
-    ValueError
-        A value is not allowed; the message has the first one.
+    Raises ValueError: a value is not allowed; the message has the first one.
     """
     for axis in design.axes:
         if isinstance(axis, MaterialAxis):  # checked when they were made
             continue
         if isinstance(axis, SampleAxis):
-            _check_samples(axis)
+            doubtful = [  # only what a distribution allows outside the range of its parameter is drawn
+                name
+                for name, distribution in axis.distributions
+                if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
+            ]
+            for section in axis.sections if doubtful else ():
+                values_in_section = axis.values_in(section)
+                for name in doubtful:
+                    _check_allowed(name, values_in_section[name], "; truncate the distribution", section.start)
             continue
         ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
         for name, values in ends.items():
@@ -178,19 +165,6 @@ def check_values(design: Design) -> None:
     for name, value in design.fixed.items():
         if not isnan(value):  # an unknown yield stress of a material
             _check_allowed(name, numpy.array([value]))
-
-
-def _check_samples(axis: SampleAxis) -> None:
-    """Raise ValueError for a sample outside the range of its parameter; draw only what a distribution allows there."""
-    doubtful = [
-        name
-        for name, distribution in axis.distributions
-        if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
-    ]
-    for section in axis.sections if doubtful else ():
-        values = axis.values_in(section)
-        for name in doubtful:
-            _check_allowed(name, values[name], "; truncate the distribution", section.start)
 
 
 def _check_allowed(name: str, values: Numbers, hint: str = "", start: int = 0) -> None:

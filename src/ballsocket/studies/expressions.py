@@ -20,20 +20,12 @@ _MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could t
 
 
 def parse_range(text: str) -> tuple[str, float, float]:
-    """Parse a name and the two ends of its range, as in "ball_radius=11..23 mm".
-
-    Returns
-    -------
-    name : str
-    low, high : float
-        In mm, N, MPa, rad.
+    """Parse a name and the two ends of its range in mm, N, MPa or rad, as in "ball_radius=11..23 mm".
 
     Raises ValueError: another form, or an unknown name.
     """
-    match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'")
-    name, low, high = match.groups()
+    form = f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'"
+    name, low, high = _parts(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text, form)
     check_names([name], PARAMETERS, "among what can vary")
     kind = PARAMETERS[name].kind
     return name, parse(name, _add_unit(low, high), kind), parse(name, high, kind)
@@ -44,10 +36,8 @@ def parse_ends(name: str, text: str, kind: str) -> tuple[float, float]:
 
     Raises ValueError: another form; the message has the `name`.
     """
-    match = _match(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{name} = {shown(text)} is not a range, such as '30..60 deg'")
-    low, high = match.groups()
+    form = f"{name} = {shown(text)} is not a range, such as '30..60 deg'"
+    low, high = _parts(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text, form)
     return parse(name, _add_unit(low, high), kind), parse(name, high, kind)
 
 
@@ -84,41 +74,30 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
     return name, tolerance(parse(name, _add_unit(nominal, plus_minus), kind), parse(name, plus_minus, kind))
 
 
-def parse_correlation(text: str) -> tuple[tuple[str, str], float]:
-    """Parse two names and their rank correlation, as in "clearance, liner_young = 0.5".
-
-    Raises ValueError: another form, or an unknown name.
-    """
-    match = _match(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'")
-    one, other, rank = match.groups()
-    check_names([one, other], PARAMETERS, "among what can scatter")
-    return (one, other), parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
-
-
 def parse_correlations(texts: Iterable[str]) -> Correlation:
-    """Parse several rank correlations; raise ValueError for another form or a pair that occurs twice."""
+    """Parse several rank correlations, as in "clearance, liner_young = 0.5".
+
+    Raises ValueError: another form, an unknown name, or a pair that occurs twice.
+    """
     correlation: dict[tuple[str, str], float] = {}
-    for (one, other), rank in map(parse_correlation, texts):
+    for text in texts:
+        form = f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'"
+        one, other, rank = _parts(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text, form)
+        check_names([one, other], PARAMETERS, "among what can scatter")
+        value = parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
         if (one, other) in correlation:
             raise ValueError(f"the correlation of {one} and {other} is given twice; one is needed")
-        correlation[one, other] = rank
+        correlation[one, other] = value
     return correlation
 
 
 def parse_limit(text: str) -> Limit:
     """Parse a limit, as in "outer_radius<=26 mm" or "edge_distance>=5 mm"; < is read as <=, since limits include ends.
 
-    Raises
-    ------
-    ValueError
-        Another form, or an unknown name.
+    Raises ValueError: another form, or an unknown name.
     """
-    match = _match(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text)
-    if match is None:
-        raise ValueError(f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'")
-    name, sign, end = match.groups()
+    form = f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'"
+    name, sign, end = _parts(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text, form)
     if "=" in (sign, sign[:1]):
         raise ValueError(f"{shown(text)} is not a limit: it needs <= or >=, such as 'outer_radius<=26 mm'")
     check_names([name], LIMITED_NAMES, "among what can be limited")
@@ -129,6 +108,13 @@ def parse_limit(text: str) -> Limit:
 def _match(pattern: str, text: str) -> re.Match[str] | None:
     """Match a complete text of limited length; None if it does not match or is too long."""
     return re.fullmatch(pattern, text) if len(text) <= _MAX_CHARACTERS else None
+
+
+def _parts(pattern: str, text: str, message: str) -> tuple[str, ...]:
+    match = _match(pattern, text)
+    if match is None:
+        raise ValueError(message)
+    return match.groups()
 
 
 def _add_unit(number: str, last: str) -> str:
@@ -163,10 +149,7 @@ DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
 def distribution_of(name: str, content: Any, read: Read) -> Distribution:
     """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
 
-    Raises
-    ------
-    ValueError
-        Other keys, or numbers that are not allowed.
+    Raises ValueError: other keys, or numbers that are not allowed.
     """
     for keys, make in _DISTRIBUTIONS:
         if isinstance(content, Mapping) and set(content) == set(keys):

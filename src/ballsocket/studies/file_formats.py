@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,7 +26,6 @@ SUFFIXES = (".nc", ".csv", ".parquet", ".zarr")
 """Endings of the file names of exports."""
 
 _MAX_CHUNK_POINTS = 1 << 18  # largest number of points of a chunk
-_QUOTED_CHARACTERS = set(',"\r\n')  # characters that only a quoted cell may contain
 
 
 def dimension_names(study: xarray.Dataset) -> tuple[str, ...]:
@@ -187,16 +187,9 @@ def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
         for number, columns in enumerate(_iterate_columns(study)):
             if number == 0:
-                stream.write(",".join(columns) + "\n")
-            rows = zip(*columns.values(), strict=True)
-            stream.writelines(",".join(map(_cell_text, row)) + "\n" for row in rows)
-
-
-def _cell_text(value: object) -> str:
-    if isinstance(value, numpy.bool_):
-        return "1" if value else "0"
-    if isinstance(value, str):
-        return '"{}"'.format(value.replace('"', '""')) if _QUOTED_CHARACTERS & set(value) else str(value)
-    return repr(value.item()) if isinstance(value, numpy.generic) else str(value)
+                writer.writerow(columns)
+            numbers = (column.astype(int) if column.dtype.kind == "b" else column for column in columns.values())
+            writer.writerows(zip(*(column.tolist() for column in numbers), strict=True))

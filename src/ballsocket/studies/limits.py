@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, pi
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from ..core.quantities import QUANTITIES as ALL_QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
-from ..problem.dimensions import LENGTHS, STORED_LENGTHS, Dimensions, derive_lengths
+from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of
 from .metadata import missing_reasons
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
@@ -96,14 +96,14 @@ class Limit:
 
         Its lower bound is the margin of the worse end of the error bar, and its upper bound that of the better end.
         """
-        bar = self.bar(study)
-        return Bounded(*(self._distance(*ends) for ends in (bar[:1] * 2, bar[1:], bar[:0:-1])))
 
-    def _distance(self, smallest: Any, largest: Any) -> Any:
-        """Compute the distance of the smallest value to the lower end, or of the largest to the upper one."""
-        below = smallest - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(smallest)
-        above = self.high - largest if self.high < inf else inf + 0.0 * numpy.isnan(largest)
-        return numpy.minimum(below, above)
+        def distance(smallest: Any, largest: Any) -> Any:
+            below = smallest - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(smallest)
+            above = self.high - largest if self.high < inf else inf + 0.0 * numpy.isnan(largest)
+            return numpy.minimum(below, above)
+
+        bar = self.bar(study)
+        return Bounded(distance(bar.value, bar.value), distance(bar.low, bar.high), distance(bar.high, bar.low))
 
     def __str__(self) -> Sentence:
         low, high = (Amount(end, ALL_QUANTITIES[self.name].shown, 6) for end in (self.low, self.high))
@@ -117,43 +117,22 @@ class Limit:
 def joint_dimension(study: xarray.Dataset, name: str) -> Any:
     """Return a dimension (mm) or material property of the joints of a study: varied, fixed, or derived from others.
 
-    Raises
-    ------
-    ValueError
-        The joint has no such number, such as the modulus of a rigid ball.
+    Raises ValueError: the joint has no such number, such as the modulus of a rigid ball.
     """
     if name in study.coords:
         return study[name]
     joint = json.loads(study.attrs["joint"])
     if name in (*LENGTHS, *SHELL):
-        return getattr(_derive_dimensions(study, joint), name)
+        varied = {str(coord): study[coord] for coord in study.coords if coord in (*LENGTHS, *SHELL)}
+        thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
+        shell = varied.pop("shell_thickness", thickness if thickness < inf else 0.0)
+        lengths = derive_lengths(varied or {length: float(joint[length]) for length in STORED_LENGTHS}, shell)
+        return shell if name in SHELL else length_of(name, lengths, shell)
     part, _, number = name.rpartition("_")
     value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
     if value is None:
         raise ValueError(f"the joint of this study has no {name}")
     return float(value)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _LengthDimensions(Dimensions):
-    """Dimensions of the joints of a study in mm, each a number or a labelled array."""
-
-    ball_radius: Any
-    clearance: Any
-    liner_thickness: Any
-    shell_thickness: Any
-
-    @property
-    def shell(self) -> Any:
-        return self.shell_thickness
-
-
-def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
-    varied = {str(name): study[name] for name in study.coords if name in (*LENGTHS, *SHELL)}
-    thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
-    shell = varied.pop("shell_thickness", thickness if thickness < inf else 0.0)
-    lengths = derive_lengths(varied or {name: float(joint[name]) for name in STORED_LENGTHS}, shell)
-    return _LengthDimensions(**lengths, shell_thickness=shell)
 
 
 def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> Bounded:
@@ -167,11 +146,8 @@ def relative_margins(
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
     """Compute the smallest margin of all limits on a plane, each relative to its largest value, between -1 and 1.
 
-    Returns
-    -------
-    worst, best : array (y, x)
-        Margins of the worse and of the better end of the error bar: negative, the first where a limit is not kept, and
-        the second where one is exceeded.
+    Returns the margins (y, x) of the worse and of the better end of the error bar: negative, the first where a limit is
+    not kept, and the second where one is exceeded.
     """
     worst, best = numpy.ones((2, study.sizes[y_axis], study.sizes[x_axis]))
     for limit in limits:
@@ -222,14 +198,8 @@ def undecided_reason(study: xarray.Dataset, limits: Iterable[Limit]) -> str:
 def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
     """Describe the reason why no point of a study is allowed: limits, or a model without a result.
 
-    Parameters
-    ----------
-    study : xarray.Dataset
-    limits : iterable of Limit
-    refused : str
-        Beginning of the sentence for limits, such as "no point is allowed".
-    place : str
-        End of the sentence for a model without a result, such as "at any point".
+    `refused` begins the sentence for limits, such as "no point is allowed"; `place` ends that for a model without a
+    result, such as "at any point".
     """
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):

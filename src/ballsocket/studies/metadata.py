@@ -74,6 +74,11 @@ def study_attributes(task: Task) -> dict[str, Any]:
     """Return the attributes of a study: title, model, joint, design, publications and version."""
     remarks = [axis.remark for axis in task.design.axes if isinstance(axis, TableAxis) and axis.remark]
     labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
+    # lengths of the joint that follow from varied ones: given ones in their own names, then stored ones
+    lengths, derived = [name for name in task.design.names if name in LENGTHS], list[str]()
+    if lengths:
+        derived = lost_lengths(lengths, task.joint.given_lengths)
+        derived = [*derived, *lost_lengths([*lengths, *derived], STORED_LENGTHS)]
     # the name of a material axis comes before its properties
     names = ((*([axis.name] if axis.labels else []), *axis.names) for axis in task.design.axes)
     return {
@@ -85,20 +90,13 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "source": f"ballsocket {fingerprint()}",
         _PARAMETERS: " ".join((*chain.from_iterable(names), *task.design.constants)),
         HELD: json.dumps(task.design.held),
-        _DERIVED: json.dumps([_derived_names(task), float(task.joint.shell)]),
+        _DERIVED: json.dumps([derived, float(task.joint.shell)]),
         _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
         _MISSING: json.dumps(_missing_reasons(task), ensure_ascii=False),
         "Conventions": "CF-1.10",
         **({"comment": "; ".join(remarks)} if remarks else {}),
         **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
     }
-
-
-def _derived_names(task: Task) -> list[str]:
-    """List the lengths of the joint that follow from varied ones: given ones in their own names, then stored ones."""
-    lengths = [name for name in task.design.names if name in LENGTHS]
-    lost = lost_lengths(lengths, task.joint.given_lengths) if lengths else []
-    return [*lost, *lost_lengths([*lengths, *lost], STORED_LENGTHS)] if lengths else []
 
 
 def derived_lengths(study: xarray.Dataset, values: Mapping[str, Numbers]) -> dict[str, Numbers]:
@@ -160,26 +158,21 @@ def _missing_reasons(task: Task) -> dict[str, str]:
     return {"utilisation": unchecked_strength_reason(replace(task.joint, liner=liner.without_strengths()))}
 
 
-def parameter_coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:
-    """Return dimensions and values of each varied or fixed parameter."""
-    coordinates: dict[str, tuple[tuple[str, ...], Numbers]] = {
-        name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()
-    }
-    return coordinates | {name: ((), numpy.asarray(value)) for name, value in design.constants.items()}
-
-
 def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
     """Create the labelled dataset of a study from arrays of its shape."""
     import xarray
 
-    coordinates = parameter_coordinates(task.design).items()
+    coordinates: dict[str, tuple[tuple[str, ...], Any]] = {
+        name: ((axis.name,), values) for axis in task.design.axes for name, values in axis.values.items()
+    }
+    coordinates |= {name: ((), numpy.asarray(value)) for name, value in task.design.constants.items()}
     return order_coordinates(
         xarray.Dataset(
             {
                 name: (task.design.dims, arrays.read_only(values), variable_attributes(name))
                 for name, values in results.items()
             },
-            coords={name: (dims, values, variable_attributes(name)) for name, (dims, values) in coordinates},
+            coords={name: (dims, values, variable_attributes(name)) for name, (dims, values) in coordinates.items()},
             attrs=study_attributes(task),
         )
     )

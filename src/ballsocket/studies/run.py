@@ -54,24 +54,12 @@ _MANY_HOURS = 100.0  # number of hours that is written without digits after the 
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a study.
+    """Progress of a study."""
 
-    Attributes
-    ----------
-    n_done : int
-        Number of points with a result.
-    n_points : int
-        Total number of points.
-    n_stored : int
-        Number of points with a stored result at the start.
-    seconds : float
-        Time since the start in s.
-    """
-
-    n_done: int
-    n_points: int
-    n_stored: int
-    seconds: float
+    n_done: int  #: number of points with a result
+    n_points: int  #: total number of points
+    n_stored: int  #: number of points with a stored result at the start
+    seconds: float  #: time since the start in s
 
     @property
     def rate(self) -> float:
@@ -149,7 +137,12 @@ def study(
     needs("study", "xarray", "zarr")
     if store is not None:
         check_store(store)
-    _check_types(model, joint, design)
+    if not isinstance(model, Model):
+        hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
+        raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
+    check_joint(joint)
+    if not (design is None or isinstance(design, Design)):
+        raise TypeError(f"design must be a Design, from grid, sample or table, got {shown(design)}; loads have names")
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
     task = _create_task(model, joint, design, axes, tuple(quantities))
@@ -164,15 +157,6 @@ def study(
     _check_space(task, study_store.folder, sum(map(task.blocks.n_points, run.missing)))
     _compute_into_store(study_store, task, run, engine, listen)
     return read(str(study_store.folder))
-
-
-def _check_types(model: Any, joint: Any, design: Any) -> None:
-    if not isinstance(model, Model):
-        hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
-        raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
-    check_joint(joint)
-    if not (design is None or isinstance(design, Design)):
-        raise TypeError(f"design must be a Design, from grid, sample or table, got {shown(design)}; loads have names")
 
 
 def _create_task(
@@ -197,7 +181,13 @@ def _check_space(task: Task, folder: ResultFolder | None, n_points: int | None =
     """Check that the results of some points, all by default, fit into the memory, or on the disk of the store."""
     count = task.design.size if n_points is None else n_points
     results = count * _result_size(task)
-    duration = _duration_text(count * task.model.seconds_a_press / 3600)
+    hours = count * task.model.seconds_a_press / 3600
+    if hours < 1 / 60:
+        duration = f"{3600 * hours:.2g} s"
+    elif hours < 1:
+        duration = f"{60 * hours:.2g} min"
+    else:
+        duration = f"{hours:.3g} hours" if hours < _MANY_HOURS else f"{count_text(round(hours))} hours"
 
     def check(size: float, free: float, hint: str) -> None:
         if size > free:
@@ -238,14 +228,6 @@ def _axis_size(axis: Axis) -> int:
     return 8 * (len(axis) + cached) * len(axis.names)
 
 
-def _duration_text(hours: float) -> str:
-    if hours < 1 / 60:
-        return f"{3600 * hours:.2g} s"
-    if hours < 1:
-        return f"{60 * hours:.2g} min"
-    return f"{hours:.3g} hours" if hours < _MANY_HOURS else f"{count_text(round(hours))} hours"
-
-
 def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
     arrays = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
     numbers = range(len(task.blocks))
@@ -281,17 +263,10 @@ def _report_progress(
 
 
 def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
-    """Choose the model for a joint with varied parameters.
+    """Choose the model for a joint and the ends or values of its varied parameters; materials by `liner` or `ball`.
 
     It is `tabulated` unless none of the joints is in its domain. Otherwise it is `exact`, or `exact-curve` for a
     single joint. Joints of a clearance for which the circular gap is the default are solved by `exact`.
-
-    Parameters
-    ----------
-    joint : Joint
-        Parameters that do not vary.
-    ranges : mapping of str to sequence
-        Ends of the range or all values of each varied parameter; materials by `liner` or `ball`.
     """
     if arrays.all_true(joint_of_arrays(joint, ranges).clearance_ratio > MAX_LINEAR_CLEARANCE_RATIO):
         return reference

@@ -34,23 +34,7 @@ class Method(Choice):
 
 
 def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: int) -> Numbers:
-    """Draw one chunk of a design of uniform points in the unit cube.
-
-    Parameters
-    ----------
-    method : Method
-    count : int
-        Total number of points of the design.
-    dimension : int
-        Number of coordinates of a point.
-    seed : int
-    number : int
-        Number of the chunk, from 0.
-
-    Returns
-    -------
-    array (dimension, points of the chunk)
-    """
+    """Draw chunk `number` of a design of `count` uniform points in the unit cube: (dimension, points of the chunk)."""
     start, stop = number * CHUNK_SIZE, min(count, (number + 1) * CHUNK_SIZE)
     if method is Method.SOBOL:
         return _draw_sobol(dimension, seed, start, stop).T
@@ -104,24 +88,9 @@ def _draw_latin_hypercube(count: int, dimension: int, seed: int, start: int, sto
 def permute(indices: Numbers, count: int, keys: Numbers) -> Numbers:
     """Compute a random permutation of the numbers below `count`, for some of them.
 
-    A Feistel network permutes the numbers below the next power of four. Results of `count` or more are permuted again
-    until they are below.
-
-    Parameters
-    ----------
-    indices : array of uint64
-        Numbers below `count`.
-    count : int
-    keys : array of uint64
-        One key for each round; other keys give another permutation.
-
-    Returns
-    -------
-    array of uint64
-
-    References
-    ----------
-    Black & Rogaway 2002, Ciphers with arbitrary finite domains, method "cycle walking".
+    A Feistel network, with one key for each round, permutes the numbers below the next power of four. Results of
+    `count` or more are permuted again until they are below: "cycle walking", Black & Rogaway 2002, Ciphers with
+    arbitrary finite domains. Indices and keys are arrays of uint64.
 
     Examples
     --------
@@ -139,17 +108,14 @@ def permute(indices: Numbers, count: int, keys: Numbers) -> Numbers:
 
 
 def _feistel(values: Numbers, half_bits: numpy.uint64, keys: Numbers) -> Numbers:
-    """Permute numbers of 2 `half_bits` bits by a Feistel network."""
+    """Permute numbers of 2 `half_bits` bits by a Feistel network, with the finaliser of MurmurHash3 in each round."""
     mask = (numpy.uint64(1) << half_bits) - numpy.uint64(1)
     left, right = values >> half_bits, values & mask
-    for key in keys:
-        left, right = right, left ^ (_hash(right ^ key) & mask)
-    return (left << half_bits) | right
-
-
-def _hash(values: Numbers) -> Numbers:
-    """Mix the bits of 64-bit numbers, by the finaliser of MurmurHash3."""
     shift = numpy.uint64(33)
-    for multiplier in _MULTIPLIERS:
-        values = (values ^ (values >> shift)) * numpy.uint64(multiplier)
-    return values ^ (values >> shift)
+    for key in keys:
+        mixed = right ^ key
+        for multiplier in _MULTIPLIERS:
+            mixed = (mixed ^ (mixed >> shift)) * numpy.uint64(multiplier)
+        mixed = mixed ^ (mixed >> shift)
+        left, right = right, left ^ (mixed & mask)
+    return (left << half_bits) | right

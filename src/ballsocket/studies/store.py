@@ -52,12 +52,8 @@ def check_store(path: str | Path) -> None:
 def read(path: str | Path) -> xarray.Dataset:
     """Open a stored study at a path or an address; its numbers are read when they are used.
 
-    Raises
-    ------
-    OSError
-        The store does not exist or does not respond.
-    ValueError
-        The path is not a study.
+    Raises OSError: the store does not exist or does not respond.
+    Raises ValueError: the path is not a study.
     """
     import xarray
 
@@ -87,8 +83,13 @@ class StudyStore:
         """
         needs("study", "zarr")
         requested = json.loads(json.dumps(study_identity(task)))
-        if not self.folder.exists() and self._create(task, requested):
-            return
+        if not self.folder.exists():
+            try:
+                self.folder.create(lambda draft: _write_group(draft, task, requested))
+                return
+            except OSError:
+                if not self.folder.exists():  # else another process created it first
+                    raise
         stored = self.read_identity()
         if stored == requested:
             self._repair_labels(task, requested)
@@ -97,16 +98,6 @@ class StudyStore:
             raise ValueError(
                 f"{self.folder} has another study: {differences}. Choose another folder, or remove this one"
             )
-
-    def _create(self, task: Task, identity: Mapping[str, Any]) -> bool:
-        """Create the group; return False if another process created it first."""
-        try:
-            self.folder.create(lambda draft: _write_group(draft, task, identity))
-        except OSError:
-            if not self.folder.exists():
-                raise
-            return False
-        return True
 
     def _repair_labels(self, task: Task, identity: Mapping[str, Any]) -> None:
         """Write damaged or missing labels again; they are all files of a group without results."""
@@ -136,34 +127,6 @@ class StudyStore:
             raise ValueError(f"{self.folder} exists and is not a study")
         return identity
 
-    def intact_blocks(self, task: Task, numbers: Sequence[int]) -> list[int]:
-        """Return the numbers of those blocks that are stored with a correct checksum."""
-        import zarr
-
-        group = zarr.open_group(self.folder.zarr_store(), mode="r", zarr_format=3)
-        try:
-            checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
-        except Exception:  # without the list of checksums, every block is computed again
-            return []
-        return [
-            number
-            for number in numbers
-            if checksums[number] >= 0 and checksums[number] == _stored_checksum(group, task, number)
-        ]
-
-    def write(self, task: Task, number: int, results: Mapping[str, Numbers]) -> None:
-        """Write the results of a block, and last its checksum.
-
-        Raises OSError: the store is not writable or the disk is full.
-        """
-        import zarr
-
-        with self.folder.errors():
-            group = zarr.open_group(self.folder.zarr_store(), mode="r+", zarr_format=3)
-            for name, values in results.items():
-                group[name][task.blocks[number]] = values  # type: ignore[index]
-            group[CHECKSUM][number] = _checksum(results, task)  # type: ignore[index]
-
 
 @dataclass(frozen=True, eq=False)
 class BlockStore(PieceStore):
@@ -173,12 +136,41 @@ class BlockStore(PieceStore):
     store: StudyStore
 
     def load(self, numbers: Sequence[int]) -> dict[int, None]:
-        """Return the numbers of the intact blocks, without their values."""
-        return dict.fromkeys(self.store.intact_blocks(self.task, numbers))
+        """Return the numbers of those blocks that are stored with a correct checksum, without their values."""
+        import zarr
+
+        group = zarr.open_group(self.store.folder.zarr_store(), mode="r", zarr_format=3)
+        try:
+            checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
+        except Exception:  # without the list of checksums, every block is computed again
+            return {}
+        return {
+            number: None
+            for number in numbers
+            if checksums[number] >= 0 and checksums[number] == self._stored_checksum(group, number)
+        }
+
+    def _stored_checksum(self, group: Any, number: int) -> int | None:
+        try:
+            return self._checksum({name: group[name][self.task.blocks[number]] for name in self.task.variables})
+        except Exception:  # a damaged file can raise any error in its decoder; the block is computed again
+            return None
+
+    def _checksum(self, results: Mapping[str, Numbers]) -> int:
+        checksum = 0
+        for name in self.task.variables:
+            checksum = crc32(numpy.ascontiguousarray(results[name]).view(numpy.uint8).data, checksum)
+        return checksum
 
     def save(self, number: int, result: Mapping[str, Numbers]) -> None:
-        """Write the values of a block; see `StudyStore.write`."""
-        self.store.write(self.task, number, result)
+        """Write the values of a block, and last its checksum."""
+        import zarr
+
+        with self.store.folder.errors():
+            group = zarr.open_group(self.store.folder.zarr_store(), mode="r+", zarr_format=3)
+            for name, values in result.items():
+                group[name][self.task.blocks[number]] = values  # type: ignore[index]
+            group[CHECKSUM][number] = self._checksum(result)  # type: ignore[index]
 
 
 def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
@@ -225,18 +217,3 @@ def _write_axis(group: Any, axis: Axis) -> None:
     for section in axis.sections:
         for name, values in axis.values_in(section).items():
             coordinates[name][section] = values
-
-
-def _stored_checksum(group: Any, task: Task, number: int) -> int | None:
-    """Compute the checksum of a stored block; None if the block is not readable."""
-    try:
-        return _checksum({name: group[name][task.blocks[number]] for name in task.variables}, task)
-    except Exception:  # a damaged file can raise any error in its decoder; the block is computed again
-        return None
-
-
-def _checksum(results: Mapping[str, Numbers], task: Task) -> int:
-    checksum = 0
-    for name in task.variables:
-        checksum = crc32(numpy.ascontiguousarray(results[name]).view(numpy.uint8).data, checksum)
-    return checksum

@@ -11,10 +11,9 @@ from typing import Any
 import numpy
 
 from ..contact import Contact, Model
-from ..contact.describe import COLUMNS
 from ..contact.verdict import Verdict, error_bar
 from ..core.arrays import Numbers
-from ..core.quantities import BEARING, Quantity
+from ..core.quantities import BEARING, CONTACT, Quantity
 from ..core.quantities import QUANTITIES as CONTACT_QUANTITIES
 from ..core.storage.pieces import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
@@ -22,7 +21,7 @@ from ..problem import Joint
 from .design import Design
 from .parameters import press_arguments
 
-QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
+QUANTITIES = (*CONTACT, *BEARING)
 """Quantities that a study can have; `status` and `valid` are in every study."""
 
 EDGE_DISTANCE = "edge_distance"
@@ -145,10 +144,7 @@ class Task:
     def __call__(self, number: int) -> dict[str, Numbers]:
         """Compute the variables of one block, each of the block's shape.
 
-        Raises
-        ------
-        ValueError
-            This process has another version of the package than the process that started the study.
+        Raises ValueError: this process has another version of the package than the process that started the study.
         """
         check_worker_code(self.code)
         box = self.blocks[number]
@@ -158,7 +154,11 @@ class Task:
         values = self.design.values_in(box)
         for press_number in range(len(presses)):
             section = presses[press_number]
-            computed = self._press({name: _select_section(value, section) for name, value in values.items()})
+            parts = {}
+            for name, value in values.items():  # they broadcast: dimensions of length one stay complete
+                axes = zip(section, value.shape, strict=True)
+                parts[name] = value[tuple(part if length > 1 else slice(None) for part, length in axes)]
+            computed = self._press(parts)
             for name, result in computed.items():
                 results[name][section] = result
         return results
@@ -166,24 +166,17 @@ class Task:
     def _press(self, values: Mapping[str, Numbers]) -> Mapping[str, Any]:
         joint, load, is_joint = press_arguments(self.joint, values)
         possible = numpy.asarray(is_joint)
+        absent: dict[str, Any] = dict.fromkeys(self.quantities, numpy.nan)
+        absent |= {"status": int(Status.NO_JOINT), "valid": False, "broken_limit": 0, VERDICT: NO_VERDICT}
         try:
             contact = self.model.press(joint, **load)
         except OutsideDomainError:
-            status = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
-            outcome = {"status": status, "valid": False, "broken_limit": 0}
-            missing = {**dict.fromkeys(self.quantities, numpy.nan), **outcome}
-            return {**missing, VERDICT: NO_VERDICT} if VERDICT in self.variables else missing
+            absent["status"] = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
+            return {name: absent[name] for name in self.variables}
         results = {name: _read_variable(contact, name) for name in self.variables}
         if possible.all():
             return results
-        for name in self.quantities:
-            results[name] = numpy.where(possible, results[name], numpy.nan)
-        results["status"] = numpy.where(possible, results["status"], int(Status.NO_JOINT))
-        results["valid"] = results["valid"] & possible
-        results["broken_limit"] = numpy.where(possible, results["broken_limit"], 0)
-        if VERDICT in results:
-            results[VERDICT] = numpy.where(possible, results[VERDICT], NO_VERDICT)
-        return results
+        return {name: numpy.where(possible, result, absent[name]) for name, result in results.items()}
 
 
 def with_bounds(names: Iterable[str]) -> tuple[str, ...]:
@@ -207,11 +200,6 @@ def _read_variable(contact: Contact, name: str) -> Any:
     if name in BOUNDS:
         return getattr(error_bar(contact, quantity_of_bound(name)), name.rpartition("_")[2])
     return getattr(contact, name)
-
-
-def _select_section(value: Numbers, section: tuple[slice, ...]) -> Numbers:
-    """Select a section of an array that broadcasts; dimensions of length one stay complete."""
-    return value[tuple(part if length > 1 else slice(None) for part, length in zip(section, value.shape, strict=True))]
 
 
 def points_per_block(model: Model) -> int:

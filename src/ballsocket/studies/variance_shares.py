@@ -92,7 +92,14 @@ def sensitivity(
     import xarray
 
     names, fixed = tuple(quantities), dict(load or {})
-    _check_arguments(distributions, names, fixed)
+    check_names(distributions, PARAMETERS, "among what scatters")
+    check_names(names, QUANTITIES, "among the quantities")
+    if not distributions:
+        raise ValueError("at least one number must scatter")
+    check_contradictions({**distributions, **fixed})
+    for name in fixed:
+        if name in distributions:
+            raise ValueError(f"{name} scatters and is given as a load too; one is needed")
     require("count", count, 2 <= count <= MAX_SAMPLES, f"the number of samples is 2 to {MAX_SAMPLES}")
     if confidence is not None:
         require("confidence", confidence, 0 < confidence < 1, "a confidence level is between 0 and 1")
@@ -134,19 +141,6 @@ def sensitivity(
         },
         attrs=attributes,
     )
-
-
-def _check_arguments(
-    distributions: Mapping[str, Distribution], quantities: Iterable[str], fixed: Mapping[str, float]
-) -> None:
-    check_names(distributions, PARAMETERS, "among what scatters")
-    check_names(quantities, QUANTITIES, "among the quantities")
-    if not distributions:
-        raise ValueError("at least one number must scatter")
-    check_contradictions({**distributions, **fixed})
-    for name in fixed:
-        if name in distributions:
-            raise ValueError(f"{name} scatters and is given as a load too; one is needed")
 
 
 @dataclass

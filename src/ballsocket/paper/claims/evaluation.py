@@ -56,37 +56,17 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """Result of a claim: its computed numbers and its verdict.
+    """Result of a claim: its computed numbers and its verdict."""
 
-    Attributes
-    ----------
-    name : str
-        Short name, for links.
-    where : str
-        Section or figure of the paper, or source of the numbers.
-    sentence : str
-        Statement in our words.
-    numbers : mapping of str to float
-        Computed numbers, by name with unit.
-    verdict : Verdict
-    miss : float
-        Largest deviation from the expected values, in `unit`.
-    unit : str
-    comment : str
-        Reason of the verdict, or conditions of the computation.
-    code : str
-        Python expression of the claim.
-    """
-
-    name: str
-    where: str
-    sentence: str
+    name: str  # short, for links
+    where: str  # section or figure of the paper, or source of the numbers
+    sentence: str  # statement in our words
     numbers: Computed
     verdict: Verdict
-    miss: float = 0.0
+    miss: float = 0.0  # largest deviation from the expected values, in `unit`
     unit: str = "%"
-    comment: str = ""
-    code: str = ""
+    comment: str = ""  # reason of the verdict, or conditions of the computation
+    code: str = ""  # Python expression of the claim
 
     @property
     def text(self) -> str:
@@ -127,40 +107,18 @@ BY_EVALUATION: Expected = {}
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """Computable statement about contacts: one row of a table of claims.
+    """Computable statement about contacts: one row of a table of claims."""
 
-    Attributes
-    ----------
-    name : str
-        Short name, for links.
-    source : str
-        Section or figure of the paper, or another publication.
-    statement : str
-        Statement in our words.
-    quantity : callable
-        Function of the reference model that computes the numbers: a mapping, or an `Evaluation` with its own condition.
-        The reference takes the place of the finite elements of the paper.
-    expected : tuple of float, mapping of str to tuple of float, or callable
-        Interval of all numbers, intervals of some numbers, or a condition; by default 0, for relative differences.
-    tolerance : tuple of float
-        Largest deviation from the intervals for "holds" and for "holds within", in `unit`.
-    unit : str
-        Unit of the deviation.
-    comment : str or callable
-        Reason of the verdict, or a function of the computed numbers that states it.
-    joints : callable, optional
-        Function that returns the joints and the forces in N behind the claim, as arrays.
-    """
-
-    name: str
-    source: str
-    statement: str
+    name: str  # short, for links
+    source: str  # section or figure of the paper, or another publication
+    statement: str  # in our words
+    # computes the numbers with a reference model in place of the paper's finite elements
     quantity: Callable[[Model], Computed | Evaluation]
     expected: Expected = ZERO
-    tolerance: Interval = VERY_WELL
-    unit: str = "%"
-    comment: str | Callable[[Computed], str] = ""
-    joints: Callable[[], tuple[Joint, Numbers]] | None = None
+    tolerance: Interval = VERY_WELL  # largest deviations for "holds" and for "holds within", in `unit`
+    unit: str = "%"  # of the deviation
+    comment: str | Callable[[Computed], str] = ""  # reason of the verdict, or a function of the numbers that states it
+    joints: Callable[[], tuple[Joint, Numbers]] | None = None  # joints and forces in N behind the claim, as arrays
 
     @property
     def identifier(self) -> str:
