@@ -87,7 +87,12 @@ class LogarithmicCreep(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        return (_STRAIN_PER_DECADE,) * _N_DECADES, self.times
+        return self.compliances, self.times
+
+    @property
+    def compliances(self) -> tuple[float, ...]:
+        """Compliance of each Kelvin-Voigt element in 1/MPa."""
+        return (_STRAIN_PER_DECADE,) * _N_DECADES
 
     @property
     def times(self) -> tuple[float, ...]:
