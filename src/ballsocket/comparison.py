@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .contact import Contact, Model
-from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
+from .contact.describe import UTILISATION, UTILISATION_NOTE, count_text, number_text, values_of
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
 from .core.display import html_table, load_plot
-from .core.quantities import HEADLINE
+from .core.quantities import CONTACT, HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError
 from .model_catalogue import catalogue, reference
@@ -67,10 +67,7 @@ class Comparison(Mapping[str, Contact]):
         return tuple(dict.fromkeys(listed))
 
     def notes(self) -> list[str]:
-        """List the notes of all contacts and the reasons of missing models, without duplicates.
-
-        Each note has the names of its models.
-        """
+        """List the notes of all contacts with their models, and the reasons of missing models, without duplicates."""
         holders: dict[str, list[str]] = {}
         for name, contact in self.contacts.items():
             for note in contact.notes:
@@ -83,8 +80,8 @@ class Comparison(Mapping[str, Contact]):
         Returns
         -------
         dict of str to array, or None
-            Deviation of each column of `COLUMNS`, of the shape of the contact. None for the exact model itself, for
-            a missing model, and in a comparison without the exact model.
+            Deviation of each quantity by its key in JSON, of the shape of the contact. None for the exact model
+            itself, for a missing model, and in a comparison without the exact model.
         """
         return self._deviations.get(name)
 
@@ -93,9 +90,12 @@ class Comparison(Mapping[str, Contact]):
         exact = self.contacts.get(reference.name)
         if exact is None:
             return {}
-        truths = [(column, column.values_of(exact)) for column in COLUMNS]
+        truths = {quantity: values_of(exact, quantity) for quantity in CONTACT.values()}
         return {
-            name: {column.name: relative_deviation(column.values_of(contact), truth) for column, truth in truths}
+            name: {
+                quantity.key: relative_deviation(values_of(contact, quantity), truth)
+                for quantity, truth in truths.items()
+            }
             for name, contact in self.contacts.items()
             if name != reference.name
         }
@@ -103,14 +103,14 @@ class Comparison(Mapping[str, Contact]):
     def rows(self) -> list[tuple[str, ...]]:
         """Format the table rows, one per model, with the columns of `COLUMN_HEADS`."""
         return [
-            (name, *(number_text(column.values_of(contact), 5, "-") for column in _SHOWN), count_text(contact.valid))
+            (name, *(number_text(values_of(contact, column), 5, "-") for column in _SHOWN), count_text(contact.valid))
             for name, contact in self.contacts.items()
         ]
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
         results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
-        gaps = dict.fromkeys([*(column.name for column in (*COLUMNS, UTILISATION)), UTILISATION_NOTE])
+        gaps = dict.fromkeys([*(quantity.key for quantity in (*CONTACT.values(), UTILISATION)), UTILISATION_NOTE])
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()
@@ -161,10 +161,7 @@ class Comparison(Mapping[str, Contact]):
 
 
 def relative_deviation(value: Array, truth: Array) -> Array:
-    """Compute the relative deviation value/truth - 1.
-
-    It is 0 where both are equal, and NaN where the truth is 0, infinite or NaN.
-    """
+    """Compute value/truth - 1: 0 where both are equal, else NaN where the truth is 0, infinite or NaN."""
     known = (truth > -inf) & (truth < inf) & (truth != 0)
     return where(truth == value, 0.0, value / where(known, truth, nan) - 1)
 
@@ -173,8 +170,8 @@ def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
     return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
 
 
-_SHOWN = tuple(column for column in COLUMNS if column.attribute in HEADLINE)
-COLUMN_HEADS = ("model", *(column.head for column in _SHOWN), "valid")
+_SHOWN = tuple(CONTACT[name] for name in HEADLINE)
+COLUMN_HEADS = ("model", *(quantity.head(quantity.written) for quantity in _SHOWN), "valid")
 """Heads of the columns of `Comparison.rows`: model, the quantities of `HEADLINE` with units, and valid."""
 
 
@@ -264,31 +261,18 @@ def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]
 
 
 THIN_LINER_RATIO = 12.0  # R2/L above which a curve of a numerical model takes seconds
-
-_NUMERICAL_SECONDS = 1e-3  # time of one press in s above which a model counts as numerical
-_MESH_SECONDS = 0.1  # time of one press in s above which a model counts as one that makes meshes
-_FINE_STEPS = numpy.linspace(0.0, 1.0, 121) ** 2  # indentations of a curve of a fast model, relative to the largest
-
-_MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
-"""Indentations of a curve of a model that makes meshes, relative to the largest; few, since each range needs a mesh."""
-
-_SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)  # half angles of a short curve, relative to the largest
-
 MAX_HALF_ANGLE = radians(84.9)  # largest half angle of a short curve in rad
 
 
 def is_curve_slow(model: Model, joint: Joint) -> bool:
     """Check if a force curve of this model and joint takes seconds, as with thin liners."""
-    return model.seconds_a_press > _NUMERICAL_SECONDS and float(joint.thickness_ratio) > THIN_LINER_RATIO
+    return model.seconds_a_press > 1e-3 and float(joint.thickness_ratio) > THIN_LINER_RATIO
 
 
 def press_short_curve(contact: Contact, model: Model) -> Contact:
-    """Compute 12 contacts at half angles up to 1.15 times that of a contact.
-
-    A given half angle needs no search for the load.
-    """
+    """Compute 12 contacts at half angles, which need no search for the load, up to 1.15 times that of a contact."""
     max_half_angle = min(1.15 * float(contact.half_angle), MAX_HALF_ANGLE)
-    return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
+    return model.press(contact.joint, half_angle=max_half_angle * numpy.linspace(0.0, 1.0, 12))
 
 
 def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
@@ -300,10 +284,11 @@ def force_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -
     max_indentation = 1.15 * max(contact.indentation for contact in contacts.values())
 
     def curve(contact: Contact, model: Model) -> Contact:
-        if model.seconds_a_press > _MESH_SECONDS:
-            return model.press(contact.joint, indentation=max_indentation * _MESH_STEPS)
-        if is_curve_slow(model, contact.joint):
+        steps = numpy.linspace(0.0, 1.0, 121) ** 2
+        if model.seconds_a_press > 0.1:  # it makes a mesh for each range: few steps
+            steps = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
+        elif is_curve_slow(model, contact.joint):
             return press_short_curve(contact, model)
-        return model.press(contact.joint, indentation=max_indentation * _FINE_STEPS)
+        return model.press(contact.joint, indentation=max_indentation * steps)
 
     return {name: curve(contact, models[name]) for name, contact in contacts.items()}

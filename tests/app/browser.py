@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from threading import Event, Thread
@@ -16,12 +15,13 @@ import pytest
 
 import ballsocket as bs
 
+from ..processes import PATIENCE, wait_until
+
 PICTURES = os.environ.get("BALLSOCKET_SCREENSHOTS")
 """Folder for pictures of the pages; None keeps none."""
 
 WIDE, NARROW = 1280, 390
-WAIT = 90_000
-"""Milliseconds until something that does not happen is taken for a fault: a machine may be slow."""
+WAIT = 1000 * PATIENCE
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 NEEDED = os.environ.get("BALLSOCKET_BROWSER") == "needed"
 """Set where a browser must be there: then nothing is skipped."""
@@ -44,7 +44,7 @@ def opened_browser():
     expect.set_options(timeout=WAIT)
     with sync_playwright() as tools:
         loop = asyncio.get_running_loop()
-        browser = tools.chromium.launch(executable_path=path, args=ARGUMENTS)
+        browser = tools.chromium.launch(executable_path=path, args=ARGUMENTS, timeout=WAIT)
         yield browser
         asyncio._set_running_loop(loop)
         browser.close()
@@ -79,7 +79,7 @@ def explorer_process(*words):
         yield match[1], process
     finally:
         process.terminate()
-        process.communicate(timeout=90)  # a slow machine may take its time
+        process.communicate(timeout=PATIENCE)
 
 
 def pressure(preset="hip-28", force=3000.0, **changes):
@@ -124,19 +124,11 @@ class User:
         return float(self.page.locator(f"dd[data-name={name}]").get_attribute("data-value"))
 
     def shows(self, name, value):
-        deadline = time.monotonic() + WAIT / 1000
-        while time.monotonic() < deadline:
-            if self.number(name) == pytest.approx(value, rel=1e-9):
-                return True
-            time.sleep(0.02)
-        return False
+        return wait_until(lambda: self.number(name) == pytest.approx(value, rel=1e-9))
 
     def until(self, condition):
         """Wait until an expression in the page is true; the page's own policy forbids to evaluate text inside it."""
-        deadline = time.monotonic() + WAIT / 1000
-        while not self.page.evaluate(condition):
-            assert time.monotonic() < deadline, f"never true: {condition} at {self.page.url}"
-            time.sleep(0.02)
+        wait_until(lambda: self.page.evaluate(condition))
 
     def nudge(self, slider, key="ArrowRight", times=1):
         handle = self.page.locator(f"[data-name={slider}] input[type=range]")
@@ -208,7 +200,7 @@ class Proxy:
         self.delay = 0.0
         self._thread = Thread(target=lambda: asyncio.run(self._serve()))
         self._thread.start()
-        self._ready.wait(timeout=60)
+        self._ready.wait()
 
     async def _serve(self):
         self._loop = asyncio.get_running_loop()

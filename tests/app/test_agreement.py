@@ -3,7 +3,6 @@
 import json
 import os
 import random
-import time
 from contextlib import suppress
 from urllib.parse import parse_qs
 
@@ -15,7 +14,8 @@ from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
-from .browser import WAIT, User, opened_profile, opened_proxy
+from ..processes import wait_until
+from .browser import User, opened_profile, opened_proxy
 
 pytestmark = pytest.mark.long
 _NUMBERS = ("load", "clearance", "ball_radius", "liner_thickness")
@@ -169,13 +169,12 @@ def assert_inputs_agree(user, history):
 
 def settled_page(user):
     """Return what the page shows once it has an answer or a reason, or says that it waits for one."""
-    deadline = time.monotonic() + WAIT / 1000
-    while time.monotonic() < deadline:
-        shown = user.page.evaluate(_SHOWN, list(_NUMBERS))
-        if shown["answer"] or shown["sentence"] or shown["waits"]:
-            return shown
-        time.sleep(0.02)
-    pytest.fail(f"neither an answer nor a reason nor a wait: {shown}")
+
+    def shown():
+        found = user.page.evaluate(_SHOWN, list(_NUMBERS))
+        return found if found["answer"] or found["sentence"] or found["waits"] else None
+
+    return wait_until(shown)
 
 
 def answer_of(screen, in_real_cup):
@@ -273,10 +272,11 @@ def test_typing_goes_on_while_other_inputs_come_and_go(browser, address):
     """A rigid ball has no numbers of its material, whose inputs are removed while somebody types."""
     with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
         user = User(profile, proxy.address).open()
-        proxy.delay = 0.3
+        proxy.stop()
         user.page.locator("[data-name=ball] select").select_option("rigid")
         box = user.page.locator("[data-name=load] input[type=text]")
         box.fill("77")
+        proxy.go_on()
         user.page.locator("[data-name=ball_young]").wait_for(state="detached")
         assert box.evaluate("(box) => box === document.activeElement")
         box.press("Enter")

@@ -1,7 +1,6 @@
 """The explorer in a real browser: files, handles, undo and redo, a narrow screen, maps, and pictures that move."""
 
 import re
-import time
 import tomllib
 from io import BytesIO
 
@@ -13,7 +12,8 @@ import ballsocket as bs
 from ballsocket.files.joint_file import parse_joint
 
 from ..places import EXAMPLES
-from .browser import NARROW, WAIT, User, expect, opened_profile, pressure
+from ..processes import wait_until
+from .browser import NARROW, User, expect, opened_profile, pressure
 
 pytestmark = pytest.mark.long
 
@@ -325,13 +325,14 @@ def difference(one, other):
 
 def seen(canvas, condition):
     """Take pictures until one meets a condition and the next is equal, as a moving canvas is drawn sharp at its end."""
-    deadline, before = time.monotonic() + WAIT / 1000, None
-    while time.monotonic() < deadline:
-        pixels = np.asarray(Image.open(BytesIO(canvas.screenshot())).convert("RGB")).astype(int)
-        if condition(pixels) and np.array_equal(pixels, before):
-            return pixels
-        before = pixels
-    pytest.fail("the canvas never looks so")
+    pictures = [None]
+
+    def picture():
+        pictures.append(np.asarray(Image.open(BytesIO(canvas.screenshot())).convert("RGB")).astype(int))
+        return condition(pictures[-1]) and np.array_equal(*pictures[-2:])
+
+    wait_until(picture)
+    return pictures[-1]
 
 
 def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):

@@ -10,8 +10,6 @@ import pytest
 from .browser import User, explorer_process, opened_profile, opened_proxy, pressure
 
 pytestmark = pytest.mark.long
-_SLACK = 1000
-"""ms that a busy machine may add."""
 
 
 @contextmanager
@@ -47,14 +45,17 @@ _RECORD = """() => {
 """Record inputs, headline, and the mark that qualifies it, frame by frame."""
 
 
-def longest_contradiction(page):
-    """Longest time in ms for which unmarked numbers were not those of the inputs."""
+def never_contradicts(page):
+    """Check that unmarked numbers belong to the inputs, or are marked 0.1 s later.
+
+    The timer of the mark, the frame that shows it and the one before may each be late by a pause of the machine.
+    """
     samples, longest, running = page.evaluate("[...window.samples, [performance.now()]]"), 0.0, 0.0
     for (moment, load, clearance, mark, value), (end, *_) in pairwise(samples):
         agrees = mark or float(value) == pytest.approx(pressure_of(load, clearance), rel=1e-6)
         running = 0.0 if agrees else running + end - moment
         longest = max(longest, running)
-    return longest
+    return longest < 100 + 3 * page.evaluate("window.longestPause")
 
 
 def see_loss(user):
@@ -88,7 +89,7 @@ def test_a_line_that_is_cut_or_silent_heals_and_never_contradicts(browser, addre
             assert user.answered().shows("max_pressure", pressure_of("3050", "0.21"))
             assert user.page.url == url.replace("3000", "3050")
             assert not user.page.locator("#lost").inner_text()
-            assert longest_contradiction(user.page) < 100 + _SLACK
+            assert never_contradicts(user.page)
             assert not user.errors
 
 
@@ -144,8 +145,7 @@ def test_late_answers_are_marked_until_they_belong_to_the_inputs(browser, addres
             page.wait_for_timeout((50, 150, 700)[number % 3])
         user.answered()
         assert any(mark == "updating" for _, _, _, mark, *_ in page.evaluate("window.samples"))
-        longest_pause = page.evaluate("window.longestPause")  # a machine without frames cannot mark anything
-        assert longest_contradiction(page) < 100 + 200 + longest_pause
+        assert never_contradicts(page)
 
 
 def test_a_server_that_is_killed_and_started_again_heals(browser):

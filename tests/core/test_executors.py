@@ -4,15 +4,12 @@ import gc
 import os
 import subprocess
 import sys
-import time
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from datetime import datetime
 from importlib import import_module
 from ipaddress import ip_address
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +18,8 @@ from ballsocket.core.executors import Processes, Serial
 from ballsocket.core.executors import processes as module
 from ballsocket.core.executors.dask import Distributed, local_cluster
 from ballsocket.core.executors.processes import available_cores
+
+from ..processes import PATIENCE, is_running, wait_until
 
 KINDS = Processes, Distributed
 WORK = """
@@ -126,17 +125,15 @@ def test_available_cores_are_those_of_this_process(monkeypatch):
 
 
 class FakePool:
-    """Pool whose pieces are finished at once, and whose process dies at some of them."""
+    """Pool whose pieces are finished at once."""
 
-    def __init__(self, dies_at=(), refuses_at=()):
-        self.submitted, self.dies_at, self.refuses_at = [], dies_at, refuses_at
+    def __init__(self):
+        self.submitted = []
 
     def submit(self, function, number):
-        if number in self.refuses_at:
-            raise BrokenProcessPool
         self.submitted.append(number)
         future = Future()
-        future.set_exception(BrokenProcessPool()) if number in self.dies_at else future.set_result(number)
+        future.set_result(number)
         return future
 
 
@@ -155,22 +152,10 @@ def test_few_pieces_are_submitted_at_a_time(monkeypatch):
     assert limits == [6]  # two for each worker
 
 
-def test_a_broken_pool_leaves_the_other_pieces_pending():
-    pool, pending = FakePool(dies_at={1}), deque(range(9))
-    results = dict(module._submit_until_worker_dies(pool, pending, 3))
-    assert results[1] is module._WORKER_DIED
-    assert sorted(results) == pool.submitted
-    assert pending
-    assert sorted([*results, *pending]) == list(range(9))
-    pool, pending = FakePool(refuses_at={2}), deque(range(4))
-    assert sorted(dict(module._submit_until_worker_dies(pool, pending, 3))) == [0, 1]
-    assert list(pending) == [2, 3]
-
-
 PARENT = """
 import subprocess, sys, time
 subprocess.Popen([sys.executable, "-c", {child!r}], stdin=subprocess.PIPE)
-time.sleep(60)
+time.sleep(3600)
 """
 
 WORKER = """
@@ -180,17 +165,8 @@ processes._PARENT_CHECK_INTERVAL = 0.02
 {before}
 processes.exit_with_parent()
 print(os.getpid(), flush=True)
-time.sleep(60)
+time.sleep(3600)
 """
-
-
-def is_running(process):
-    """Check if a process runs and is no zombie."""
-    try:
-        status = Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return False
-    return status.rpartition(")")[2].split()[0] != "Z"
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are listed in /proc")
@@ -199,13 +175,9 @@ def test_a_worker_ends_with_its_parent(before):
     script = PARENT.format(child=WORKER.format(before=before))
     with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as parent:
         worker = int(parent.stdout.readline())
-        time.sleep(0.1)
         assert is_running(worker)
         parent.kill()
-    end = time.monotonic() + 10
-    while is_running(worker) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert not is_running(worker)
+    wait_until(lambda: not is_running(worker))
 
 
 CLUSTER = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50, "processes": False}
@@ -246,13 +218,6 @@ def test_a_piece_is_a_task_of_dask_and_nothing_is_left_after_the_run(scheduler):
     assert sum(key.endswith("-work") for key in during) == 1
 
 
-def wait_until(condition):
-    end = time.monotonic() + 30
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.05)
-    assert condition()
-
-
 def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
     """The work waits for the first worker, which it then uses."""
     distributed = pytest.importorskip("distributed")
@@ -266,7 +231,7 @@ def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
         wait_until(warnings)
         assert not waiting.done()
         cluster.scale(1)
-        assert waiting.result(60) == [(-1, 1)]
+        assert waiting.result(PATIENCE) == [(-1, 1)]
     (warning,) = warnings()
     assert warning.startswith(f"the Dask scheduler at {cluster.scheduler_address} has no workers")
 

@@ -201,10 +201,11 @@ def test_accuracy_compares_errors_and_deviations_with_the_required_accuracy(reco
     assert pack_module._accuracy(record)["largest"] == 0.04
 
 
-def test_the_band_of_a_tolerance_includes_the_worst_case(tmp_path):
+@pytest.mark.parametrize("largest", [0.1, pytest.param(0.15, marks=pytest.mark.long)])  # a linear, a circular gap
+def test_the_band_of_a_tolerance_includes_the_worst_case(largest, tmp_path):
     """The joint of the preset has 1000 MPa, whose pressure lies above the band."""
-    small = ("hip-36", "hip-28"), (CLEARANCE, 'clearance = ["0.05 mm", "0.1 mm"]')
-    question = question_of(tmp_path, *small, ("750 +- 75 MPa", "700 +- 100 MPa"))
+    joint = ("hip-36", "hip-28"), (CLEARANCE, f'clearance = ["0.05 mm", "{largest} mm"]')
+    question = question_of(tmp_path, *joint, ("750 +- 75 MPa", "700 +- 100 MPa"))
     worst = matrix.worst_rows(matrix.compute_rows(question, matrix.list_cases(question)))["max_pressure"]
     band = propagate_tolerances(question, worst.case)["bands"]["max_pressure"]
     assert band["low"] < worst.numbers["max_pressure"] < band["high"]

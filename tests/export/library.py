@@ -64,8 +64,8 @@ def table(path):
 class Library:
     """The functions of an element in C, on triples of numbers."""
 
-    def __init__(self, element, folder, name="joint"):
-        CElement(element=element, name=name).write(folder)
+    def __init__(self, element, folder, name="joint", **options):
+        CElement(element=element, name=name, **options).write(folder)
         strict = ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")
         path = shared_library([f"{name}.c"], folder / f"{name}{LIBRARY_ENDING}", folder, strict)
         self.functions, self.name = c.CDLL(str(path)), name

@@ -105,12 +105,25 @@ def test_a_state_of_nan_has_a_status(library, place):
     assert library.contact(far[0])[0] == library.tangent(far[0])[0] == ContactState.NO_NUMBER
 
 
-@pytest.mark.long
-def test_a_ball_through_the_wall_has_a_status(library, plain):
-    for each in (library, plain):
-        status, force, *_ = each.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))
+def test_beyond_its_range_the_force_goes_on_with_its_last_stiffness(plain):
+    """F = F(w) + k(w) x and U = U(w) + F(w) x + k(w) x²/2 at x beyond the wall w."""
+    element = ForceElement(bs.HessForsbach(), HIP)
+    energy, force, stiffness = element.potential(element.wall)
+    for x in (1e-6, 0.5, 30.0):
+        position = (0.0, 0.0, -(HIP.clearance + element.wall + x))
+        status, found, moment, work = plain.load(position, (0.0,) * 3, (0.0,) * 3)
         assert status == ContactState.THROUGH_WALL
-        assert np.isnan(force).all()
+        assert_allclose(found, (0.0, 0.0, force + stiffness * x), rtol=1e-12)
+        assert_allclose(work, energy + force * x + 0.5 * stiffness * x * x, rtol=1e-12)
+        assert_allclose(moment, 0.0)
+        assert_allclose(plain.tangent(position)[1][8], stiffness, rtol=1e-12)
+
+
+@pytest.mark.long
+def test_an_element_that_stops_has_no_force_through_the_wall(element, tmp_path):
+    status, force, *_ = Library(element, tmp_path, beyond="stop").load((0.0, 0.0, 9.0), (0.0,) * 3, (0.0,) * 3)
+    assert status == ContactState.THROUGH_WALL
+    assert np.isnan(force).all()
 
 
 def test_an_iterative_law_is_exported_as_a_curve(tmp_path):

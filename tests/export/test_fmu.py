@@ -247,11 +247,18 @@ def test_a_state_of_nan_has_a_status_and_one_message(host):
 
 
 @needs_compiler
-def test_a_step_through_the_wall_is_discarded_and_invalidity_is_reported_once(host):
+def test_a_force_beyond_its_validity_or_its_range_is_reported_once(host):
+    for depth in (1e-3, 2e-3, 8e-3):
+        host.set(position=(0.0, 0.0, depth))
+        status, force = host.get("force[3]")
+        assert (status, np.isfinite(force)) == (GOOD, True)
+    assert [text.partition(" beyond")[0] for _, text in host.messages] == ["hess-forsbach is not valid"]
+
+
+@pytest.mark.long
+@needs_compiler
+def test_a_unit_that_stops_discards_a_step_through_the_wall(tmp_path):
+    Fmu(element=ForceElement(bs.HessForsbach(), HIP), name="stops", beyond="stop").write(tmp_path / "stops.fmu")
+    host = Host(tmp_path / "stops.fmu", tmp_path)
     host.set(position=(0.0, 0.0, 8e-3))
     assert host.get("energy")[0] == DISCARD
-    host.messages.clear()
-    for depth in (1e-3, 2e-3):
-        host.set(position=(0.0, 0.0, depth))
-        assert host.get("energy")[0] == GOOD
-    assert [text.partition(" beyond")[0] for _, text in host.messages] == ["hess-forsbach is not valid"]

@@ -21,7 +21,7 @@ from .library import needs_compiler, skip_without
 PAGE = (ROOT / "docs" / "how-to" / "export.md").read_text(encoding="utf-8")
 PROGRAMS = dict(re.findall(r"```\{code-block\} python\n# (\w+)(.*?)```", PAGE, re.DOTALL))
 PACKAGES = {"FMU": "fmpy", "MuJoCo": "mujoco", "Drake": "pydrake", "Exudyn": "exudyn", "OpenSim": "opensim"}
-SECONDS = 120
+SECONDS = 600
 
 
 @needs_compiler

@@ -7,10 +7,9 @@ import pytest
 
 from ballsocket.cli import options
 from ballsocket.files import inputs
-from ballsocket.files.inputs import inputs_of
+from ballsocket.files.inputs import inputs_of, json_schema
 from ballsocket.files.joint_file import CupTable, JointFileTable
 from ballsocket.files.schema import Length, meaning
-from ballsocket.files.schema_keys import json_schema
 from ballsocket.files.tables import read_table
 from ballsocket.hip.schema import FilmTable
 from ballsocket.mcp.tools import TOOLS, schema

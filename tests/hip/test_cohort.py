@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +16,7 @@ from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
+from ..processes import stopped_program
 from .hips import QUICK, K, hip, refuses
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
@@ -201,14 +201,10 @@ def test_results_do_not_depend_on_the_executor():
 def test_a_killed_cohort_resumes(tmp_path):
     file, store = short_file(tmp_path, ("cycles = 1e4", "cycles = 1e6")), tmp_path / "store"
     words = ["hip", str(file), "--patients", "112", "--store", str(store), "--json"]
-    started = subprocess.Popen([sys.executable, "-m", "ballsocket", *words], stdout=subprocess.DEVNULL)
-    while len(list(store.glob("*.npz"))) < 3:
-        assert started.poll() is None
-        time.sleep(0.02)
-    started.kill()
-    started.wait()
+    program = stopped_program(12, ".npz")  # the fourth file has a folder and a content, but not yet its name
+    subprocess.run([sys.executable, "-c", program, *words], stdout=subprocess.DEVNULL)
     times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}
-    assert 3 <= len(times) < 7
+    assert len(times) == 3
     again = json.loads(run(*words).stdout)
     assert all((store / name).stat().st_mtime_ns == when for name, when in times.items())
     assert again["bands"] == json.loads(run(*words[:4], "--json").stdout)["bands"]

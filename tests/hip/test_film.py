@@ -249,7 +249,7 @@ def test_a_file_has_the_limit_with_its_lubricant(tmp_path):
 def test_a_file_that_asks_for_a_film_prints_it_with_its_lubricant(tmp_path, short_film):
     file = write_edited_file(tmp_path, *SHORT, text=f'{TEXT}\n[film]\ncup_roughness = "0.5 um"\n')
     text = " ".join(run("hip", str(file)).stdout.split())
-    assert "assumed for the film: viscosity 2.5 mPa s, roughness Ra 0.02 µm (ball) and 0.5 µm (cup)" in text
+    assert "film with viscosity 2.5 mPa s, roughness Ra 0.02 µm (ball) and 0.5 µm (cup); by default: visc" in text
     film = read_hip(file).use.film(Lubricant(cup_roughness=5e-4))
     least = re.search(r"smallest ([0-9.]+) nm", text)
     assert float(least[1]) == pytest.approx(1e6 * film.least.min(), rel=5e-3)  # printed with three digits

@@ -7,8 +7,7 @@ import subprocess
 import sys
 from dataclasses import fields, replace
 from math import radians
-from subprocess import DEVNULL, PIPE, Popen, TimeoutExpired
-from time import monotonic
+from subprocess import DEVNULL
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from ballsocket.hip import Activity, Archard, FilmLimit, Mix, in_vivo, iso_14242
 from ballsocket.hip.simulation import make_checkpoint
 
 from ..cli.command import run
+from ..processes import stopped_program
 from .hips import QUICK, K, hip, refuses, write_edited_file
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
@@ -117,33 +117,17 @@ def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
     assert make_checkpoint(replace(use), tmp_path).identity in identities
 
 
-def numbers(process):
-    """Return the JSON of a run without the commands that follow it, which name the store."""
-    return {name: value for name, value in json.loads(process.stdout).items() if name != "next"}
-
-
 KILLS = int(os.environ.get("BALLSOCKET_KILLS", "8"))
 """Number of kills in the long form of the test."""
 
 
 @pytest.mark.long
-def test_a_process_killed_at_random_times_gives_the_same_json(tmp_path):
-    reports = ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]")
-    file = str(write_edited_file(tmp_path, reports, ("instants = 100", "instants = 60")))
-    words = [sys.executable, "-m", "ballsocket", "hip", file, "--json", "--store"]
-    begun = monotonic()
-    expected = numbers(subprocess.run([*words, str(tmp_path / "timed")], stdout=PIPE, check=True))
-    duration, kills, number, draw = monotonic() - begun, 0, 0, random.Random(20)
-    while kills < KILLS and number < 4 * KILLS:
-        number += 1
-        store = str(tmp_path / f"store{number}")
-        for _ in range(4):  # each resumes what the one before has stored
-            process = Popen([*words, store], stdout=DEVNULL, stderr=DEVNULL)
-            try:
-                process.wait(draw.uniform(0.5, 1.0) * duration)
-                break
-            except TimeoutExpired:
-                process.kill()
-                process.wait()
-                kills += 1
-        assert numbers(run("hip", file, "--json", "--store", store)) == expected
+def test_a_process_killed_at_random_changes_of_its_files_gives_the_same_json(tmp_path):
+    file = str(write_edited_file(tmp_path, ("instants = 100", "instants = 60")))
+    words, store, draw = ("hip", file, "--json", "--store"), str(tmp_path / "store"), random.Random(20)
+    expected = json.loads(run(*words, str(tmp_path / "other")).stdout)
+    for _ in range(KILLS):  # each resumes what the one before has stored
+        program = stopped_program(draw.randrange(1, 12), "hip_in_use.npz")
+        assert subprocess.run([sys.executable, "-c", program, *words, store], stdout=DEVNULL).returncode != 0
+    found = json.loads(run(*words, store).stdout)
+    assert found | {"next": None} == expected | {"next": None}  # these commands name the store

@@ -79,6 +79,8 @@ def test_scatter_makes_or_widens_the_band():
     widened = fit_wear_coefficient(use, volume(scattered, cycles=REPORTS, uncertainty=0.01 * values))
     assert widened.widening > 3
     assert any(note.startswith("the data scatter more than stated") for note in widened.notes)
+    few = fit_wear_coefficient(use, volume(scattered, cycles=np.divide(REPORTS, 1e6)))
+    assert [any("if these are millions" in note for note in fit.notes) for fit in (few, widened)] == [True, False]
     single = fit_wear_coefficient(use, volume(38.0, rate="initial"))
     assert np.isnan(single.low)
     assert any(note.startswith("no band") for note in single.notes)

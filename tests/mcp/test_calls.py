@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 import tomllib
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from ballsocket.mcp.tools import TOOLS, schema
 from ..cli.command import run
 from ..extent import some
 from ..places import EXAMPLES, symlink_or_skip
+from ..processes import is_running, wait_until
 
 COMMANDS = load_commands()
 PRESS = {"joint": "hip-36", "force": "3 kN"}
@@ -167,25 +167,13 @@ asyncio.run(run(["-c", {BUSY!r}], pathlib.Path(), 600.0))
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="no processes in /proc")
 def test_a_busy_process_ends_with_its_parent(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
-
-    def is_running(process):
-        try:
-            return "State:\tZ" not in Path(f"/proc/{process}/status").read_text(encoding="ascii")
-        except (FileNotFoundError, ProcessLookupError):
-            return False
-
     note = tmp_path / "child"
     with subprocess.Popen([sys.executable, "-c", SERVER], cwd=tmp_path) as server:
-        while not (note.exists() and note.read_text(encoding="ascii").endswith("\n")):
-            assert server.poll() is None
-            time.sleep(0.05)
+        wait_until(lambda: server.poll() is not None or (note.exists() and note.read_text("ascii").endswith("\n")))
         child = int(note.read_text(encoding="ascii"))
         assert is_running(child)
         server.kill()
-    deadline = time.monotonic() + 600
-    while is_running(child) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not is_running(child)
+    wait_until(lambda: not is_running(child))
 
 
 def test_a_tool_returns_what_the_command_prints(tmp_path):

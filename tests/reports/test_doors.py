@@ -12,13 +12,18 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
+from ballsocket.files.joint_file import JointFile
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
 from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
 from ballsocket.lubrication.film_answer import describe_films
+from ballsocket.planning import fit_liner, make_plan, measure_wear, read_mesh, read_points
+from ballsocket.planning.plan_answer import describe_plan
+from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
+from ballsocket.question import PressQuestion, answer
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
 from ballsocket.studies.calibration import describe_calibration
@@ -32,6 +37,7 @@ from ballsocket.studies.variance_shares import sensitivity
 
 from ..hip.hips import QUICK, hip
 from ..hip.test_uncertainty import bands
+from ..places import EXAMPLES
 
 WIDE = 2000
 METRIC = re.compile(r"\d (?:mm|mm³|µm|nm|MPa|kN|N|N m)(?![\w/(])")
@@ -125,6 +131,34 @@ ANSWERS |= {
 }
 
 
+def press(**options):
+    return bs.compare(bs.joints["hip-28"], force=3000.0, **options)
+
+
+@cache
+def loosened():
+    joint = bs.Joint(ball_radius=13.5, interference=0.01, liner_thickness=3.0, liner=bs.POM)
+    return answer(PressQuestion(file=JointFile(joint=joint, load={}), sphere=bs.Sphere(ring_width=0.1)))
+
+
+ANSWERS |= {
+    "press": lambda: describe_press(press(models=["exact", "hess-forsbach", "hertz"])),
+    "press without a result": lambda: describe_press(
+        bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models=["exact", "bonded-layer"])
+    ),
+    "preloaded press": lambda: describe_press(loosened().comparison, press_remarks(loosened())),
+    "curve": lambda: describe_curve(bs.Hertz().press(bs.joints["hip-28"], force=np.array([0.0, 300.0, 3000.0]))),
+}
+
+
+ANSWERS["planning data"] = lambda: describe_plan(
+    make_plan(
+        liner=fit_liner(read_mesh(EXAMPLES / "planning" / "liner.stl")),
+        worn=measure_wear(read_points(EXAMPLES / "planning" / "worn.xyz")),
+    )
+)
+
+
 @cache
 def registry():
     return pint.UnitRegistry()
@@ -155,9 +189,12 @@ def contains(line, expected):
 def amount(part, units):
     """Yield the number of an amount in the unit that the doors write."""
     shown = re.sub(r"^\S+? ?(?=[^\d.e+-]|$)", "", units.amount(part)) if part.unit.text else ""
-    value, metric = part.value * part.unit.factor, part.unit.text
-    number = value if metric == shown else converted(value, metric, shown)
-    yield pytest.approx(number, rel=0.6 * 10 ** (1 - part.digits), abs=1e-12)
+    metric = part.unit.text
+    factor = part.unit.factor * (1.0 if metric == shown else converted(1.0, metric, shown))
+    digits = {"rel": 0.6 * 10 ** (1 - part.digits), "abs": 1e-12}
+    if part.decimals is not None:
+        digits = {"abs": 0.6 * 10**-part.decimals * factor / part.unit.factor}
+    yield pytest.approx(part.value * factor, **digits)
 
 
 def expected_numbers(row, table, units, most_rank):

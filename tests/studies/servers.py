@@ -3,8 +3,9 @@
 import json
 import subprocess
 import sys
-import time
 from contextlib import ExitStack, contextmanager
+
+from ..processes import wait_until
 
 
 @contextmanager
@@ -20,7 +21,5 @@ def cluster(folder, n_workers, log):
             process = stack.enter_context(subprocess.Popen(command, cwd=folder, stdout=log, stderr=log))
             stack.callback(process.terminate)
             processes.append(process)
-        while not file.exists() or not file.read_text("utf-8"):
-            assert processes[0].poll() is None
-            time.sleep(0.1)
+        wait_until(lambda: processes[0].poll() is not None or (file.exists() and file.read_text("utf-8")))
         yield processes, json.loads(file.read_text("utf-8"))["address"]

@@ -18,14 +18,13 @@ import ballsocket as bs
 from ballsocket.studies.run import read
 from ballsocket.studies.store import CHECKSUM
 
+from ..processes import PATIENCE, stopped_program, wait_until
 from .servers import cluster
 
 COUNTS = {"clearances": 32, "radii": 13, "model": "exact"}
 """Six blocks of a little less than half a second."""
 
 KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "2")))
-TIMES = {"serial": KILLS, "processes": 1}
-PATIENCE = 600  # seconds, for a slow machine
 HIP = bs.joints["hess-forsbach"]
 MAIN = "from ballsocket.cli import main; main()"
 pytestmark = [
@@ -77,12 +76,6 @@ def stored_blocks(store):
     return len(list((store / CHECKSUM / "c").glob("*")))
 
 
-def wait_for_blocks(process, store, number):
-    """Wait until blocks are stored or the study has ended."""
-    while stored_blocks(store) < number and process.poll() is None:
-        time.sleep(0.01)
-
-
 @cache
 def undisturbed():
     return bs.study(
@@ -114,29 +107,29 @@ def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
     assert start(**words).wait(timeout=PATIENCE) == 0
 
 
-@pytest.mark.parametrize(("engine", "kills"), TIMES.items())
-def test_a_study_stopped_many_times_is_that_of_an_undisturbed_one(tmp_path, start, engine, kills):
-    """The first stop is Ctrl-C, the others are kills of the study and its workers at random moments."""
-    store, moments = tmp_path / "s.zarr", random.Random(engine)
-    process = start(engine=engine)
-    wait_for_blocks(process, store, 1)
-    os.killpg(process.pid, signal.SIGINT)
+def test_a_study_stopped_at_random_changes_of_its_store_is_that_of_an_undisturbed_one(tmp_path, start):
+    """The first stop is Ctrl-C, the others are kills."""
+    store, draw = tmp_path / "s.zarr", random.Random(1)
+    process = start(code=stopped_program(3, f"{CHECKSUM}/c", "SIGINT"), engine="serial")
     _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert "points are stored in s.zarr: run the command again to resume" in " ".join(errors.split())
-    before = stored_blocks(store)
-    assert before >= 1
-    for _ in range(kills):
-        process, more = start(engine=engine), moments.choice([0, 1, 1, 2])
-        wait_for_blocks(process, store, before + more)
-        time.sleep(moments.uniform(0.0, 0.3))
-        ended = process.poll() == 0
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        assert ended or stored_blocks(store) >= before + more
+    for _ in range(KILLS):
         before = stored_blocks(store)
-    assert start(engine=engine).wait(timeout=PATIENCE) == 0
+        assert start(code=stopped_program(draw.randrange(1, 50), "s.zarr"), engine="serial").wait(PATIENCE) != 0
+        assert stored_blocks(store) >= before >= 1
+    assert start(engine="serial").wait(PATIENCE) == 0
+    assert equal_to_undisturbed(store)
+
+
+def test_a_study_that_is_killed_with_its_processes_resumes(tmp_path, start):
+    store, process = tmp_path / "s.zarr", start(engine="processes")
+    wait_until(lambda: stored_blocks(store) or process.poll() is not None)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert (before := stored_blocks(store))
+    assert start(engine="processes").wait(PATIENCE) == 0
+    assert stored_blocks(store) >= before
     assert equal_to_undisturbed(store)
 
 
@@ -144,7 +137,6 @@ def test_killed_workers_of_dask_cost_retries(tmp_path, start):
     process, moments, killed = start(engine="dask"), random.Random("dask"), []
     while len(killed) < 2 and process.poll() is None:
         if stored_blocks(tmp_path / "s.zarr") > len(killed):
-            time.sleep(moments.uniform(0.0, 0.2))
             victims = [pid for pid in workers_of(process) if pid not in killed]
             if victims:
                 killed.append(moments.choice(victims))
@@ -178,7 +170,7 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
 
     with (tmp_path / "worker.log").open("w") as log, cluster(tmp_path, 1, log) as ((scheduler, worker), address):
         process = start("--scheduler", address, engine="dask", clearances=60, radii=30)
-        wait_for_blocks(process, tmp_path / "s.zarr", 2)
+        wait_until(lambda: stored_blocks(tmp_path / "s.zarr") > 1 or process.poll() is not None)
         ended = scheduler if end == "scheduler killed" else process
         ended.send_signal(signal.SIGINT if end == "interrupted" else signal.SIGKILL)
         _, errors = process.communicate(timeout=PATIENCE)
@@ -189,10 +181,7 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
             return
         assert worker.poll() is None
         with distributed.Client(address) as client:
-            deadline = time.monotonic() + PATIENCE
-            while client.run_on_scheduler(tasks) and time.monotonic() < deadline:
-                time.sleep(0.2)
-            assert client.run_on_scheduler(tasks) == []
+            wait_until(lambda: not client.run_on_scheduler(tasks))
     log = (tmp_path / "worker.log").read_text("utf-8")
     assert f"{os.sep}ballsocket{os.sep}" not in log
     logged_errors = set(re.findall(r"^\s*([\w.]+(?:Error|Exception))\b", log, flags=re.MULTILINE))

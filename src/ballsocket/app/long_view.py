@@ -114,7 +114,11 @@ class LongWork:
 
     def _hear(self, question: Hashable, news: Any) -> None:
         if isinstance(news, Reached):
-            self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
+            elapsed, words = time.monotonic() - self._start, news.words
+            if elapsed >= 1.0 and 0.05 < news.share < 1.0:
+                left = elapsed * (1.0 - news.share) / news.share
+                words += f", about {left:.0f} s left" if left >= 1.0 else ""
+            self.put_button(news.share, words)
         elif isinstance(news, RunRefused):
             self._cancelled, self._refusal = question, alert(news.why)
             self._put("trouble", self._refusal)
@@ -126,13 +130,6 @@ class LongWork:
 
     def leave(self) -> None:
         self._job.stop()
-
-
-def _with_time_left(news: Reached, elapsed: float) -> str:
-    if elapsed < 1.0 or not 0.05 < news.share < 1.0:
-        return news.words
-    left = elapsed * (1.0 - news.share) / news.share
-    return f"{news.words}, about {left:.0f} s left" if left >= 1.0 else news.words
 
 
 class LongView(View):
@@ -172,7 +169,6 @@ class LongView(View):
         raise NotImplementedError
 
     def show_inputs(self, screen: Screen) -> None:
-        """Show the inputs of the view for a screen."""
         self.channel.put_fields(self.fields(screen))
 
     def show_result(self, screen: Screen, result: Any) -> None:

@@ -11,7 +11,7 @@ import numpy
 
 from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
-from ..contact.describe import Column
+from ..contact.describe import values_of
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
@@ -19,7 +19,7 @@ from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..question import complete
-from ..reports.press_plots import force_axes
+from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
@@ -145,23 +145,19 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
 
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
-    axes = depth, force = force_axes(reading.units)
-    top = rounded_up(1.2 * max(float(force.values_of(contact)) for contact in contacts.values()))
-    largest = top / force.factor
-    deepest = max(float(depth.values_of(contact)) for contact in contacts.values())
-    return chart(
-        "force over indentation",
-        depth.label,
-        force.label,
-        {name: _force_curve(contact, largest, axes, lines[name]) for name, contact in contacts.items()},
-        (rounded_up(1.3 * deepest), top),
-    )
-
-
-def _force_curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: LineStyle) -> Curve:
-    depth, force = axes
-    mark = (float(depth.values_of(contact)), float(force.values_of(contact)))
-    press = curve(contact, largest)
-    if press is None:
-        return Curve(numpy.empty(0), numpy.empty(0), line, mark=mark)
-    return Curve(depth.values_of(press), force.values_of(press), line, press.valid, mark)
+    depth, force = force_axes(reading.units)
+    (x, y), (depth, force) = FORCE_CURVE, force_axes(reading.units)
+    marks = {
+        name: (float(values_of(contact, x, depth)), float(values_of(contact, y, force)))
+        for name, contact in contacts.items()
+    }
+    deepest, largest = (max(ends) for ends in zip(*marks.values(), strict=True))
+    top, curves = rounded_up(1.2 * largest), {}
+    for name, contact in contacts.items():
+        press, line = curve(contact, top / force.factor), lines[name]
+        if press is None:
+            curves[name] = Curve(numpy.empty(0), numpy.empty(0), line, mark=marks[name])
+        else:
+            course = values_of(press, x, depth), values_of(press, y, force)
+            curves[name] = Curve(*course, line, press.valid, marks[name])
+    return chart("force over indentation", x.label(depth), y.label(force), curves, (rounded_up(1.3 * deepest), top))

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from math import degrees, isfinite
+from math import degrees
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
-from ..contact.per_joint import SolvedContact
-from ..contact.verdict import Verdict, rim_verdict
 from ..core.checks import require
-from ..core.quantities import CONTACT, LOADS
-from ..core.unit_systems import Units
 from ..files.schema import Angle, Length, Table, Word, meaning
 from ..files.units import as_given
 from ..model_catalogue import JUDGE, OFF_AXIS
@@ -31,9 +27,8 @@ ModelNames = Annotated[
 ]
 
 if TYPE_CHECKING:
-    from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
+    from ..elasticity.finite_elements.model import FiniteElement
     from ..elasticity.finite_elements.spacing import Spacing
-    from ..elasticity.off_axis.contact import OffAxisContact
     from ..elasticity.off_axis.model import Sphere
 
 
@@ -90,25 +85,6 @@ def mesh_progress() -> Iterator[None]:
         yield
 
 
-def mesh_remark(contact: MeshedContact, seconds: float) -> str:
-    """Return one line with the mesh, the time and the estimated errors of a contact."""
-    if contact.status.failed or contact.indentation == 0:
-        return f"fem: {seconds:.2f} s"
-    size = contact.mesh
-    mesh = f"fem: {size.elements} elements, {size.element_size:.3g} mm at the contact, {seconds:.2f} s"
-    errors = _error_text(contact)
-    return f"{mesh}; error of the mesh: {errors}" if errors else f"{mesh}; error of the mesh not estimated"
-
-
-def _error_text(contact: SolvedContact) -> str:
-    """Return the estimated relative errors of load, displacement, peak pressure and stiffness as text."""
-    return ", ".join(
-        f"{CONTACT[name].symbol} ±{100 * error:.1g} %"
-        for name, error in contact.error.items()
-        if name in (*LOADS, "max_pressure", "stiffness") and error > 1e-9
-    )
-
-
 class RingTable(Table, frozen=True, kw_only=True):
     """Rings of the model `sphere`."""
 
@@ -143,28 +119,3 @@ def orientation_remark(cup: Cup) -> str:
     angles = orientation_summary(cup)
     texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
     return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
-
-
-def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
-    """Return one line with the place of the contact in its cup, the rings, the time and the estimated errors."""
-    cost = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
-    if contact.status.failed or contact.indentation == 0:
-        return f"{OFF_AXIS}: {cost}"
-    from ..elasticity.off_axis.directions import polar_angle
-
-    peak = "pressure unbounded there"
-    if isfinite(contact.max_pressure):
-        peak = f"largest pressure {degrees(polar_angle(contact.max_pressure_at)):.3g}° from the axis"
-    position = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {peak}"
-    return f"{OFF_AXIS}: {position}; {cost}; error of the rings: {_error_text(contact)}"
-
-
-def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
-    distance = contact.edge_distance
-    if contact.edge_loaded and contact.joint.clearance < 0:
-        return "contact up to the rim"
-    verdict = rim_verdict(contact)
-    if verdict is Verdict.EXCEEDED:
-        return f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
-    near = ", less than its error bar: edge loading is undecided" if verdict is Verdict.UNDECIDED else ""
-    return f"contact {units.short_length(abs(distance))} from the rim{near}"

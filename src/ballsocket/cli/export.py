@@ -12,10 +12,11 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.checks import known_name
+from ..core.checks import known_name, require
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
+from ..export.c_element import BEYOND
 from ..export.targets import TARGETS, ExportJob
 from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
@@ -119,6 +120,14 @@ class ForceElementInputs(Table, frozen=True, kw_only=True):
             return Restitution(restitution=float(self.restitution), impact_speed=float(self.impact_speed))
 
 
+Beyond = Annotated[
+    str,
+    typer.Option(
+        help="Beyond the range of the law: extend (the force goes on with its last stiffness) or stop (no force)."
+    ),
+]
+Mass = Annotated[float, typer.Option(min=0.0, help="Mass of the ball in kg, for the advice on time steps.")]
+
 _FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}
 """Endings of files: a path with one of them is a file, and any other a folder."""
 
@@ -139,6 +148,8 @@ def export(
             help="Output folder, also the name of the files, or one of the files, such as joint.c; created if missing."
         ),
     ],
+    beyond: Beyond = "extend",
+    mass: Mass = 1.0,
 ) -> None:
     """Write a joint as a force element for another program."""
     from ..export.law_fit import fit_depth
@@ -151,13 +162,21 @@ def export(
     file = joint_options.read(joint)
     chosen.check(file.joint)
     element = inputs.element(file, model, gap)
-    job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
+    require("mass", mass, mass > 0.0, "it must be above 0 kg")
+    job = ExportJob(
+        element=element,
+        name=identifier(out),
+        depth=fit_depth(element, file.load),
+        beyond=known_name("beyond", beyond, BEYOND),
+        mass=mass,
+    )
     if folder != out and out.name not in (names := tuple(chosen.texts(job))):
         raise ValueError(f"out {str(out)!r}: {target} writes {', '.join(names)}; give one of them, or a folder")
-    paths, missing = chosen.write(job, folder)
+    paths, notes = chosen.write(job, folder)
     echo_path(folder, f": {', '.join(path.relative_to(folder).as_posix() for path in paths)}")
-    if missing:
-        print_message(missing)
+    typer.echo(job.time_steps)
+    if notes:
+        print_message(notes)
 
 
 @app.command()
@@ -171,6 +190,8 @@ def fmu(
     inputs: ForceElementInputs,
     out: Annotated[Path, typer.Option(help="File to write (.fmu); files of the FMI cross-check are put beside it.")],
     fmi: Annotated[int, typer.Option(help="Version of the FMI standard: 2 or 3.")] = 3,
+    beyond: Beyond = "extend",
+    mass: Mass = 1.0,
 ) -> None:
     """Write a joint as a functional mock-up unit (FMI).
 
@@ -179,7 +200,14 @@ def fmu(
     from ..export.fmu import Fmu, write_cross_check
 
     check_ending("out", out, ".fmu")
-    unit = Fmu(element=inputs.element(joint_options.read(joint), model, gap), name=identifier(out), version=fmi)
+    require("mass", mass, mass > 0.0, "it must be above 0 kg")
+    unit = Fmu(
+        element=inputs.element(joint_options.read(joint), model, gap),
+        name=identifier(out),
+        version=fmi,
+        beyond=known_name("beyond", beyond, BEYOND),
+        mass=mass,
+    )
     written = unit.write(out)
     start = ""
     if isinstance(unit.element, PreloadedElement):
@@ -188,6 +216,7 @@ def fmu(
     echo_path(written.path, start)
     for extra_path in write_cross_check(unit.element, out):
         echo_path(extra_path)
+    typer.echo(unit.time_steps)
     if written.missing:
         print_message(written.missing)
 

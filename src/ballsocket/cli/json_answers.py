@@ -6,7 +6,6 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain, pairwise
 from types import MappingProxyType
 from typing import Any
@@ -57,7 +56,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         "notes": answer.get("notes", notes),
         "sources": [source.summary() for source in dict.fromkeys(_sources(answer))],
     }
-    return {**full, "next": [step.summary() for step in next_steps(full, arguments)]}
+    return {**full, "next": next_steps(full, arguments)}
 
 
 def several_joints(answers: Sequence[Answer], names: Sequence[str], arguments: Arguments) -> dict[str, Any]:
@@ -108,23 +107,15 @@ def _entry_sources(key: str, value: Any) -> Iterator[Source]:
         yield from (Source(cited) for cited in cited_keys if cited in bibliography())
 
 
-@dataclass(frozen=True)
-class NextStep:
-    """A command that is useful after an answer, and the reason."""
-
-    arguments: tuple[str, ...]
-    why: str
-
-    def summary(self) -> dict[str, str]:
-        """Return the step as a dictionary for JSON."""
-        return {"command": shlex.join(["ballsocket", *self.arguments]), "why": self.why}
+Step = tuple[Sequence[str], str]  # words of a command that is useful after an answer, and the reason
 
 
-def next_steps(answer: Answer, arguments: Arguments) -> list[NextStep]:
+def next_steps(answer: Answer, arguments: Arguments) -> list[dict[str, str]]:
     """Return the commands that are useful after a JSON answer with `valid` and `notes`."""
     if not arguments or arguments[0] not in _NEXT_STEPS:
         return []
-    return list(_NEXT_STEPS[arguments[0]](answer, [argument for argument in arguments if argument != "--json"]))
+    steps = _NEXT_STEPS[arguments[0]](answer, [argument for argument in arguments if argument != "--json"])
+    return [{"command": shlex.join(["ballsocket", *words]), "why": why} for words, why in steps]
 
 
 def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[Answer]:
@@ -134,7 +125,7 @@ def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[A
     return [result for result in results if result["model"] in arguments] or list(results[:1])
 
 
-def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_press(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     results = {result["model"]: result["valid"] for result in answer["results"]}
     requested = [result["model"] for result in requested_results(answer["results"], arguments)]
     valid_models = [name for name, valid in results.items() if valid is True]
@@ -142,35 +133,35 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     invalid = [name for name in requested if name not in valid_models]
     if valid_models and invalid:
         why = f"{invalid[0]} is outside its valid range here, {valid_models[0]} is valid: see the notes"
-        yield NextStep((*bare, "--model", valid_models[0]), why)
+        yield (*bare, "--model", valid_models[0]), why
     if not valid_models:
         alternatives = [name for name in (reference.name, OFF_AXIS, JUDGE) if name not in results]
         why = "no model of this answer is valid here"
-        yield from (NextStep((*bare, "--model", name), why) for name in alternatives)
+        yield from (((*bare, "--model", name), why) for name in alternatives)
     elif not {JUDGE, OFF_AXIS} & set(results):
         changes = chain(*(result.get("hemisphere", {}).values() for result in answer["results"]))
         if (abs(numpy.hstack([0.0, *changes]).astype(float)) > NOTED_CHANGE).any():
             why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
-            yield from (NextStep((*bare, "--model", name), why) for name in (JUDGE, OFF_AXIS))
+            yield from (((*bare, "--model", name), why) for name in (JUDGE, OFF_AXIS))
         else:
-            yield NextStep((*bare, "--model", JUDGE), "check by finite elements, with estimated errors")
+            yield (*bare, "--model", JUDGE), "check by finite elements, with estimated errors"
     cited = [name for name in valid_models[:1] if name in requested and name in listed_models]
-    yield from (NextStep(("cite", name), "references of the model") for name in cited)
+    yield from ((("cite", name), "references of the model") for name in cited)
 
 
 _OUTPUT_OPTIONS = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--tolerance")
 """Options of the output, which the next step does not need."""
 
 
-def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is outside its valid range at some points"
-        yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
+        yield (*_without_options(arguments, "--model"), "--model", reference.name), why
     if answer["model"] in listed_models:
-        yield NextStep(("cite", answer["model"]), "references of the model")
+        yield ("cite", answer["model"]), "references of the model"
 
 
-def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     from ..files.inputs import PARTS, inputs_in
 
     if "point" in answer:
@@ -188,7 +179,7 @@ def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     ]
     stated = _without_options(arguments, *replaced)
     step = ("press", *_joint_arguments(stated), *chosen, *numbers, *_load_options(stated), "--all")
-    yield NextStep(step, "the best joint by every model")
+    yield step, "the best joint by every model"
 
 
 def _dimension_of(name: str) -> str:
@@ -208,60 +199,60 @@ def _as_option(name: str, value: float) -> Iterator[str]:
 _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 
-def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     load = _load_options(arguments)
-    yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
+    yield ("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model"
 
 
-def _after_study(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_study(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if not _selected_options(arguments, "--out"):
-        yield NextStep((*arguments, "--out", "study.csv"), "all values, one row per point")
+        yield (*arguments, "--out", "study.csv"), "all values, one row per point"
 
 
-def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
     known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
     if known:
         load = _load_options(arguments)
         step = ("press", *_joint_arguments(arguments), *load, "--tilt", f"{max(known)[1]:.4g} deg")
-        yield NextStep(step, "the orientation with the largest distance to the rim")
+        yield step, "the orientation with the largest distance to the rim"
 
 
-def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
-        yield NextStep((*arguments, "--experiment", "next.png"), why)
+        yield (*arguments, "--experiment", "next.png"), why
     elif "posterior" in answer and answer["posterior"] is None:
-        yield NextStep((*arguments, "--samples", "4000"), "samples of the posterior within the ranges")
+        yield (*arguments, "--samples", "4000"), "samples of the posterior within the ranges"
 
 
-def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if not _selected_options(arguments, "--report", "--patients") and "results" not in answer:
-        yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
+        yield (*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear"
 
 
-def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if answer["file"] is not None:
-        yield NextStep(("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint")
+        yield ("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint"
 
 
-def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if _selected_options(arguments, "--check"):
         return
     folder = (_selected_options(arguments, "--out") or ["--out", "evidence"])[1]
-    yield NextStep(("evidence", "--check", folder), "computes everything again and lists the differences")
+    yield ("evidence", "--check", folder), "computes everything again and lists the differences"
 
 
-def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     for name in _joint_name(arguments):
-        yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
+        yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
 
 
-def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+def _after_list(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     for name in list(answer.get("joints", {}))[:1]:
-        yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
+        yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
     for model in answer.get("models", [])[:1]:
-        yield NextStep(("cite", model["name"]), "BibTeX")
+        yield ("cite", model["name"]), "BibTeX"
 
 
 def _load_options(arguments: Arguments) -> list[str]:
@@ -312,7 +303,7 @@ def _selected_options(arguments: Arguments, *options: str) -> list[str]:
     return selected
 
 
-_NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[NextStep]]] = MappingProxyType(
+_NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[Step]]] = MappingProxyType(
     {
         "press": _after_press,
         "curve": _after_curve,

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..core.storage.atomic_files import check_parent_folder, write_text
+from ..core.unit_systems import Units
 from ..files.joint_file import Direction
 from ..files.joint_toml import toml_of
 from ..files.schema import Angle, Force, Length, Table, Text, Word, meaning
@@ -19,11 +20,12 @@ from ..planning.landmarks import read_landmarks
 from ..planning.meshes import read_mesh
 from ..planning.pelvis import pelvic_frame
 from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
+from ..planning.plan_answer import describe_plan
 from ..planning.worn_bores import WornBore, measure_wear
-from ..reports.planning_results import print_plan
+from ..reports.terminal import print_answer
 from .elasticity_options import orientation_remark, orientation_summary
 from .json_answers import echo_json
-from .options import AsJson, expand_groups
+from .options import AsJson, UnitSystem, expand_groups
 from .root import app, echo_path
 
 
@@ -130,12 +132,7 @@ class PlanInputs(Table, frozen=True, kw_only=True):
 
 @app.command()
 @expand_groups
-def planning(
-    *,
-    files: PlanFiles,
-    inputs: PlanInputs,
-    as_json: AsJson = False,
-) -> None:
+def planning(*, files: PlanFiles, inputs: PlanInputs, units: UnitSystem = Units.SI, as_json: AsJson = False) -> None:
     """Read landmarks, liner, head and worn bore of a hip.
 
     Landmarks give the pelvic frame, the side, and the radiographic angles of the cup from points on its rim. Meshes
@@ -160,6 +157,6 @@ def planning(
     if inputs.clearance is not None:
         ball = inputs.head_material or "rigid"
         remarks.append(f"materials: liner {inputs.liner_material}, head {ball}")
-    print_plan(plan, remarks)
+    print_answer(describe_plan(plan, remarks), units)
     if files.out is not None:
         echo_path(files.out)

@@ -17,25 +17,24 @@ from ..contact import Contact, Model
 from ..contact.verdict import assess_strength, error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
-from ..core.quantities import CONTACT
-from ..core.unit_systems import Units
+from ..core.kinds import NEWTON_METRES
+from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Status
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
+from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
-from ..reports.terminal import print_curve, print_press
+from ..reports.terminal import print_answer, print_press
 from ..version import __version__
 from .elasticity_options import (
     MeshTable,
     ModelNames,
     RingTable,
     mesh_progress,
-    mesh_remark,
     orientation_remark,
     orientation_summary,
     refuse_mesh_options,
-    sphere_remark,
 )
 from .json_answers import echo_json, several_joints
 from .model_file import is_model_file, requested_model
@@ -54,7 +53,6 @@ from .root import app, fail
 
 if TYPE_CHECKING:
     from ..dynamics import Friction
-    from ..elasticity.off_axis.preload import PullOut
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,20 +135,18 @@ class FrictionOptions:
             "breakaway_torque_about_load": static * along,
         }
 
-    def remark(self, name: str, contact: Contact, units: Units) -> str:
+    def remark(self, name: str, contact: Contact) -> Sentence:
         """Return one line with the friction torques of a contact."""
         torques = self.torques(contact)
 
-        def text(kind: str) -> str:
-            across, along = (units.torque(torques[f"{kind}_torque{axis}"]) for axis in ("", "_about_load"))
-            return f"{kind} torque {across} about an axis across the load, {along} about the load"
+        def words(kind: str) -> Sentence:
+            amounts = (Amount(torques[f"{kind}_torque{axis}"], NEWTON_METRES, 3) for axis in ("", "_about_load"))
+            return Sentence(f"{kind} torque {{}} about an axis across the load, {{}} about the load", *amounts)
 
-        if torques["static_coefficient"] == torques["coefficient"]:
-            return f"{name}: friction {torques['coefficient']:g}: {text('running')}; breakaway torque the same"
-        return (
-            f"{name}: friction {torques['coefficient']:g}, static {torques['static_coefficient']:g}: "
-            f"{text('running')}; {text('breakaway')}"
-        )
+        coefficients, breakaway = f"{torques['coefficient']:g}", "breakaway torque the same"
+        if torques["static_coefficient"] != torques["coefficient"]:
+            coefficients, breakaway = f"{coefficients}, static {torques['static_coefficient']:g}", words("breakaway")
+        return Sentence("{}: friction {}: {}; {}", name, coefficients, words("running"), breakaway)
 
 
 @dataclass(kw_only=True)
@@ -175,7 +171,14 @@ class PressedJoint:
             result["friction"] = None if contact is None else friction.torques(contact)
         pull_out = None if pulled is None else pulled.summary()
         preload = {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth}
-        further = {"assumptions": list(self.answer.assumptions), "preload": preload, "orientation": self.orientation}
+        verdict, reason = design_verdict(self.answer)
+        judged = {"model": self.answer.leading, "verdict": verdict.word, "reason": reason}
+        further = {
+            "verdict": judged,
+            "assumptions": list(self.answer.assumptions),
+            "preload": preload,
+            "orientation": self.orientation,
+        }
         return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
 
 
@@ -239,24 +242,13 @@ def press(
             rings.refuse()
         with mesh_progress() if model_options.has_finite_elements else nullcontext():
             answered = answer(question)
-        comparison = answered.comparison
         orientation = {} if "tilt" in file.aim else orientation_summary(file.cup)
         remarks = [orientation_remark(file.cup)] if orientation and joint_options.orients else []
-        if JUDGE in comparison:
-            meshed: Any = comparison[JUDGE]
-            remarks.append(mesh_remark(meshed, answered.seconds[JUDGE]))
-        if OFF_AXIS in comparison:
-            remarks.append(sphere_remark(comparison[OFF_AXIS], answered.seconds[OFF_AXIS], units))
+        remarks += press_remarks(answered)
         if friction_options.friction is not None:
-            contacts = successful_contacts(comparison)
+            contacts = successful_contacts(answered.comparison)
             named = [name for name in answered.models if name in contacts]
-            remarks += [friction_options.remark(name, contacts[name], units) for name in named]
-        remarks += answered.assumptions
-        if answered.wear_depth_to_loosen is not None:
-            wear_depth = units.length(answered.wear_depth_to_loosen)
-            remarks.append(f"uniform wear of the bore by {wear_depth} ends the preload")
-        if answered.pulled is not None:
-            remarks += _pull_out_remarks(answered.pulled, units)
+            remarks += [friction_options.remark(name, contacts[name]) for name in named]
         return PressedJoint(answer=answered, remarks=remarks, orientation=orientation)
 
     joints = [press_joint(name) for name in names]
@@ -273,14 +265,6 @@ def press(
             print_press(pressed.answer.comparison, pressed.remarks, units)
     for pressed in joints:
         _exit_on_failure(pressed.answer.comparison, pressed.answer.models)
-
-
-def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
-    """Return lines with the pull-out force, its displacement and its limits."""
-    if not pulled.force >= 0.0:
-        return list(pulled.notes)
-    force, displacement = units.text_of(CONTACT["force"], pulled.force), units.length(pulled.displacement)
-    return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
 
 
 def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
@@ -303,6 +287,7 @@ def curve(
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
 ) -> None:
     """Press a joint in equal steps from zero to a load.
@@ -320,6 +305,6 @@ def curve(
         valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
         echo_json({"version": __version__, "joint": file.joint.summary(), **summary, **valid})
     else:
-        print_curve(contact)
+        print_answer(describe_curve(contact), units)
     if not numpy.isfinite(contact.indentation[1:]).any():
         fail(f"no answer from {named.name} at any load (see the notes)")

@@ -45,7 +45,8 @@ _register_pytree(
     ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"),
     ("support", "name", "source"),
 )
-_register_pytree(TableSolution, ("joint", "angle", "values"), ("file",))
+_TABLE_LEAVES = ("joint", "half_angle", "indentation", "force", "pole_pressure", "stiffness")
+_register_pytree(TableSolution, _TABLE_LEAVES, ("file",))
 _register_pytree(LayerSolution, ("joint", "width"), ("widest",))
 _register_pytree(RefinedSolution, ("joint", "half_angle", "indentation", "scaled"), ())
 _register_pytree(ClosedFormSolution, ("joint", "indentation"), ("model",))

@@ -32,10 +32,7 @@ class SolverResult:
 
 
 def check_joint(joint: Any) -> None:
-    """Check that `joint` is a Joint; raise TypeError otherwise.
-
-    If it is the name of a preset, the message suggests that preset.
-    """
+    """Raise TypeError unless `joint` is a Joint; the message suggests the preset with such a name."""
     if isinstance(joint, Joint):
         return
     is_preset = isinstance(joint, str) and normalise_name(joint) in joints
@@ -50,10 +47,7 @@ def select_and_check_load(**loads: Array | None) -> tuple[str, Array]:
 
 
 def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
-    """Broadcast a load to the common shape of the load and the strengths of the joint's materials.
-
-    Stresses can then be compared with the strengths point by point.
-    """
+    """Broadcast a load to the common shape with the strengths of the materials, for a comparison point by point."""
     if all(map(arrays.is_plain_number, strengths)):
         return load
     return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))

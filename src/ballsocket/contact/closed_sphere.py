@@ -58,10 +58,7 @@ def _fitted_change(name: str, degree: int, contact: Any) -> Array:
 
 
 def hemisphere_indentation_change(contact: Any) -> Array:
-    """Estimate the relative increase of indentation if a hemisphere replaces the closed sphere.
-
-    The force is the same.
-    """
+    """Estimate the relative increase of indentation at equal force if a hemisphere replaces the closed sphere."""
     return _fitted_change("indentation", 5, contact) + contact.joint.modulus_ratio * _fitted_change("ball", 4, contact)
 
 

@@ -361,7 +361,6 @@ class Contact(Outcome):
 
     @staticmethod
     def _check_friction(coefficient: Array, axis_angle: float) -> Array:
-        """Check a coefficient of friction and the angle of an axis in rad, and return the coefficient."""
         if isinstance(coefficient, tuple | list):
             raise TypeError(
                 f"coefficient must be a number or an array, got the {type(coefficient).__name__} {shown(coefficient)}"
@@ -373,10 +372,7 @@ class Contact(Outcome):
         return coefficient
 
     def _evaluate(self, read_quantity: Callable[[Laws], Array]) -> Array:
-        """Evaluate one quantity from the formulas or the solution of the contact; set failed points to NaN.
-
-        NumPy numbers replace Python floats where these raise ArithmeticError.
-        """
+        """Evaluate one quantity of the laws, with NumPy numbers where Python floats raise; NaN at failed points."""
 
         def evaluate_quantity() -> Array:
             try:

@@ -13,10 +13,7 @@ ANGLE_SCALE, RATIO_SHIFT = 0.8, 0.2
 
 
 def angle_root(angle: Array, ratio: Array) -> Array:
-    """Compute the half angle's coordinate from 0 to 1, the square root of a scaled logarithm.
-
-    It is accurate for tiny angles too.
-    """
+    """Compute the half angle's coordinate from 0 to 1, the root of a scaled logarithm, accurate for tiny angles too."""
     scale = ANGLE_SCALE * (1 + ratio)
     return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, reduce
 from html import escape
 from math import nan
 from typing import TYPE_CHECKING, Any
@@ -15,110 +13,44 @@ from ..core.arrays import Array
 from ..core.checks import needs
 from ..core.kinds import Kind, Unit
 from ..core.quantities import BEARING, CONTACT, Quantity
-from ..core.unit_systems import Units
-from ..problem import Joint, elementwise_maximum
+from ..problem import Joint
 
 if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True)
-class Column:
-    """Column of a table of contacts: a quantity in a unit."""
+UTILISATION = BEARING["utilisation"]
 
-    quantity: Quantity
-    reading: Unit  # unit of the column
-
-    @cached_property
-    def name(self) -> str:
-        """Key of the quantity in JSON, such as "max_pressure"."""
-        return self.quantity.key
-
-    @cached_property
-    def attribute(self) -> str:
-        """Name of the `Contact` attribute that has the quantity."""
-        return self.quantity.name
-
-    @cached_property
-    def symbol(self) -> str:
-        """Symbol of the quantity, such as "pmax"."""
-        return self.quantity.symbol
-
-    @cached_property
-    def title(self) -> str:
-        """Name of the quantity in words."""
-        return self.quantity.title
-
-    @cached_property
-    def unit(self) -> str:
-        """Unit of the column as text, such as "MPa"."""
-        return self.reading.text
-
-    @cached_property
-    def factor(self) -> float:
-        """Factor from the internal unit to the unit of the column."""
-        return self.reading.factor
-
-    @cached_property
-    def head(self) -> str:
-        """Heading of the column: symbol and unit, such as "pmax [MPa]"."""
-        return self.quantity.head(self.reading)
-
-    @cached_property
-    def label(self) -> str:
-        """Axis label of a plot: title, symbol and unit of the quantity."""
-        return self.quantity.label(self.reading)
-
-    def values_of(self, contact: Any) -> Array:
-        """Return the values of the quantity in a contact, converted to the unit of the column.
-
-        -0 becomes 0.
-        """
-        return getattr(contact, self.attribute) * self.factor + 0.0
-
-
-COLUMNS = tuple(Column(quantity, quantity.written) for quantity in CONTACT.values())
-"""Printed quantities of a contact, in their order and in the units of JSON."""
-
-UTILISATION = Column(BEARING["utilisation"], BEARING["utilisation"].written)
-"""Column of the utilisation, printed if a strength is known."""
-
-
-class PressureRatioColumn(Column):
-    """Column of the largest pressure over the allowable pressure, the larger of liner and ball."""
-
-    def values_of(self, contact: Any) -> Any:
-        """Return the ratios of a contact; NaN without an allowable pressure."""
-        materials = (contact.joint.liner, contact.joint.ball)
-        allowed = [material.allowable_pressure for material in materials if material is not None]
-        ratios = [contact.max_pressure / pressure for pressure in allowed if pressure is not None]
-        return reduce(elementwise_maximum, ratios) if ratios else nan * contact.max_pressure
-
-
-PRESSURE_RATIO = PressureRatioColumn(
-    Quantity(
-        "pressure_ratio",
-        "pmax/pa",
-        "largest over allowable pressure",
-        Kind.NUMBER,
-        "Largest pressure over the allowable pressure, the larger of liner and ball.",
-    ),
-    Unit(""),
+PRESSURE_RATIO = Quantity(
+    "pressure_ratio",
+    "pmax/pa",
+    "largest over allowable pressure",
+    Kind.NUMBER,
+    "Largest pressure over the allowable pressure, the larger of liner and ball.",
 )
-"""Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
+"""Quantity that is printed if an allowable pressure is known."""
 
 
-def columns_in(units: Units) -> tuple[Column, ...]:
-    """Return the columns of a contact, each with its unit."""
-    return (*(Column(quantity, units.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
-
-
-def columns_of(joint: Joint, units: Units) -> tuple[Column, ...]:
-    """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
+def quantities_of(joint: Joint) -> tuple[Quantity, ...]:
+    """Return the printed quantities of a contact of a joint: without stress ratios whose strength is unknown."""
     materials = [material for material in (joint.liner, joint.ball) if material is not None]
     known = {name for material in materials for name in material.strengths}
     ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
-    return (*columns_in(units)[:-1], *(column for name, column in ratios.items() if name in known))
+    return (*CONTACT.values(), *(quantity for name, quantity in ratios.items() if name in known))
+
+
+def number_of(contact: Any, quantity: Quantity) -> float:
+    """Return a quantity of a single contact in internal units; NaN without a result or a strength."""
+    if quantity is not PRESSURE_RATIO:
+        return float(getattr(contact, quantity.name))
+    materials = [material for material in (contact.joint.liner, contact.joint.ball) if material is not None]
+    allowed = [material.allowable_pressure for material in materials if material.allowable_pressure is not None]
+    return max((float(contact.max_pressure / pressure) for pressure in allowed), default=nan)
+
+
+def values_of(contact: Any, quantity: Quantity, unit: Unit | None = None) -> Array:
+    """Return a quantity of a contact in a unit, by default that of JSON; -0 becomes 0."""
+    return getattr(contact, quantity.name) * (unit or quantity.written).factor + 0.0
 
 
 UTILISATION_NOTE = "utilisation_note"
@@ -127,9 +59,9 @@ UTILISATION_NOTE = "utilisation_note"
 
 def to_summary(contact: Any) -> dict[str, Any]:
     """Return a dictionary of a contact for JSON."""
-    numbers = {column.name: arrays.to_list(column.values_of(contact)) for column in COLUMNS}
+    numbers = {quantity.key: arrays.to_list(values_of(contact, quantity)) for quantity in CONTACT.values()}
     strength = {
-        UTILISATION.name: arrays.to_list(UTILISATION.values_of(contact)),
+        UTILISATION.key: arrays.to_list(values_of(contact, UTILISATION)),
         UTILISATION_NOTE: contact.utilisation_note or None,
     }
     valid = arrays.to_list(contact.valid)
@@ -141,7 +73,7 @@ def to_frame(contact: Any) -> pandas.DataFrame:
     needs("study", "pandas")
     import pandas
 
-    columns = {column.quantity.column: arrays.to_numpy(column.values_of(contact)).ravel() for column in COLUMNS}
+    columns = {quantity.column: arrays.to_numpy(values_of(contact, quantity)).ravel() for quantity in CONTACT.values()}
     return pandas.DataFrame({**columns, "valid": arrays.to_numpy(contact.valid).ravel()})
 
 
@@ -187,11 +119,12 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 
 def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
     is_single = arrays.to_numpy(contact.indentation).size == 1
+    digits = 6 if is_single else 5
     rows = [
-        (column.attribute, number_text(column.values_of(contact), 6 if is_single else 5, "no answer"), column.unit)
-        for column in COLUMNS
+        (name, number_text(values_of(contact, quantity), digits, "no answer"), quantity.written.text)
+        for name, quantity in CONTACT.items()
     ]
     if is_single and contact.joint.strengths():
-        value = UTILISATION.values_of(contact)
-        rows += [(UTILISATION.attribute, number_text(value, 3, ""), "")] if value == value else []
+        value = contact.utilisation
+        rows += [(UTILISATION.name, number_text(value, 3, ""), "")] if value == value else []
     return [*rows, ("valid", count_text(contact.valid), "")]

@@ -134,10 +134,7 @@ def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: 
 
 
 def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, high: float, piece_count: int) -> Numbers:
-    """Compute the Chebyshev coefficients (pieces, terms) of ln F over ln d, force F in N, indentation d in mm.
-
-    Adjacent pieces are continuous.
-    """
+    """Compute the Chebyshev coefficients (pieces, terms) of ln F (N) over ln d (mm), with continuous pieces."""
     nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
     piece_positions = (numpy.arange(piece_count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / piece_count
     depths = low * numpy.exp(math.log(high / low) * numpy.append(piece_positions, 1.0))
@@ -150,7 +147,6 @@ def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, hig
 
 @cache
 def _chebyshev_to_power_matrix() -> Numbers:
-    """Compute the matrix that converts coefficients of Chebyshev polynomials to those of powers of x."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])

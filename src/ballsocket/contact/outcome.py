@@ -27,6 +27,9 @@ class ModelInfo(ABC):
     planar: ClassVar[bool] = False
     """True if the contact is a flat circle whose pressure has one direction, False if it acts along the radius."""
 
+    is_closed_sphere: ClassVar[bool] = False
+    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
+
     @property
     @abstractmethod
     def name(self) -> str:
@@ -106,7 +109,6 @@ class Outcome(ABC):
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
-        """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property
@@ -152,10 +154,7 @@ class Outcome(ABC):
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     def _match_load(self, value: Array) -> Array:
-        """Convert values to the type and the shape of the load; a load of one number gives a float.
-
-        Arrays are read-only: a contact is a record, and its quantities are stored.
-        """
+        """Convert values to the type and the shape of the load, a float for one number, or a read-only array."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

@@ -42,10 +42,7 @@ class JointContacts:
     error: dict[str, numpy.ndarray]  # relative error of each quantity of the touching contacts
 
     def expand_to_all_loads(self, values: numpy.ndarray) -> numpy.ndarray:
-        """Expand values of the touching contacts (..., touching) to all loads (..., loads).
-
-        Loads of 0 get 0, and loads without a solution NaN.
-        """
+        """Expand values (..., touching) to all loads (..., loads): 0 at loads of 0, NaN without a solution."""
         expanded = numpy.zeros((*values.shape[:-1], len(self.load)))
         expanded[..., self.touching] = numpy.where(self.reached, values, numpy.nan)
         return expanded
@@ -116,10 +113,7 @@ def _quantity_of_all_joints(quantity_name: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CombinedSolution:
-    """Solutions of all joints, combined to arrays: the `Laws` of their contact.
-
-    Its arrays have the library of the load.
-    """
+    """Solutions of all joints, combined to arrays of the load's library: the `Laws` of their contact."""
 
     like: Array  # load, whose library, dtype and device the quantities have
     shape: tuple[int, ...]  # common shape of joint and load
@@ -128,28 +122,18 @@ class CombinedSolution:
 
     def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
         """Combine a quantity of all joints to one array (*rows, *shape); NaN at points without a solution."""
-        return self._match_load_array(
-            self._combine_to_numpy_array(lambda indices, contacts: quantity(contacts), prod(rows)), rows
-        )
+        return self.combine_by_index(lambda indices, contacts: quantity(contacts), rows)
 
-    def combine_by_index(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
-        """Combine a quantity that is a function of the flat indices of the points to one array."""
-        return self._match_load_array(self._combine_to_numpy_array(quantity))
-
-    def _combine_to_numpy_array(
-        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], row_count: int = 1
-    ) -> numpy.ndarray:
-        """Put the values of a quantity in all joints into one NumPy array (rows, points)."""
-        combined = numpy.full((row_count, prod(self.shape)), numpy.nan)
+    def combine_by_index(
+        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()
+    ) -> Array:
+        """Combine a quantity that is a function of the flat indices of the points; see `combine`."""
+        combined = numpy.full((prod(rows), prod(self.shape)), numpy.nan)
         for indices, contacts in self.pieces:
             combined[:, indices] = contacts.expand_to_all_loads(quantity(indices, contacts))
-        return combined
+        return arrays.convert_like(combined.reshape((*rows, *self.shape)), self.like)
 
-    def _match_load_array(self, values: numpy.ndarray, leading_shape: tuple[int, ...] = ()) -> Array:
-        """Convert NumPy values to the shape, library, data type and device of the load."""
-        return arrays.convert_like(values.reshape((*leading_shape, *self.shape)), self.like)
-
-    def _combine_relative_error(self, name: str) -> Array:
+    def _relative_error(self, name: str) -> Array:
         return self.combine(lambda contacts: contacts.error[name])
 
     @property
@@ -160,7 +144,7 @@ class CombinedSolution:
     @property
     def error(self) -> dict[str, Array]:
         """Estimated relative errors, one array for each quantity name."""
-        return {name: self._combine_relative_error(name) for name in QUANTITIES}
+        return {name: self._relative_error(name) for name in QUANTITIES}
 
     force = _quantity_of_all_joints("force")
     indentation = _quantity_of_all_joints("indentation")
@@ -192,7 +176,7 @@ class CombinedSolution:
             pressures: numpy.ndarray = contacts.state.pressure(rows[:, indices[contacts.touching]])
             return pressures
 
-        return self._match_load_array(self._combine_to_numpy_array(joint_pressure, row_count=len(rows)), angle_shape)
+        return self.combine_by_index(joint_pressure, angle_shape)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -11,16 +11,7 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import (
-    Array,
-    all_true,
-    logical_not,
-    namespace,
-    safe_divisor,
-    stop_gradient,
-    where,
-    without_gradients,
-)
+from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where, without_gradients
 
 Increasing = Callable[..., tuple[Array, Array]]
 """Increasing function: x, ... -> (value, slope), both of the shape of x."""
@@ -153,10 +144,7 @@ def bracketed_newton_step(
 def _iterate_until_converged(
     iteration_step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], max_steps: int
 ) -> Array:
-    """Repeat an iteration step until all elements have converged; return the first item of the state.
-
-    The last item of the state is the mask of unconverged elements.
-    """
+    """Repeat a step until its last item, the mask of unconverged elements, is false; return the first item."""
     is_traced = all_true(state[-1]) is None
     if is_traced and max_steps > _MAX_UNROLLED_STEPS and array_api_compat.is_jax_array(state[0]):
         return _jax_while_loop(iteration_step, state, max_steps)

@@ -128,10 +128,7 @@ def joint_ball_stress_ratio(joint: Joint) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticLimit(Range):
-    """Range of the ratio of von Mises to yield stress in which linear elasticity is valid.
-
-    Contacts without a yield stress count as inside.
-    """
+    """Range of the von Mises stress over the yield stress, if there is one, in which linear elasticity is valid."""
 
     quantity: str | Callable[[Any], Array] = "utilisation"
     high: float = MAX_ELASTIC_UTILISATION
@@ -183,10 +180,7 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
 def _exceeded_strength_remarks(
     body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
-    """Yield a mask of acceptable points and a note for each strength of a material that is exceeded.
-
-    Its von Mises stress is at most `upper_bound`.
-    """
+    """Yield acceptable points and a note for each exceeded strength; von Mises stresses are at most `upper_bound`."""
     for name, strength in material.strengths.items():
         is_pressure_limit = name == "allowable_pressure"
         if all_true(logical_not((pressure if is_pressure_limit else upper_bound) > strength)):

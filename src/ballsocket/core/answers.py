@@ -23,7 +23,7 @@ from .kinds import PLAIN, Unit
 from .quantities import Quantity
 from .unit_systems import Amount, Units
 
-PAGE, QUIET = 8, 9
+PAGE, QUIET = 18, 19
 """Ranks of what a terminal leaves out, and of what only data have: JSON, CSV and data frames."""
 
 Cell = float | str | bool | Amount | tuple[float, ...] | None
@@ -69,11 +69,15 @@ class Column:
 
 
 class Row(NamedTuple):
-    """Row of a table: its cells, the verdict that colours it, and its rank, which is that of a column."""
+    """Row of a table: its cells, the verdict that colours it, and its rank, which is that of a column.
+
+    Readers find the rows of `below` under it, such as deviations in percent; data do not have them.
+    """
 
     cells: Sequence[Cell]
     verdict: Verdict | None = None
     rank: int = 0
+    below: Sequence[Sequence[Cell]] = ()
 
 
 class Table(NamedTuple):
@@ -150,29 +154,30 @@ class Grid(NamedTuple):
 
 def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
     """Write the cells of a table up to a rank in a system of units."""
-    columns = [column for column in table.columns if column.rank <= most_rank]
+    shown = [index for index, column in enumerate(table.columns) if column.rank <= most_rank]
+    columns = [table.columns[index] for index in shown]
     written = [units.written(column.unit or PLAIN) for column in columns]
     rows = [row for row in table.rows if row.rank <= most_rank]
+    lines = [(cells, row.verdict) for row in rows for cells in (row.cells, *row.below)]
     texts = [
         [
-            _text(cell, column, units)
-            for cell, column in zip(row.cells, table.columns, strict=True)
-            if column.rank <= most_rank
+            _text(cells[index], column, unit.factor, units)
+            for index, column, unit in zip(shown, columns, written, strict=True)
         ]
-        for row in rows
+        for cells, _ in lines
     ]
     heads, unit_texts = [column.head for column in columns], [unit.text for unit in written]
-    return Grid(columns, heads, unit_texts, texts, [row.verdict for row in rows])
+    return Grid(columns, heads, unit_texts, texts, [verdict for _, verdict in lines])
 
 
-def _text(cell: Cell, column: Column, units: Units) -> str:
+def _text(cell: Cell, column: Column, factor: float, units: Units) -> str:
+    """Write a cell; `factor` leads from the internal unit to the shown one."""
     if cell is None or isinstance(cell, bool):
         return "-" if cell is None else "yes" if cell else "no"
     if isinstance(cell, str):
         return units.sentence(cell)
     if isinstance(cell, Amount):
         return units.amount(cell)
-    factor = units.written(column.unit or PLAIN).factor
     ends = cell if isinstance(cell, tuple) else (cell,)
     return " to ".join("-" if end != end else plain_number(end * factor, column.digits) for end in ends)
 

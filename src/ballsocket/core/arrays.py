@@ -193,10 +193,7 @@ _JAX_BLOCK_BYTES = 2**30
 
 
 def safe_divisor(x: Array) -> Array:
-    """Replace zero and negative elements by 1, to avoid a division by zero.
-
-    The numerator must be 0 at these elements.
-    """
+    """Replace zero and negative elements, at which the numerator must be 0, by 1 to avoid a division by zero."""
     return where(x > 0, x, 1.0)
 
 
@@ -341,10 +338,7 @@ def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def integral(integrand: Callable[[float], Array], points: int) -> Array:
-    """Integrate a function over [0, 1] by Gauss-Legendre quadrature.
-
-    The values of the function may be arrays of any library.
-    """
+    """Integrate a function with values of any array library over [0, 1] by Gauss-Legendre quadrature."""
     nodes, weights = gauss_legendre(points)
     return weighted_sum([integrand(node) for node in nodes], weights)
 
@@ -368,10 +362,7 @@ def to_numpy(x: Array) -> numpy.ndarray:
 
 
 def to_list(x: Array) -> Any:
-    """Convert an array to nested lists for JSON.
-
-    None replaces NaN, and the text "inf" replaces infinity.
-    """
+    """Convert an array to nested lists for JSON, with None for NaN and the text "inf" for infinity."""
     values = to_numpy(x)
     if values.dtype == bool:
         return values.tolist()

@@ -53,10 +53,7 @@ def derivative_matrix(count: int) -> numpy.ndarray:
 
 
 def sum_series(coefficients: Array, waves: Array) -> Array:
-    """Evaluate Chebyshev series at contacts, from coefficients and polynomials.
-
-    `coefficients` has the shape (angles, joints or 1), `waves` (angles, contacts).
-    """
+    """Evaluate Chebyshev series from coefficients (angles, joints or 1) and polynomials (angles, contacts)."""
     xp = arrays.namespace(waves)
     if coefficients.shape[-1] == 1:
         return coefficients[:, 0] @ waves
@@ -71,10 +68,7 @@ def series_values(coefficients: Array, x: Array) -> Array:
 
 
 def traced_series(coefficients: Array, x: Array) -> Pair:
-    """Evaluate a Chebyshev series and its slope at x inside `jax.jit` or `torch.compile`.
-
-    `coefficients` has the shape (angles, joints or 1), x (..., contacts).
-    """
+    """Evaluate Chebyshev series (angles, joints or 1) with their slopes at x (..., contacts) in traced code."""
     return (_jax_clenshaw_sum() if arrays.is_jax_array(x) else clenshaw_sum)(coefficients, x)
 
 
@@ -115,10 +109,7 @@ def clenshaw_sum(coefficients: Array, x: Array) -> Pair:
 
 
 def multiply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix by the outer product of the columns of several factors, for each joint.
-
-    The matrix has the shape (rows, products), each factor (rows, joints or 1).
-    """
+    """Multiply a matrix (rows, products) by the outer product of factors (rows, joints or 1) for each joint."""
     contracted, products = contract_factors(matrix, *factors)
     return contracted @ products
 

@@ -134,7 +134,6 @@ def _has_real_numbers(value: Any) -> bool:
 
 
 def _format_type_error(name: str, value: Any) -> str:
-    """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
     for kind in type(value).__mro__:
         text = _REJECTED_ARRAYS.get(kind.__name__, text)
@@ -175,30 +174,21 @@ def select_load(**loads: Any) -> tuple[str, Any]:
 
 
 def needs(extra: str, *modules: str) -> None:
-    """Check that the modules of an optional extra are installed; raise ImportError otherwise.
-
-    The message has the command to install them.
-    """
+    """Raise ImportError with the command that installs an optional extra unless its modules are installed."""
     for module in modules:
         if find_spec(module) is None:
             raise ImportError(f'{module} is not installed: pip install "ballsocket[{extra}]"', name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
-    """Check that all names are known; raise ValueError for the first unknown name.
-
-    `where` completes the message.
-    """
+    """Raise ValueError for the first name that is not known; `where` completes the message."""
     for name in names:
         if not isinstance(name, str) or name not in known:
             raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """Format a hint for an unknown name, such as "; did you mean 'exact'?".
-
-    It has the most similar known name, or else all known names.
-    """
+    """Format a hint for an unknown name: the most similar known name, "; did you mean 'exact'?", or all of them."""
     names = list(known)
     close = closest(name, names)
     if close:

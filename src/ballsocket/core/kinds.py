@@ -34,7 +34,7 @@ class Unit:
 PLAIN = Unit("")  # unit of a plain number
 
 PERCENT = Unit("%", 100.0)
-MILLIMETRES, NANOMETRES = Unit("mm"), Unit("nm", 1e6)
+MILLIMETRES, MICROMETRES, NANOMETRES = Unit("mm"), Unit("µm", 1e3), Unit("nm", 1e6)
 NEWTONS, MEGAPASCALS, NEWTON_METRES = Unit("N"), Unit("MPa"), Unit("N m", 1e-3)
 CUBIC_MILLIMETRES = Unit("mm³")
 MILLIONS = Unit("million", 1e-6)

@@ -135,10 +135,7 @@ class Quantity:
         return label[:1].upper() + label[1:]
 
     def head(self, unit: Unit | None = None) -> str:
-        """Format a column head of symbol and unit, such as "pmax [MPa]".
-
-        The unit is `shown` by default.
-        """
+        """Format a column head of symbol and unit, by default `shown`, such as "pmax [MPa]"."""
         return f"{self.symbol}{(unit or self.shown).text_in_brackets}".strip()
 
     def label(self, unit: Unit | None = None) -> str:

@@ -12,12 +12,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isinf, prod
+from math import floor, isinf, log10, prod
 from types import MappingProxyType
 from typing import Any
 
 from .display import plain_number
-from .kinds import PLAIN, Kind, Unit
+from .kinds import MILLIMETRES, PLAIN, Unit
 from .quantities import Quantity
 
 _KSI_FROM = 1e4
@@ -25,21 +25,6 @@ _KSI_FROM = 1e4
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND
-
-_IMPERIAL = MappingProxyType(
-    {
-        Kind.LENGTH: Unit("mil", 1e3 / _INCH),
-        Kind.FORCE: Unit("lbf", 1 / _POUND),
-        Kind.MODULUS: Unit("psi", _PSI),
-        Kind.AREA: Unit("in²", _INCH**-2),
-        Kind.STIFFNESS: Unit("kip/in", 1e-3 * _INCH / _POUND),
-        Kind.ENERGY: Unit("lbf in", 1 / (_INCH * _POUND)),
-        Kind.FOUNDATION: Unit("ksi/in", 1e-3 * _PSI * _INCH),
-    }
-)
-"""Imperial units by kind; a mil is a thousandth of an inch."""
-
-_INCHES = Unit("in", 1 / _INCH)
 
 _WRITTEN_UNITS = MappingProxyType(
     {
@@ -53,7 +38,7 @@ _WRITTEN_UNITS = MappingProxyType(
         "N m": Unit("lbf in", 1e3 / (_INCH * _POUND)),
         "mm³": Unit("in³", _INCH**-3),
         "mm²": Unit("in²", _INCH**-2),
-        "mm": _INCHES,
+        "mm": Unit("in", 1 / _INCH),
         "µm": Unit("mil", 1 / _INCH),
         "nm": Unit("µin", 1 / _INCH),
         "kN": Unit("lbf", 1e3 / _POUND),
@@ -63,7 +48,7 @@ _WRITTEN_UNITS = MappingProxyType(
         "kPa": Unit("psi", 1e-3 * _PSI),
     }
 )
-"""Imperial units by the metric unit of a text, longest first."""
+"""Imperial units by the metric unit, longest first; a mil is a thousandth of an inch."""
 
 _NUMBER = r"(?:[-+]?(?:\d++\.?\d*+|\.\d++)(?:e[-+]?\d++)?|inf|nan)"
 _SEPARATORS = (", ", " to ", " and ", " or ", "..", " ± ", " x ")
@@ -89,28 +74,20 @@ class Units(StrEnum):
         """Write a length (mm) in mm or in inches."""
         if isinf(millimetres):
             return "to infinity"
-        unit = self.length_unit
-        return f"{millimetres * unit.factor:.4g} {unit.text}"
+        return self.amount(Amount(millimetres, MILLIMETRES))
 
     def short_length(self, millimetres: float) -> str:
         """Write a length (mm) to 0.1 mm or to 0.001 in."""
-        length, digits = (millimetres / _INCH, 3) if self is Units.IMPERIAL else (millimetres, 1)
-        return f"{round(length, digits) + 0.0:.{digits}f} {self.length_unit.text}"
+        return self.amount(Amount(millimetres, MILLIMETRES, decimals=1))
 
     @property
     def length_unit(self) -> Unit:
         """Unit of dimensions: mm or inches."""
-        return _INCHES if self is Units.IMPERIAL else Unit("mm")
-
-    def torque(self, newton_millimetres: float) -> str:
-        """Write a torque (N mm) in N m or in pound inches."""
-        if self is Units.IMPERIAL:
-            return f"{newton_millimetres / (_INCH * _POUND):.3g} lbf in"
-        return f"{1e-3 * newton_millimetres:.3g} N m"
+        return self.written(MILLIMETRES)
 
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
-        return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
+        return self.written(quantity.shown)
 
     def text_of(self, quantity: Quantity, number: float) -> str:
         """Write a number, stated in the internal unit, with the unit of this system."""
@@ -139,8 +116,13 @@ class Units(StrEnum):
         return Unit(converted.text, unit.factor * converted.factor)
 
     def amount(self, amount: Amount) -> str:
-        """Write an amount with its unit."""
-        return _written(amount.value, self.written(amount.unit), amount.digits)
+        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer."""
+        unit = self.written(amount.unit)
+        if amount.decimals is None:
+            return _written(amount.value, unit, amount.digits)
+        decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
+        text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
+        return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
 
     def of_text(self, unit: str) -> Unit:
         """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
@@ -166,10 +148,6 @@ class Units(StrEnum):
         written = self.of_text(unit)
         return (f"{head}{bracket}{written.text}]", written.factor) if bracket else (label, 1.0)
 
-    def joint(self, joint: Any) -> str:
-        """Describe a joint in one line; its name stays as it is."""
-        return self.sentence(joint_sentence(joint))
-
 
 @dataclass(frozen=True)
 class Amount:
@@ -178,6 +156,7 @@ class Amount:
     value: float  # in the internal unit
     unit: Unit = PLAIN  # metric unit in which it is written
     digits: int = 4  # significant
+    decimals: int | None = None  # in the metric unit, in place of significant digits
 
 
 class Sentence(str):

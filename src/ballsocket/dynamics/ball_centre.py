@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 
-Vector = tuple[Array, Array, Array]
-"""Components of a vector."""
+Vector = tuple[Array, Array, Array]  # components of a vector
 
 
 class Constants(NamedTuple):
@@ -45,10 +44,9 @@ class Constants(NamedTuple):
 
 
 class BallCentre(NamedTuple):
-    """Position of the ball centre: distance, direction, indentation, and inverse distance.
+    """Position of the ball centre: distance and direction from the socket centre, indentation, and inverse distance.
 
-    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit
-    vector, or zero where the centres coincide.
+    The direction is a unit vector, or zero where the centres coincide.
     """
 
     distance: Array

@@ -81,7 +81,17 @@ class CompiledElement:
     @cached_property
     def potential(self) -> CompiledLaw:
         """Compiled function of the indentation in mm: energy in N mm, force in N and stiffness in N/mm."""
-        return compiled_potential(self.element)
+        model, joint, energy_law = self.element.model, self.element.joint, self.element.potential
+        if isinstance(energy_law, SpringPotential):
+            springs = energy_law.springs
+            numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
+            return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=numbers)
+        if isinstance(energy_law, CurvePotential):
+            curve = energy_law.curve
+        else:
+            curve = energy_curve(model.law(joint), *curve_range(joint))
+        ends = curve.shallowest, curve.deepest, curve.first, curve.density
+        return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
 
     @property
     def march(self) -> Any:
@@ -119,21 +129,6 @@ class CompiledElement:
         force, moment, energy, tangent = (numpy.empty((len(position), *row)) for row in ((3,), (3,), (), (6,)))
         _compiled_batch_loop()(self.potential, self.constants, *state, force, moment, energy, tangent)
         return force, moment, energy, tangent
-
-
-def compiled_potential(element: ForceElement) -> CompiledLaw:
-    """Return a compiled function of the indentation: elastic energy, force and stiffness of an element."""
-    energy_law = element.potential
-    if isinstance(energy_law, SpringPotential):
-        springs = energy_law.springs
-        spring_constants: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
-        return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=spring_constants)
-    if isinstance(energy_law, CurvePotential):
-        curve = energy_law.curve
-    else:
-        curve = energy_curve(element.model.law(element.joint), *curve_range(element.joint))
-    ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
 
 
 @cache

@@ -242,10 +242,7 @@ def _to_json_value(value: Any) -> Any:
 def contact_state_of(
     centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants
 ) -> ContactState | Array:
-    """Determine the state of the contact (free, contact, at the rim, ...), as `ContactState` or array of codes.
-
-    `is_finite` is False for states that are not finite.
-    """
+    """Determine the state of the contact: a `ContactState`, or an array of codes; `is_finite` masks the states."""
     d, rim_margin = centre.indentation, contact.rim_margin
     none = 0.0 * where(is_finite, d, 0.0)
     touching = d > -constants.smoothing

@@ -53,7 +53,11 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     projection = _weighted_row_sum(translation_rows, slip.push[..., None] * v + slip.mixed[..., None] * b)
     projection = projection + _weighted_row_sum(rotation_rows, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
     projection = projection + _weighted_row_sum(drilling_row, (slip.drill * lever * slip.spin)[..., None])
-    rate_slope = _friction_rate_slope(slip, constants) / slip.speed
+    # derivative of the friction rate N μ(q)/q by the effective slip speed q, over q
+    q = slip.speed
+    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
+    rate_slope = slip.normal * (mu_slope - mu / q) / q / q
     rate = rate + rate_slope[..., None, None] * (projection[..., :, None] * projection[..., None, :])
     rows = xp.concat([normal_block, 0.0 * normal_block], axis=-1)
     contact_matrix = rate + xp.concat([rows, 0.0 * rows], axis=-2)
@@ -64,19 +68,13 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     drilling_axis = xp.concat([0.0 * direction, direction], axis=-1)[..., None, :]
     normal_axis = xp.concat([direction, 0.0 * direction], axis=-1)[..., None, :]
     turning_rows = xp.concat([zero_block, tangential], axis=-1)
-    directions = normal_axis, mean_rows, drilling_axis, turning_rows
-    return contact_matrix + _film_matrix(centre, _normal_speed(centre, velocity), directions, constants)
-
-
-def _film_matrix(centre: BallCentre, speed: Array, directions: tuple[Array, ...], constants: Constants) -> Array:
-    """Compute the damping matrix (..., 6, 6) of the film, from its rows along, across, drilling and turning."""
     damping = film_damping(centre, constants)
-    coefficients = squeeze_damping(damping, speed, constants)[1], damping.across, damping.drilling, damping.turning
-    terms = [
-        coefficient[..., None, None] * _sum_outer_products(rows, rows)
-        for coefficient, rows in zip(coefficients, directions, strict=True)
-    ]
-    return terms[0] + terms[1] + terms[2] + terms[3]
+    along = squeeze_damping(damping, _normal_speed(centre, velocity), constants)[1]
+    film_matrix = along[..., None, None] * _sum_outer_products(normal_axis, normal_axis)
+    film_matrix = film_matrix + damping.across[..., None, None] * _sum_outer_products(mean_rows, mean_rows)
+    film_matrix = film_matrix + damping.drilling[..., None, None] * _sum_outer_products(drilling_axis, drilling_axis)
+    film_matrix = film_matrix + damping.turning[..., None, None] * _sum_outer_products(turning_rows, turning_rows)
+    return contact_matrix + film_matrix
 
 
 def _damping_coefficients(
@@ -140,14 +138,6 @@ def _sum_outer_products(first: Array, second: Array) -> Array:
 
 def _weighted_row_sum(directions: Array, rates: Array) -> Array:
     return arrays.namespace(directions).sum(rates[..., :, None] * directions, axis=-2)
-
-
-def _friction_rate_slope(slip: Sliding, constants: Constants) -> Array:
-    """Compute the derivative of the friction rate N μ(q)/q with respect to the effective slip speed q."""
-    q = slip.speed
-    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
-    mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
-    return slip.normal * (mu_slope - mu / q) / q
 
 
 def _normal_speed(centre: BallCentre, velocity: Vector) -> Array:

@@ -8,7 +8,6 @@ U is a quadratic form in s. The force is the gradient of U, so that no cycle gai
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
@@ -34,8 +33,7 @@ from .load import ContactState, describe_load, is_finite_state, tangent_matrix, 
 from .matrices import join_vector
 from .potential import CurvePotential
 
-NODES = 7
-"""Number of tabulated directions, from the dome to the opening."""
+NODES = 7  # number of tabulated directions, from the dome to the opening
 
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
@@ -104,10 +102,7 @@ class PreloadTable:
 
 
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
-    """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
-
-    Raises ValueError: a joint without an interference; a socket that does not hold its ball.
-    """
+    """Solve the contacts of a preloaded joint in seven directions, fit curves to them, and check the force."""
     equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:
         raise ValueError(f"the preloaded ball has no equilibrium in its socket: {'; '.join(equilibrium.notes)}")
@@ -216,18 +211,16 @@ def _curve_law(distances: Numbers, local: Numbers) -> CurveLaw:
 
 def interpolate(values: Any, cosine: Array, order: int = 0) -> Array:
     """Interpolate values of all directions at a cosine, or differentiate the interpolation `order` times."""
-    coefficients = [_weighted_sum(column, values) for column in _WEIGHTS]
+    coefficients = []
+    for weights in _WEIGHTS:
+        first, *others = (weight * value for weight, value in zip(weights, values, strict=True) if weight != 0.0)
+        coefficients.append(sum(others, first))
     for _ in range(order):
         coefficients = [power * coefficient for power, coefficient in enumerate(coefficients)][1:]
     result = coefficients[-1]
     for coefficient in coefficients[-2::-1]:
         result = result * cosine + coefficient
     return result
-
-
-def _weighted_sum(weights: Sequence[float], values: Any) -> Array:
-    first, *others = (weight * value for weight, value in zip(weights, values, strict=True) if weight != 0.0)
-    return sum(others, first)
 
 
 _WEIGHTS = numpy.round(numpy.linalg.inv(numpy.vander(node_cosines(), increasing=True)), 12).tolist()
@@ -251,25 +244,20 @@ def displacement_from_equilibrium(
 
 def preloaded_force(energies: Any, place: tuple[Array, ...], constants: Constants) -> PreloadedForce:
     """Compute the elastic energy and its derivatives from the energies of all directions at a displacement."""
-    distance, nx, ny, nz, cosine = place
+    distance, nx, ny, nz, t = place
     energy, slope, bend = zip(*energies, strict=True)
     a, b, c = constants.dome_x, constants.dome_y, constants.dome_z
     return PreloadedForce(
-        energy=interpolate(energy, cosine),
-        slope=interpolate(slope, cosine),
-        turn=interpolate(energy, cosine, 1),
-        slope_by_distance=interpolate(bend, cosine),
-        slope_by_turn=interpolate(slope, cosine, 1),
-        turn_by_turn=interpolate(energy, cosine, 2),
-        distance=distance,
-        cosine=cosine,
-        nx=nx,
-        ny=ny,
-        nz=nz,
-        px=a - cosine * nx,
-        py=b - cosine * ny,
-        pz=c - cosine * nz,
-    )
+        energy=interpolate(energy, t),
+        slope=interpolate(slope, t),
+        turn=interpolate(energy, t, 1),
+        slope_by_distance=interpolate(bend, t),
+        slope_by_turn=interpolate(slope, t, 1),
+        turn_by_turn=interpolate(energy, t, 2),
+        distance=distance, cosine=t,
+        nx=nx, ny=ny, nz=nz,
+        px=a - t * nx, py=b - t * ny, pz=c - t * nz,
+    )  # fmt: skip
 
 
 def preloaded_load(

@@ -55,9 +55,7 @@ class Relation:
 
 
 def restitution_of(damping: float) -> float:
-    """Compute the exact coefficient of restitution e from the dimensionless damping h = χ v.
-
-    It holds for any contact law.
+    """Compute the exact coefficient of restitution e from the dimensionless damping h = χ v, for any contact law.
 
     Parameters
     ----------
@@ -69,18 +67,16 @@ def restitution_of(damping: float) -> float:
     ValueError
         A negative or infinite damping.
     """
-    require("damping", damping, 0.0 <= damping < math.inf, "χ v must be at least 0 and finite")
-    if damping < 1e-4:
-        return 1.0 - 2.0 * damping / 3.0 + 4.0 * damping * damping / 9.0
-    return _bisect(min(1.0, 1.0 / damping), lambda e: _impact_energy_balance(damping, e) > 0)
+    h = damping
+    require("damping", h, 0.0 <= h < math.inf, "χ v must be at least 0 and finite")
+    if h < 1e-4:
+        return 1.0 - 2.0 * h / 3.0 + 4.0 * h * h / 9.0
 
+    def is_below_root(e: float) -> bool:
+        """Check if the energy balance of the impact, ∫ x/(1 + x) dx from -h e to h, is positive."""
+        return h * e < 1.0 and h + math.log1p(-h * e) + h * e - math.log1p(h) > 0
 
-def _impact_energy_balance(h: float, e: float) -> float:
-    """Compute the energy balance of an impact, ∫ x/(1 + x) dx from -h e to h (h damping, e restitution).
-
-    It is positive for an e below the exact coefficient.
-    """
-    return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
+    return _bisect(min(1.0, 1.0 / h), is_below_root)
 
 
 def _bisect(high: float, is_below_root: Callable[[float], bool]) -> float:
@@ -125,5 +121,4 @@ flores = Relation(
 )
 """h = 8 (1 - e)/(5 e)."""
 
-relations = (hunt_crossley, lankarani_nikravesh, flores, gonthier, exact)
-"""All relations."""
+relations = (hunt_crossley, lankarani_nikravesh, flores, gonthier, exact)  # all relations

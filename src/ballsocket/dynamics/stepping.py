@@ -20,8 +20,7 @@ from . import film
 from .ball_centre import BallCentre, Constants, Vector, ball_centre_at, dome_angle
 from .reaction import Elastic, dissipation, elastic_contact, force_and_moment, normal_force, sliding_state
 
-MAX_ITERATIONS = 60
-"""Largest number of iterations of a step."""
+MAX_ITERATIONS = 60  # largest number of iterations of a step
 
 
 class BallState(NamedTuple):
@@ -39,10 +38,7 @@ class BallState(NamedTuple):
 
 
 class StepResult(NamedTuple):
-    """Result of a time step: the ball, the dissipated energy in N mm, and convergence.
-
-    `converged` is True for a converged step that ends in the cup.
-    """
+    """Ball after a time step, dissipated energy in N mm, and True for a converged step that ends in the cup."""
 
     ball: BallState
     dissipated: float
@@ -59,36 +55,18 @@ def advance_one_step(  # type: ignore[no-untyped-def]
     """
     mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
     initial = ball_centre_at(ball.x, ball.y, ball.z, constants.clearance)
-    midpoint = Midpoint(
-        ball.vx + pull[0] / mass_rate,
-        ball.vy + pull[1] / mass_rate,
-        ball.vz + pull[2] / mass_rate,
-        ball.wx,
-        ball.wy,
-        ball.wz,
-    )
-    path_bound = h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z))
+    ax, ay, az = ball.vx + pull[0] / mass_rate, ball.vy + pull[1] / mass_rate, ball.vz + pull[2] / mass_rate
+    path_bound = h * (abs(ax) + abs(ay) + abs(az))
     if constants.film_damping == 0.0 and initial.indentation + path_bound < -constants.smoothing:
-        return StepResult(end_state(ball, midpoint, h), 0.0, True)
-    start_contact = elastic_contact(potential, initial, constants)
-    normal_push = start_contact.normal / mass_rate
-    ax, ay, az, bx, by, bz = midpoint
-    midpoint = Midpoint(
-        ax - normal_push * initial.x, ay - normal_push * initial.y, az - normal_push * initial.z, bx, by, bz
-    )
+        return StepResult(end_state(ball, Midpoint(ax, ay, az, ball.wx, ball.wy, ball.wz), h), 0.0, True)
+    start = elastic_contact(potential, initial, constants)
+    push = start.normal / mass_rate
+    ax, ay, az = ax - push * initial.x, ay - push * initial.y, az - push * initial.z
+    midpoint = Midpoint(ax, ay, az, ball.wx, ball.wy, ball.wz)
     speed_scale, smallest_change, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
         residual = step_residual(
-            potential,
-            constants,
-            ball,
-            midpoint,
-            initial.distance,
-            start_contact.energy,
-            mass_rate,
-            inertia_rate,
-            pull,
-            h,
+            potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
         )
         corrected, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
         if not isfinite(change):
@@ -189,9 +167,7 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 def mean_contact(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Compute the elastic contact at the mean position of the ball in a time step.
-
-    `distance` is the distance of the centres at the start.
+    """Compute the elastic contact at the mean position of the ball in a time step that starts at a distance in mm.
 
     The mean is that of e and of r·dome. To third order the difference of the energy is the gradient at the mean times
     the differences of the invariants, also for a step that hardly changes them.
@@ -202,9 +178,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     )
     end = ball_centre_at(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
     mean_distance = 0.5 * (distance + end.distance)
-    nx = midpoint_centre.x
-    ny = midpoint_centre.y
-    nz = midpoint_centre.z
+    nx, ny, nz = midpoint_centre.x, midpoint_centre.y, midpoint_centre.z
     inverse_distance = 1.0 / safe_divisor(mean_distance)
     shortening, depth = midpoint_centre.distance * inverse_distance, mean_distance - constants.clearance
     centre = BallCentre(mean_distance, nx, ny, nz, depth, inverse_distance)
@@ -289,12 +263,7 @@ def step_residual(  # type: ignore[no-untyped-def]
 
 
 def newton_correction(
-    residual: StepResidual,
-    midpoint: Midpoint,
-    constants: Constants,
-    mass_rate: float,
-    inertia_rate: float,
-    h: float,
+    residual: StepResidual, midpoint: Midpoint, constants: Constants, mass_rate: float, inertia_rate: float, h: float
 ) -> tuple[Midpoint, float]:
     """Solve the linearised equations of a time step for a new midpoint; return it and its change in mm/s.
 
@@ -351,11 +320,10 @@ def newton_correction(
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Advance a ball over all time steps, fill `states` and `dissipated`; return the number of converged steps.
+    """Advance a ball over all time steps, and return the number of converged ones.
 
-    `states` is (steps + 1, 9) and `dissipated` (steps + 1,), in N mm.
-
-    `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
+    `states` (steps + 1, 9) and `dissipated` (steps + 1,) in N mm are filled. `pulls` (steps, 3) is the pull in each
+    step; in Python it is a list, which is faster than an array.
     """
     states[0, :] = ball
     for index in range(len(dissipated) - 1):

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.resources import files
 from itertools import chain
+from math import inf
 from pathlib import Path
 from string import Template
 from typing import Any
 
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
+from ..core.checks import known_name
 from ..core.display import ascii_text
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
@@ -27,6 +29,12 @@ from .tunable import TUNABLES
 
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
 STATE = ("position", "velocity", "spin")
+BEYOND = {
+    "extend": "the indentation exceeds the wall thickness or the range of the model; the force has its last stiffness",
+    "stop": ContactState.THROUGH_WALL.sentence,
+}
+"""What an exported element says of an indentation beyond the range of its law, by what it does there."""
+
 Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
 
 
@@ -35,6 +43,7 @@ class Recording:
     """Recorded formulas of a force element, for an unknown state and tunable parameters."""
 
     element: ForceElement
+    beyond: str = "extend"
     tape: Tape = field(default_factory=Tape)
 
     @cached_property
@@ -73,14 +82,28 @@ class Recording:
     @cached_property
     def contact(self) -> Elastic:
         """Recorded elastic contact at the position of the ball."""
-        return reaction.elastic_contact(self._potential, self.centre, self.constants)
+        constants = self.constants._replace(wall=inf) if self.beyond == "extend" else self.constants
+        return reaction.elastic_contact(self._potential, self.centre, constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         """Record energy, force and stiffness at an indentation."""
+        inside = self._within_range(depth)
         if ENERGY in self.curves:
-            energy, force, stiffness = self.tape.curve(ENERGY, depth, 3)
+            energy, force, stiffness = self.tape.curve(ENERGY, inside, 3)
+        else:
+            energy, force, stiffness = self.element.potential(inside)
+        return self._continued((energy, force, stiffness), depth - inside)
+
+    def _within_range(self, depth: Part) -> Part:
+        """Record the indentation at which the law is evaluated: the last one of its range for deeper ones."""
+        return where(depth < self.element.wall, depth, self.element.wall) if self.beyond == "extend" else depth
+
+    def _continued(self, derivatives: tuple[Part, ...], excess: Part) -> tuple[Part, Part, Part]:
+        """Record energy, force and stiffness at an indentation beyond the range: the stiffness stays the last one."""
+        energy, force, stiffness = derivatives
+        if self.beyond != "extend":
             return energy, force, stiffness
-        return self.element.potential(depth)
+        return energy + excess * (force + 0.5 * stiffness * excess), force + stiffness * excess, stiffness
 
     @cached_property
     def load(self) -> Outputs:
@@ -133,8 +156,10 @@ class PreloadRecording(Recording):
 
     def _tabulated(self, quantity: str, order: int) -> list[tuple[Part, ...]]:
         """Record the curves of a quantity in all directions, with derivatives up to an order."""
-        names = (_curve_name(quantity, index) for index in range(preloaded.NODES))
-        return [self.tape.curve(name, self._displacement[0], order + 1) for name in names]
+        names, distance = (_curve_name(quantity, index) for index in range(preloaded.NODES)), self._displacement[0]
+        inside = self._within_range(distance)
+        rows = [self.tape.curve(name, inside, order + 1) for name in names]
+        return rows if order == 0 else [self._continued(row, distance - inside) for row in rows]
 
     @cached_property
     def _displacement(self) -> tuple[Part, ...]:
@@ -210,11 +235,14 @@ class CElement:
     element : ForceElement or PreloadedElement
     name : str
         Prefix of all names in the program, so that one program can hold two joints: letters, digits and _.
+    beyond : str
+        What follows an indentation beyond the wall thickness or the range of the model: "extend" continues the force
+        with its last stiffness, "stop" gives NaN. The status is THROUGH_WALL in both.
 
     Raises
     ------
     ValueError
-        A name that C does not allow; an element with a state (bristles or adhesion).
+        A name that C does not allow; an unknown `beyond`; an element with a state (bristles or adhesion).
 
     Examples
     --------
@@ -227,8 +255,10 @@ class CElement:
 
     element: ForceElement | PreloadedElement
     name: str = "ballsocket"
+    beyond: str = "extend"
 
     def __post_init__(self) -> None:
+        known_name("beyond", self.beyond, BEYOND)
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,40}", self.name):
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
@@ -240,8 +270,8 @@ class CElement:
     def recording(self) -> Recording:
         """Recorded formulas of the force element."""
         if isinstance(self.element, PreloadedElement):
-            return PreloadRecording(element=self.element)
-        return Recording(element=self.element)
+            return PreloadRecording(element=self.element, beyond=self.beyond)
+        return Recording(element=self.element, beyond=self.beyond)
 
     @property
     def header(self) -> str:
@@ -251,7 +281,15 @@ class CElement:
         )
         codes = "\n".join(f"    {self.name.upper()}_{state.name} = {state.value}," for state in ContactState)
         names = {"name": self.name, "NAME": self.name.upper()}
-        return fill_template("element.h", fields=fields, codes=codes, **names, **self.about)
+        return fill_template(
+            "element.h",
+            fields=fields,
+            codes=codes,
+            failed=str(self.first_failure.value),
+            through_wall=f"{ContactState.THROUGH_WALL.value}: {BEYOND[self.beyond]}",
+            **names,
+            **self.about,
+        )
 
     @property
     def source(self) -> str:
@@ -270,9 +308,17 @@ class CElement:
             pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
-            sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in ContactState),
+            sentences="\n".join(f'    case {state.value}: return "{self._sentence(state)}";' for state in ContactState),
             **self.about,
         )
+
+    @property
+    def first_failure(self) -> ContactState:
+        """First status without a load; the statuses after it have none either."""
+        return ContactState.NO_NUMBER if self.beyond == "extend" else ContactState.THROUGH_WALL
+
+    def _sentence(self, state: ContactState) -> str:
+        return BEYOND[self.beyond] if state is ContactState.THROUGH_WALL else state.sentence
 
     def write(self, folder: Path) -> tuple[Path, Path]:
         """Write the header and source files into a folder, and return their paths.
@@ -301,7 +347,6 @@ def first_load_distance(constants: Constants) -> float:
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:
-    """Return the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if is_positive else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'

@@ -140,18 +140,12 @@ class ExpressionFit:
 
 
 def _spring_force_shape(d: Numbers, c: float) -> Numbers:
-    """Compute the force of radial springs divided by its factor G: d² (3 c + 2 d)/(c + d)².
-
-    d is the indentation and c the clearance, in the same unit.
-    """
+    """Compute the force of radial springs over its factor G: d² (3 c + 2 d)/(c + d)², indentation d and clearance c."""
     return d * d * (3.0 * c + 2.0 * d) / (c + d) ** 2
 
 
 def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
-    """Fit the force law of an element by one expression of the distance, up to an indentation in mm.
-
-    If the model is valid beyond `depth`, the fit covers its valid range.
-    """
+    """Fit the force law by one expression up to an indentation `depth` in mm, or the valid range if it is longer."""
     c, R2 = element.constants.clearance, element.constants.socket_radius
     fitted_depth = max(depth, element.valid_depth)
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)

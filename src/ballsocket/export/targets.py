@@ -16,9 +16,10 @@ from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
 from ..problem import Joint
 from ..version import __version__
-from .c_element import CElement, fill_template
+from .c_element import BEYOND, CElement, fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .law_fit import ExpressionFit, PowerFit, expression_fit, power_fit
+from .time_steps import TimeStepAdvice, time_step_advice
 from .tunable import TUNABLES
 
 _NOT_CENTRAL = (
@@ -31,16 +32,22 @@ Texts = Mapping[str, str]  # contents of files by their names
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ExportJob:
-    """Export of one force element: the element, the name of its files, and the largest fitted indentation in mm."""
+    """Export of one force element: the element, the name of its files, and the largest fitted indentation in mm.
+
+    `beyond` says what follows an indentation beyond the range of the law, see `CElement`. The ball of `mass` in kg is
+    for the advice on time steps.
+    """
 
     element: ForceElement | PreloadedElement
     name: str
     depth: float
+    beyond: str = "extend"
+    mass: float = 1.0
 
     @cached_property
     def c_program(self) -> CElement:
         """C source and header of the force element."""
-        return CElement(element=self.element, name=self.name)
+        return CElement(element=self.element, name=self.name, beyond=self.beyond)
 
     @cached_property
     def fitted_power_law(self) -> PowerFit:
@@ -51,6 +58,11 @@ class ExportJob:
     def fitted_expression(self) -> ExpressionFit:
         """Force law fitted as one expression of the distance."""
         return expression_fit(self.central_element, self.depth)
+
+    @cached_property
+    def time_steps(self) -> TimeStepAdvice:
+        """Time steps for a host program."""
+        return time_step_advice(self.element, self.depth or self.element.wall, self.mass)
 
     @property
     def central_element(self) -> ForceElement:
@@ -77,7 +89,8 @@ class ExportJob:
             "parameters": str(len(TUNABLES)),
             "units": ", ".join(repr(parameter.si) for parameter in TUNABLES),
             "tunables": ", ".join(parameter.name for parameter in TUNABLES),
-            "failed": str(ContactState.THROUGH_WALL.value),
+            "through_wall": f"{ContactState.THROUGH_WALL.value}: {BEYOND[self.beyond]}",
+            "failed": str(self.c_program.first_failure.value),
         }
 
     def program_texts(self) -> dict[str, str]:
@@ -100,6 +113,8 @@ class Target:
         Note on the accuracy of a job's files; empty without one.
     without : tuple of str
         Features that the program cannot represent, by the names of `FEATURES`.
+    beyond_range : str
+        What follows an indentation beyond the range of the law, if the program does not use the C program.
     central : bool
         True if the program has a force that depends on the distance of the centres alone.
     """
@@ -110,6 +125,7 @@ class Target:
     compiled: Callable[[ExportJob, Path], str] = lambda job, folder: ""
     note: Callable[[ExportJob], str] = lambda job: ""
     without: tuple[str, ...] = ()
+    beyond_range: str = ""
     central: bool = False
 
     def check(self, joint: Joint) -> None:
@@ -125,13 +141,25 @@ class Target:
         OSError
             A folder that cannot be made, or written to.
         """
-        texts = self.texts(job)
+        texts = self.file_texts(job)
         make_folder(folder)
         paths = []
         for name, text in texts.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             paths.append(write_text(folder / name, text))
         return paths, "; ".join(filter(None, (self.compiled(job, folder), self._omitted_features(job), self.note(job))))
+
+    def file_texts(self, job: ExportJob) -> Texts:
+        """Return the contents of all files of a job by name: those of the program, and a page on their use."""
+        page = fill_template(
+            "readme.txt",
+            title=self.title,
+            beyond_range=self.beyond_range or BEYOND[job.beyond],
+            notes="\n".join(filter(None, (self._omitted_features(job), self.note(job)))),
+            time_steps=str(job.time_steps),
+            **job.template_context,
+        )
+        return {**self.texts(job), f"{job.name}_readme.txt": page}
 
     def _omitted_features(self, job: ExportJob) -> str:
         """Describe the features of the element that the target program cannot represent; empty if none."""
@@ -186,7 +214,9 @@ def _mujoco_texts(job: ExportJob) -> Texts:
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
         **_python_module_texts(job),
-        f"{job.name}_mujoco.c": fill_template("mujoco.c", **job.template_context),
+        f"{job.name}_mujoco.c": fill_template(
+            "mujoco.c", stiffness=repr(1e3 * job.time_steps.stiffness), **job.template_context
+        ),
         f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
         f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
     }
@@ -335,6 +365,7 @@ TARGETS: Mapping[str, Target] = {
             title="an expression force in an .osim file",
             texts=_opensim_texts,
             note=lambda job: job.fitted_expression.range_note,
+            beyond_range="the expression goes on beyond the range of the law, as a power of the indentation",
             without=_LINE_OF_CENTRES,
             central=True,
         ),
@@ -360,6 +391,7 @@ TARGETS: Mapping[str, Target] = {
             name="table",
             title="a table, and k and n for Adams, MotionSolve and Simpack",
             texts=_table_texts,
+            beyond_range="the table ends at the range of the law",
             note=_two_axes_note,
             without=tuple(FEATURES),
         ),

@@ -13,7 +13,7 @@ from ..core.checks import needs
 
 _MAX_SHEET_BYTES = 200_000_000  # largest size in bytes of the content of an Excel file
 
-_SEPARATORS = ";\t, "
+_SEPARATORS = ";\t|, "
 _MARKS = (".", ",")
 _BLANKS = " '\u2019\u00a0\u2009\u202f"  # blanks and apostrophes between thousands
 _WORDS = frozenset(("nan", "inf", "+inf", "-inf", "infinity"))  # words of numbers that are not finite, in small letters
@@ -71,7 +71,7 @@ def split_text(text: str) -> Iterator[tuple[str, list[NumberedRow]]]:
     """
     errors, n_tables = [], 0
     for separator in _SEPARATORS:
-        if separator in ";\t" and separator not in text:
+        if separator in ";\t|" and separator not in text:
             continue
         lines = text.split("\n")
         if separator == " ":

@@ -260,9 +260,9 @@ class CellTable:
 def read_columns(path: Path, names: Collection[str], choice: HeadChoice = ALL_COLUMNS) -> NumberTable:
     """Read the columns of numbers in a file.
 
-    Text is in UTF-8, UTF-16 or cp1252. Its cells are separated by semicolons, tabs, commas or blanks, and may have
-    quotes. All rows decide between decimal point and decimal comma. Lines above the heads, comments (#), blank lines
-    and lines without a number are left out, and counted. Units stand in the heads, or in the line below them.
+    Text is in UTF-8, UTF-16 or cp1252. Its cells are separated by semicolons, tabs, vertical bars, commas or blanks,
+    and may have quotes. All rows decide between decimal point and decimal comma. Lines above the heads, comments (#),
+    blank lines and lines without a number are left out, and counted. Units stand in the heads, or in the line below.
 
     Parameters
     ----------

@@ -25,8 +25,7 @@ from .variability import (
 )
 from .wear_law import COEFFICIENT, coefficient_field
 
-CONVERTED = ("volume", "depth", "penetration")
-"""Results that are converted to shared coefficients."""
+CONVERTED = ("volume", "depth", "penetration")  # results that are converted to shared coefficients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -220,10 +219,13 @@ class Bands:
         """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
 
+    def _mean_of_known(self, values: Numbers) -> float:
+        known = values[self.cohort.refused == ""]
+        return float(known.mean()) if len(known) else numpy.nan
+
     def valid_fraction(self, report: int) -> float:
         """Compute the fraction of patients whose contacts are valid from the first cycle to a report."""
-        valid = self.cohort.valid[self.cohort.refused == "", report]
-        return float(valid.mean()) if len(valid) else numpy.nan
+        return self._mean_of_known(self.cohort.valid[:, report])
 
     @property
     def valid(self) -> bool:
@@ -240,17 +242,14 @@ class Bands:
 
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
-        column = list(RESULT_UNITS).index("edge_distance")
-        distance = self.cohort.table[self.cohort.refused == "", report, column]
-        return float((distance <= 0).mean()) if len(distance) else numpy.nan
+        return self._mean_of_known(self.cohort.table[:, report, list(RESULT_UNITS).index("edge_distance")] <= 0)
 
     def edge_loaded_fraction(self, report: int) -> float:
         """Compute the fraction of patients with edge loading at a report; see `RimDistance.edge_loaded`.
 
         A bore that is worn to the rim is not edge loading: `edge_loading` counts it, this method does not.
         """
-        edge_loaded = self.cohort.edge_loaded[self.cohort.refused == "", report]
-        return float(edge_loaded.mean()) if len(edge_loaded) else numpy.nan
+        return self._mean_of_known(self.cohort.edge_loaded[:, report])
 
     def table(self) -> list[dict[str, float]]:
         """Return the bands at each report, as dictionaries of numbers by column name with unit: "volume_low_mm3"."""

@@ -31,8 +31,7 @@ from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
 from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, CohortResult
 
-N_HELD_OUT = 64
-"""Number of patients that are simulated to estimate the error of a series: the first of the cohort."""
+N_HELD_OUT = 64  # number of patients that are simulated to estimate the error of a series: the first of the cohort
 
 _REFERENCE_COUNT = 65_536  # number of samples that set the ranges of a series, for a cohort of any size
 _FIRST_DEGREES = (0, 12, 10, 7, 6)  # degree of the first series by the number of its variables besides the clearance
@@ -50,8 +49,7 @@ _LEAST_WIDTH = 1e-9  # relative width below which a range is one number
 _MAX_CUT = 1e-3  # largest fraction of patients outside the covered orientations for which Sobol indices are computed
 _SOBOL_COUNT = 4096  # samples in each set of the Sobol indices
 
-METHODS = ("series", "runs")
-"""Methods of a cohort: a series of polynomials, or a simulation of each patient."""
+METHODS = ("series", "runs")  # methods of a cohort: a series of polynomials, or a simulation of each patient
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,7 +123,6 @@ class CohortSeries:
 
     @property
     def first_degree(self) -> int:
-        """Degree of the first series."""
         return _FIRST_DEGREES[len(set(self.family.box.axes) - {CLEARANCE})]
 
     @property
@@ -166,27 +163,18 @@ class CohortSeries:
         best: tuple[PatientSeries, SeriesAccuracy] | None = None
         while True:
             series = fit_series(self.family, self._simulate_members(degree, pieces, progress), degree)
-            accuracy = self._estimate_accuracy(series, held_out, expected)
+            result, inside = series.results(held_out.values, held_out.counts)
+            compared = inside & (expected.refused == "")
+            if not compared.any():
+                raise NoSeriesError("no simulated patient is within the ranges of the series")
+            names, n_members = self.family.similarity.results, series.n_members
+            accuracy = estimate_accuracy(result.select(compared), expected.select(compared), names, n_members, degree)
             improved = best is None or accuracy.tolerance_ratio < _LEAST_IMPROVEMENT * best[1].tolerance_ratio
             if best is None or accuracy.tolerance_ratio < best[1].tolerance_ratio:
                 best = series, accuracy
             degree += _DEGREE_STEP
             if accuracy.within_tolerance or not improved or members_of(self.family.box, degree) > max_members:
                 return best
-
-    def _estimate_accuracy(self, series: PatientSeries, held_out: CohortRun, expected: CohortResult) -> SeriesAccuracy:
-        """Compare a series with simulated patients that it was not fitted to."""
-        result, inside = series.results(held_out.values, held_out.counts)
-        compared = inside & (expected.refused == "")
-        if not compared.any():
-            raise NoSeriesError("no simulated patient is within the ranges of the series")
-        return estimate_accuracy(
-            result.select(compared),
-            expected.select(compared),
-            self.family.similarity.results,
-            series.n_members,
-            series.degree,
-        )
 
     def _simulate_members(
         self, degree: int, pieces: dict[int, Mapping[str, Numbers]], progress: ProgressCallback
@@ -240,12 +228,8 @@ def cover_orientations(
         for name, (low, high) in ranges.items()
     }
 
-    covered = {name: (centre[name], centre[name]) for name in limited}
-    steps = [
-        [(name, end) for name in limited for end in (0, 1)],
-        *([(name, end)] for name in limited for end in (0, 1)),
-    ]
-    for moved_ends in steps:  # all ends together, then each alone
+    covered, ends = {name: (centre[name], centre[name]) for name in limited}, list(product(limited, (0, 1)))
+    for moved_ends in (ends, *([end] for end in ends)):  # all ends together, then each alone
         covered = _extend(similarity, covered, limited, moved_ends)
     return covered
 

@@ -23,7 +23,6 @@ from ..files.units import convert, parse, parse_units, split_quantity
 from ..lubrication import Lubricant, Stribeck
 from ..model_catalogue import catalogue
 from ..models.foundation import RadialFoundation
-from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
 from ..studies.expressions import Read, distribution_of
 from .creep_law import CreepLaw
@@ -265,10 +264,7 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 
 
 def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
-    """Return the foundation of the socket by its name in files, with the model of its springs.
-
-    Raises ValueError: a model without springs, or next to another foundation.
-    """
+    """Return the foundation of the socket by its name in files, with the model of its springs."""
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
         if model is not None:
@@ -284,43 +280,36 @@ def socket_surface(contact: str = "springs", model: str | None = None) -> Spring
 
 
 def _length(tables: HipTable, per_year: float | None) -> tuple[float, tuple[float, ...]]:
-    """Return the number of cycles of a run and of its reports, which a file may state in years."""
+    """Return the number of cycles of a run and of its reports, ten by default; a file may state them in years."""
     if per_year is None or tables.years is None:
         for name in ("years", "report_years"):
             if getattr(tables, name) is not None:
                 raise ValueError(f"{name} needs activities with counts a year, and years: [[activity]]")
-        cycles = float(_DEFAULT_CYCLES if tables.cycles is None else tables.cycles)
-        return cycles, _report_points(tables.report_at, cycles)
-    for name in ("cycles", "report_at"):
-        if getattr(tables, name) is not None:
-            raise ValueError(f"{name} and years exclude each other: both set the length of the run; remove one")
-    years = float(tables.years)
-    return years * per_year, tuple(year * per_year for year in _report_points(tables.report_years, years))
-
-
-def _report_points(points: list[float] | None, end: float) -> tuple[float, ...]:
-    """Return the points of the reports; ten equal steps by default."""
+        unit, end, points = 1.0, float(_DEFAULT_CYCLES if tables.cycles is None else tables.cycles), tables.report_at
+    else:
+        for name in ("cycles", "report_at"):
+            if getattr(tables, name) is not None:
+                raise ValueError(f"{name} and years exclude each other: both set the length of the run; remove one")
+        unit, end, points = per_year, float(tables.years), tables.report_years
     steps = range(1, _DEFAULT_N_REPORTS + 1)
-    return tuple(map(float, points if points is not None else (step * end / _DEFAULT_N_REPORTS for step in steps)))
+    listed = [step * end / _DEFAULT_N_REPORTS for step in steps] if points is None else map(float, points)
+    return end * unit, tuple(point * unit for point in listed)
 
 
 def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
     """Create joint and cup of a hip file; the cup may have a tilt in place of angles, also with a named joint."""
-    cup = tables.cup or HipCupTable()
+    table = tables.cup or HipCupTable()
     file = joint_in(msgspec.structs.replace(tables, cup=None), folder)
-    if any(getattr(cup, key) is not None for key in CupTable.__struct_fields__):
-        file = replace(file, cup=cup_of(cup))
-    return file if cup.tilt is None else replace(file, cup=_tilt_cup(file.cup, cup))
-
-
-def _tilt_cup(cup: Cup, table: HipCupTable) -> Cup:
+    if any(getattr(table, key) is not None for key in CupTable.__struct_fields__):
+        file = replace(file, cup=cup_of(table))
+    if table.tilt is None:
+        return file
     for name in ("inclination", "anteversion"):
         if getattr(table, name) is not None:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")
-    assert table.tilt is not None
     angle = float(table.tilt)
     require("tilt", degrees(angle), 0 <= angle <= pi / 2, "a cup's tilt from the load is 0 to 90 degrees")
-    return cup.tilted(angle)
+    return replace(file, cup=file.cup.tilted(angle))
 
 
 _SAMPLED_KINDS: Mapping[str, Kind] = MappingProxyType(
@@ -355,7 +344,15 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
     }
     count = int(table.count)
     require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
-    weight = _body_weight(tables) if "body_weight" in distributions else None
+    weight = None
+    if "body_weight" in distributions:  # the one that the forces refer to
+        cycles = [tables.cycle] if tables.cycle is not None else tables.activity or []
+        weights = {one.body_weight for one in (tables, *cycles) if one.body_weight is not None}
+        if len(weights) > 1:
+            raise ValueError(
+                "body_weight has several values, but patients need one: give it once, at the top of the file"
+            )
+        weight = float(weights.pop()) if weights else None
     variability = PatientVariability(
         use=use, distributions=distributions, body_weight=weight, surface=_ELASTIC_SURFACES[table.contact]
     )
@@ -363,12 +360,3 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
         if name in distributions:
             check_nominal(name, float(value), distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
     return UncertaintySettings(variability=variability, count=count, seed=int(table.seed))
-
-
-def _body_weight(tables: HipTable) -> float | None:
-    """Return the body weight in N that the forces refer to; None if the file states no body weight."""
-    cycles = [tables.cycle] if tables.cycle is not None else tables.activity or []
-    stated = {table.body_weight for table in (tables, *cycles) if table.body_weight is not None}
-    if len(stated) > 1:
-        raise ValueError("body_weight has several values, but patients need one: give it once, at the top of the file")
-    return float(stated.pop()) if stated else None

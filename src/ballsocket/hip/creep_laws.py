@@ -87,12 +87,7 @@ class LogarithmicCreep(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        return self.compliances, self.times
-
-    @property
-    def compliances(self) -> tuple[float, ...]:
-        """Compliance of each Kelvin-Voigt element in 1/MPa."""
-        return (_STRAIN_PER_DECADE,) * _N_DECADES
+        return (_STRAIN_PER_DECADE,) * _N_DECADES, self.times
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -126,11 +121,7 @@ CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 
 
 def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
-    """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio.
-
-    Raises ValueError: an unknown law or confinement, a missing key, a key of another law, or a value that is not
-    allowed.
-    """
+    """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio."""
     name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
     law = select_law_class(table, CREEP_LAWS, "creep law")
     return read_law(table, CREEP_LAWS, law, confinement=CONFINEMENTS[name](poisson))

@@ -35,7 +35,7 @@ from .cycle_tables import (
 from .in_vivo_cycles import check_body_weight
 from .kinematics import rotation_matrices
 from .mix import Activity, Mix
-from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
+from .schema import CycleKeys, CycleTables, FrameName, LoadedPart
 
 _FRAMES, _BODIES = FrameName.choices, LoadedPart.choices
 _MAX_FORCE = 1e9  # largest allowed force in N, beyond any hip and any test machine
@@ -148,9 +148,14 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
     frame = known_name("frame", options.frame or table.frame or _FRAMES[0], _FRAMES)
     loaded_body = known_name("force_on", options.force_on or table.force_on or _BODIES[0], _BODIES)
     force = monotone_periodic(phase, _socket_force(columns, options.side, loaded_body))
+
+    def force_of_femur(phases: Numbers) -> Numbers:
+        """Convert the force in the femur's frame, which rotates with the ball, to the body's frame."""
+        return numpy.einsum("nij,jn->in", rotation_matrices(angles(phases).T, order), force(phases))
+
     return Cycle(
         name="",
-        force=_force_in_body_frame(force, angles, order) if frame == "femur" and "force" not in columns else force,
+        force=force_of_femur if frame == "femur" and "force" not in columns else force,
         angles=angles,
         order=order,
         duration=duration,
@@ -216,11 +221,6 @@ def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> 
     return force if loaded_body == "socket" else -force
 
 
-def _force_in_body_frame(force: PhaseFunction, angles: PhaseFunction, order: str) -> PhaseFunction:
-    """Convert a force in the femur's frame, which rotates with the ball, to the body's frame."""
-    return lambda phases: numpy.einsum("nij,jn->in", rotation_matrices(angles(phases).T, order), force(phases))
-
-
 _COMMON_KEYS = ("instants", "rotation_order", "times_body_weight")
 _TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion", "columns", "skip")
 
@@ -231,45 +231,62 @@ def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
 
 
 def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:
-    """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
-
-    Raises ValueError: a key, name or value is not allowed; the message suggests the closest one.
-    Raises OSError: a table cannot be read.
-    """
-    weight = _check_weight(tables.body_weight)
+    """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables."""
+    weight = None if tables.body_weight is None else check_body_weight(float(tables.body_weight))
     if tables.activity is None:
         return _create_cycle(tables.cycle or CycleKeys(), folder, weight, "[cycle]")
     if tables.cycle is not None:
         raise ValueError("the file has both [cycle] and [[activity]]: remove one of them")
-    return Mix(
-        activities=tuple(_create_activity(table, folder, weight, tables.cycles_per_year) for table in tables.activity)
-    )
-
-
-def _create_activity(
-    table: ActivityTable, folder: Path, weight: float | None, cycles_per_year: float | None
-) -> Activity:
-    if (table.per_year is None) == (table.share is None):
-        raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
-    cycle = _create_cycle(table, folder, weight, "[[activity]]")
-    if table.per_year is not None:
-        return Activity(cycle=cycle, per_year=float(table.per_year))
-    if cycles_per_year is None or table.share is None:
-        raise ValueError("share needs cycles_per_year at the top of the file")
-    return Activity(cycle=cycle, per_year=float(cycles_per_year) * float(table.share))
-
-
-def _check_weight(body_weight: float | None) -> float | None:
-    return None if body_weight is None else check_body_weight(float(body_weight))
+    activities = []
+    for table in tables.activity:
+        if (table.per_year is None) == (table.share is None):
+            raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
+        cycle = _create_cycle(table, folder, weight, "[[activity]]")
+        if table.per_year is not None:
+            per_year = float(table.per_year)
+        elif tables.cycles_per_year is None or table.share is None:
+            raise ValueError("share needs cycles_per_year at the top of the file")
+        else:
+            per_year = float(tables.cycles_per_year) * float(table.share)
+        activities.append(Activity(cycle=cycle, per_year=per_year))
+    return Mix(activities=tuple(activities))
 
 
 def _create_cycle(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
     """Create the cycle of one table, by name or from a file, scaled to a multiple of body weight if stated."""
     if (table.name is None) == (table.file is None):
         raise ValueError(f"{where} needs either a name or a file; names: {', '.join(CYCLES)}")
-    weight = _check_weight(table.body_weight) or weight
-    create = _cycle_from_file if table.name is None else _cycle_by_name
-    cycle = create(table, folder, weight, where)
+    weight = weight if table.body_weight is None else check_body_weight(float(table.body_weight))
+    order = "xyz" if table.rotation_order is None else str(table.rotation_order.value)
+    keys = [key for key in table.stated() if key not in ("per_year", "share")]
+    if table.name is not None:
+        definition = CYCLES[table.name]
+        weight_key = ("body_weight",) if definition.per_body_weight or table.times_body_weight is not None else ()
+        allowed = ("name", *_COMMON_KEYS, *weight_key, *(parameter.key for parameter in definition.parameters))
+        check_names(keys, allowed, f"with the name {definition.name!r} in {where}")
+        values = {parameter.argument: table.parameter(parameter.key) for parameter in definition.parameters}
+        stated = {argument: value for argument, value in values.items() if value is not None}
+        body_weight = weight if definition.per_body_weight else None
+        cycle = named_cycle(definition.name, int(table.instants), order, body_weight, **stated)
+    else:
+        check_names(keys, ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS), f"with a file in {where}")
+        if not table.file or not all(table.file):
+            raise ValueError(f"file = {shown(list(table.file or ()))} names no table")
+        motion = None
+        if table.motion is not None:
+            body_weight = (weight or 1.0) if CYCLES[table.motion].per_body_weight else None
+            motion = named_cycle(table.motion, DEFAULT_STEPS, order, body_weight)
+        options = TableOptions(
+            side=Side.RIGHT if table.side is None else Side(table.side),
+            frame=table.frame,
+            force_on=table.force_on,
+            begin=table.begin,
+            end=table.end,
+            closing=DEFAULT_CLOSURE if table.closing is None else table.closing,
+            motion=motion,
+            heads=table.choice(),
+        )
+        cycle = read_cycle([folder / name for name in table.file], int(table.instants), order, weight, options)
     if table.times_body_weight is None:
         return cycle
     if weight is None:
@@ -277,49 +294,3 @@ def _create_cycle(table: CycleKeys, folder: Path, weight: float | None, where: s
     times = float(table.times_body_weight)
     require("times_body_weight", times, 0 < times <= 100, "a load is above 0 and at most 100 times the body weight")
     return cycle.scaled(times * weight / cycle.largest_force)
-
-
-def _cycle_keys(table: CycleKeys) -> list[str]:
-    """Return the keys of a table that describe its cycle, as the file states them."""
-    return [key for key in table.stated() if key not in ("per_year", "share")]
-
-
-def _order(table: CycleKeys) -> str:
-    return "xyz" if table.rotation_order is None else str(table.rotation_order.value)
-
-
-def _cycle_by_name(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
-    definition = CYCLES[table.name or ""]
-    weight_key = ("body_weight",) if definition.per_body_weight or table.times_body_weight is not None else ()
-    allowed = ("name", *_COMMON_KEYS, *weight_key, *(parameter.key for parameter in definition.parameters))
-    check_names(_cycle_keys(table), allowed, f"with the name {definition.name!r} in {where}")
-    values = {parameter.argument: table.parameter(parameter.key) for parameter in definition.parameters}
-    stated = {argument: value for argument, value in values.items() if value is not None}
-    body_weight = weight if definition.per_body_weight else None
-    return named_cycle(definition.name, int(table.instants), _order(table), body_weight, **stated)
-
-
-def _cycle_from_file(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
-    allowed = ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS)
-    check_names(_cycle_keys(table), allowed, f"with a file in {where}")
-    if not table.file or not all(table.file):
-        raise ValueError(f"file = {shown(list(table.file or ()))} names no table")
-    paths = [folder / name for name in table.file]
-    return read_cycle(paths, int(table.instants), _order(table), weight, _table_options(table, weight))
-
-
-def _table_options(table: CycleKeys, weight: float | None) -> TableOptions:
-    motion = None
-    if table.motion is not None:
-        body_weight = (weight or 1.0) if CYCLES[table.motion].per_body_weight else None
-        motion = named_cycle(table.motion, DEFAULT_STEPS, _order(table), body_weight)
-    return TableOptions(
-        side=Side.RIGHT if table.side is None else Side(table.side),
-        frame=table.frame,
-        force_on=table.force_on,
-        begin=table.begin,
-        end=table.end,
-        closing=DEFAULT_CLOSURE if table.closing is None else table.closing,
-        motion=motion,
-        heads=table.choice(),
-    )

@@ -39,32 +39,25 @@ class LoadInterpolation:
     weights: Numbers
 
 
-def levels_at_all_loads(loads: Numbers) -> LoadInterpolation:
-    """Create an interpolation for which every load (loads, 3) is solved."""
-    return LoadInterpolation(loads=loads, weights=numpy.eye(len(loads)))
-
-
 def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInterpolation:
     """Choose the loads (levels) to solve for, and the interpolation from them to all loads (loads, 3) in N.
 
-    The levels are closer to each other at small loads, where the contacts change most.
+    The levels are closer to each other at small loads, where the contacts change most. Few loads, and loads of several
+    directions, are all solved.
     """
-    magnitudes = numpy.linalg.norm(loads, axis=1)
-    if (
-        len(loads) <= max_levels
-        or abs(numpy.cross(loads, loads[0])).max() > _PARALLEL_TOLERANCE * magnitudes.max() ** 2
-    ):
-        return levels_at_all_loads(loads)
+    magnitudes, count = numpy.linalg.norm(loads, axis=1), len(loads)
+    lateral = abs(numpy.cross(loads, loads[0])).max() if count > max_levels else 0.0
+    if count <= max_levels or lateral > _PARALLEL_TOLERANCE * magnitudes.max() ** 2:
+        return LoadInterpolation(loads=loads, weights=numpy.eye(count))
     levels = numpy.linspace(magnitudes.min() ** 0.5, magnitudes.max() ** 0.5, max_levels) ** 2
     levels[0], levels[-1] = magnitudes.min(), magnitudes.max()
     if levels[-1] - levels[0] <= _PARALLEL_TOLERANCE * levels[-1]:
-        levels = levels[-1:]
-        return LoadInterpolation(loads=levels[:, None] * loads[0] / magnitudes[0], weights=numpy.ones((len(loads), 1)))
-    lower_level = numpy.clip(numpy.searchsorted(levels, magnitudes, side="right") - 1, 0, max_levels - 2)
-    fraction = (magnitudes - levels[lower_level]) / (levels[lower_level + 1] - levels[lower_level])
-    weights = numpy.zeros((len(loads), max_levels))
-    load_indices = numpy.arange(len(loads))
-    weights[load_indices, lower_level], weights[load_indices, lower_level + 1] = 1 - fraction, fraction
+        levels, weights = levels[-1:], numpy.ones((count, 1))
+    else:
+        lower = numpy.clip(numpy.searchsorted(levels, magnitudes, side="right") - 1, 0, max_levels - 2)
+        fraction = (magnitudes - levels[lower]) / (levels[lower + 1] - levels[lower])
+        weights, indices = numpy.zeros((count, max_levels)), numpy.arange(count)
+        weights[indices, lower], weights[indices, lower + 1] = 1 - fraction, fraction
     return LoadInterpolation(loads=levels[:, None] * loads[0] / magnitudes[0], weights=weights)
 
 
@@ -108,7 +101,6 @@ class ElasticFoundation(SocketFoundation):
 
     @property
     def grid(self) -> Grid:
-        """Grid of the bore."""
         return self.compliance.grid
 
     @cached_property
@@ -120,10 +112,7 @@ class ElasticFoundation(SocketFoundation):
 
     @cached_property
     def max_stiffness(self) -> float:
-        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore.
-
-        It is computed by power iteration.
-        """
+        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore; by power iteration."""
         field = numpy.random.default_rng(_SEED).normal(size=(1, self.grid.rings, self.grid.meridians))
         stiffness = 0.0
         for _ in range(_POWER_ITERATIONS):
@@ -163,7 +152,7 @@ class ElasticFoundation(SocketFoundation):
         For a fixed load direction, a few load levels are solved, and linear interpolation gives the others. It
         balances every load exactly.
         """
-        levels = levels_at_all_loads(loads) if lateral_stiffness.any() else interpolate_loads(loads)
+        levels = interpolate_loads(loads, len(loads) if lateral_stiffness.any() else _MAX_LEVELS)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
         gap = GapField(
             grid=self.grid,
@@ -173,7 +162,7 @@ class ElasticFoundation(SocketFoundation):
             kind=LinearGap,
         )
         bore_contact = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
-        solved = self._solve_load_levels(bore_contact, levels, depth, start)
+        solved = self._solve_load_levels(bore_contact, levels.loads, depth, start)
         return CycleEquilibrium(
             displacement=levels.weights @ solved.displacement,
             pressure=levels.weights @ solved.pressure.reshape(shape[0], -1),
@@ -182,25 +171,19 @@ class ElasticFoundation(SocketFoundation):
         )
 
     def _solve_load_levels(
-        self, bore_contact: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
+        self, bore_contact: BoreContact, loads: Numbers, depth: Numbers, start: CycleEquilibrium | None
     ) -> EquilibriumBatch:
-        """Solve the contacts under all load levels; repeat unconverged ones from a deeper start."""
-        level_count, magnitudes_and_unit_vectors = len(levels.loads), magnitudes_and_directions(levels.loads)
-        initial_guess = initial_displacement(
-            self, self.compliance.uniform_stiffness, depth, *magnitudes_and_unit_vectors
-        )
-        previous = None if start is None else start.levels
-        start_displacement, pressure = (
-            previous if previous is not None and len(previous[0]) == level_count else (initial_guess, None)
-        )
-        solved = solve_force(
-            bore_contact, levels.loads, start_displacement, numpy.ones(level_count, dtype=bool), pressure
-        )
+        """Solve the contacts under the loads of all levels; repeat unconverged ones from a deeper start."""
+        guess = initial_displacement(self, self.compliance.uniform_stiffness, depth, *magnitudes_and_directions(loads))
+        displacement, pressure = guess, None
+        if start is not None and start.levels is not None and len(start.levels[0]) == len(loads):
+            displacement, pressure = start.levels
+        solved = solve_force(bore_contact, loads, displacement, numpy.ones(len(loads), dtype=bool), pressure)
         for factor in _DEEPER_STARTS:
-            if solved.converged.all():
-                break
-            retried = solve_force(bore_contact, levels.loads, factor * initial_guess, ~solved.converged)
             unsolved = ~solved.converged
+            if not unsolved.any():
+                break
+            retried = solve_force(bore_contact, loads, factor * guess, unsolved)
             for name in ("displacement", "pressure", "converged"):
                 getattr(solved, name)[unsolved] = getattr(retried, name)[unsolved]
         return solved

@@ -135,7 +135,7 @@ def _solve_load(contact: SpringContact, start: Array) -> tuple[Array, Array, Arr
         return _make_lane(contact, lane.iterations + 1, lane.displacement + step)
 
     lane = jax.lax.while_loop(is_unfinished, advance, _make_lane(contact, 0, start))
-    pressure = contact.modulus * xp.maximum(_overlap(contact, lane.displacement), 0.0)
+    pressure = contact.modulus * xp.maximum(lane.displacement @ contact.normals - contact.closing, 0.0)
     return lane.displacement, pressure, _length(lane.residual) <= FORCE_TOLERANCE * magnitude
 
 
@@ -143,7 +143,7 @@ def _make_lane(contact: SpringContact, iterations: Array | int, displacement: Ar
     """Compute unbalanced force and tangent stiffness of a displaced ball."""
     import jax.numpy as xp
 
-    overlap, normals = _overlap(contact, displacement), contact.normals
+    normals, overlap = contact.normals, displacement @ contact.normals - contact.closing
     stiffness = xp.where(overlap > 0, contact.modulus * contact.areas, 0.0)
     rows, columns = _TRIANGLE
     return _Lane(
@@ -152,10 +152,6 @@ def _make_lane(contact: SpringContact, iterations: Array | int, displacement: Ar
         residual=contact.loads - displacement @ contact.lateral_stiffness - normals @ (stiffness * overlap),
         tangent=(normals[rows] * normals[columns]) @ stiffness,
     )
-
-
-def _overlap(contact: SpringContact, displacement: Array) -> Array:
-    return displacement @ contact.normals - contact.closing
 
 
 def _length(vector: Array) -> Array:

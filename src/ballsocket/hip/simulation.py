@@ -25,13 +25,19 @@ from .rim import mask_edge_loading
 from .socket_foundation import CycleEquilibrium
 from .wear_integrator import WearIntegrator
 
-MAX_WORN_LINERS = 10.0
-"""Largest wear by the rate of the first cycle, in liner thicknesses."""
+MAX_WORN_LINERS = 10.0  # largest wear by the rate of the first cycle, in liner thicknesses
 
 _VERSION = 7  # version of the file's format
 _FILE_NAME = "hip_in_use.npz"
 _REPORT_FIELDS = fields(Report)
-_CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
+_CONVERTERS: Mapping[str, Any] = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
+
+_ERROR_RATIO = 1 / (1 - 2**-1.5)
+"""Ratio of the error to the difference from half the step: 1 / (1 - 2^-p) for errors of order p = 1.5.
+
+The order is 2 for a moving load. With wear by contact area and a stationary load it can be 1.6: halved rings divide
+the error by 3.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,14 +49,10 @@ class Checkpoint:
 
     @property
     def path(self) -> Path:
-        """Path of the checkpoint file."""
         return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
-        """Write the state of a simulation and its reports so far to the file.
-
-        Raises OSError: the folder is not writable or the disk is full.
-        """
+        """Write the state of a simulation and its reports so far to the file."""
         make_folder(self.folder)
         report_arrays = {
             f"report_{number}_{field.name}": getattr(report, field.name)
@@ -60,17 +62,24 @@ class Checkpoint:
         write_arrays(self.path, identity=self.identity, count=len(reports), **state, **report_arrays)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
-        """Read the stored state and reports; return None if the file does not exist.
-
-        Raises ValueError: the file belongs to another run, or is damaged.
-        """
+        """Read the stored state and reports; return None if the file does not exist."""
         if not self.path.exists():
             return None
         try:
             arrays = read_arrays(self.path)
             identity, n_reports = str(arrays.pop("identity")), int(arrays.pop("count"))
             if identity == self.identity:
-                reports = tuple(_read_report(arrays, f"report_{number}_") for number in range(n_reports))
+                reports = tuple(
+                    Report(
+                        **{
+                            field.name: _CONVERTERS.get(str(field.type), numpy.asarray)(
+                                arrays[f"report_{n}_{field.name}"]
+                            )
+                            for field in _REPORT_FIELDS
+                        }
+                    )
+                    for n in range(n_reports)
+                )
         except (OSError, ValueError, KeyError) as error:
             raise ValueError(f"{self.path} is not a checkpoint of a run; delete it to start again") from error
         if identity != self.identity:
@@ -81,19 +90,8 @@ class Checkpoint:
         return {name: array for name, array in arrays.items() if not name.startswith("report_")}, reports
 
 
-def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    values: dict[str, Any] = {}
-    for field in _REPORT_FIELDS:
-        convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
-        values[field.name] = convert_value(arrays[prefix + field.name])
-    return Report(**values)
-
-
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written.
-
-    Raises ValueError: a wear law by a function, which has no fingerprint.
-    """
+    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written."""
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
@@ -159,8 +157,11 @@ def make_report(integrator: WearIntegrator) -> Report:
         counterface = map_counterface(setup, numpy.arange(len(depth)))
         depth = depth + counterface.on_socket.interpolate(integrator.ball[None])
     contacts = setup.solve_equilibrium(depth, integrator.equilibrium)
-    contacts_by_wear = contacts if setup.creep is None else _solve_contacts(setup, integrator.depth)
-    equilibria = (contacts, contacts_by_wear, _solve_contacts(setup, creep_depth))
+
+    def solve(part: Numbers) -> CycleEquilibrium:
+        return setup.solve_equilibrium(part) if part.any() else setup.unworn
+
+    equilibria = contacts, contacts if setup.creep is None else solve(integrator.depth), solve(creep_depth)
     largest_load, unworn_displacement = setup.frame.largest_load_index, setup.unworn.displacement
     displacements = [(state.displacement - unworn_displacement)[largest_load].sum(axis=0) for state in equilibria]
     edge, unworn_edge = setup.edge(contacts, depth), setup.edge(setup.unworn)
@@ -186,11 +187,6 @@ def make_report(integrator: WearIntegrator) -> Report:
         worst_contacts=setup.worst_contacts(contacts, depth),
         converged=integrator.converged and all(state.converged for state in equilibria),
     )
-
-
-def _solve_contacts(setup: HipSetup, depth: Numbers) -> CycleEquilibrium:
-    """Solve the contacts on a worn bore; for zero depth, return those of the unworn bore."""
-    return setup.solve_equilibrium(depth) if depth.any() else setup.unworn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -283,33 +279,17 @@ class HipSimulation(HipSetup):
         """
         finer_steps = replace(self, cycle=self.cycle.finer())
         finer_rings = replace(finer_steps, ring_width=max(self.ring_width / 2, MIN_RING_WIDTH))
-        first_cycles = (self.first, finer_steps.first, finer_rings.first)
-        return _relative_discretization_error(
-            [first_cycle.volume for first_cycle in first_cycles]
-        ), _relative_discretization_error([first_cycle.depth for first_cycle in first_cycles])
 
+        def relative_error(name: str) -> float:
+            """Estimate the relative error of a result from halved steps and rings."""
+            coarse, fine, finest = (getattr(use.first, name) for use in (self, finer_steps, finer_rings))
+            return _ERROR_RATIO * (abs(coarse - fine) + abs(fine - finest)) / abs(finest) if finest else 0.0
 
-_ERROR_RATIO = 1 / (1 - 2**-1.5)
-"""Ratio of the error to the difference from half the step: 1 / (1 - 2^-p) for errors of order p = 1.5.
-
-The order is 2 for a moving load. With wear by contact area and a stationary load it can be 1.6: halved rings divide
-the error by 3.
-"""
-
-
-def _relative_discretization_error(values: list[float]) -> float:
-    """Estimate the relative discretization error from results with coarse and halved steps and rings."""
-    coarse, finer_steps, finer_rings = values
-    if not finer_rings:
-        return 0.0
-    return _ERROR_RATIO * (abs(coarse - finer_steps) + abs(finer_steps - finer_rings)) / abs(finer_rings)
+        return relative_error("volume"), relative_error("depth")
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end.
-
-    Raises ValueError: a total count that is not positive and finite, or a report beyond it.
-    """
+    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end."""
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
     rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
     for count in report_at:

@@ -22,7 +22,6 @@ _ISO_ANGLES = (
 )
 _ISO_PEAK = 3000.0
 _ISO_FLEXION_MIDDLE, _ISO_FLEXION_AMPLITUDE = 3.5, 21.5  # in degrees
-_TWO_AXIS_AMPLITUDES = radians(23.0), radians(6.0)
 _MISMATCH_NOTE = (
     "mismatch, spring and swing load are taken from published tests after ISO 14242-4, not from the standard itself"
 )
@@ -38,7 +37,6 @@ def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
 
 
 def _iso_14242_1_force(phases: Numbers) -> Numbers:
-    """Compute the force of ISO 14242-1 in N."""
     return half_cosines(phases, *_ISO_FORCE)
 
 
@@ -58,10 +56,8 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations, which the standard does not state; see `Cycle`.
+    n_steps, order
+        As in `Cycle`; the standard does not state the order.
     angles : function, optional
         Rotations that replace the cosines; see `Cycle`.
     """
@@ -96,10 +92,8 @@ def flexion(
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations; see `Cycle`.
+    n_steps, order
+        As in `Cycle`.
     peak : float
         Largest force in N. The other forces of ISO 14242-1 change in proportion.
     amplitude : float
@@ -137,10 +131,8 @@ def iso_14242_4(
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations; see `Cycle`.
+    n_steps, order
+        As in `Cycle`.
     mismatch : float
         Offset of the centres in mm.
     stiffness : float
@@ -164,16 +156,14 @@ def two_axis(
     order: str = "xyz",
     *,
     peak: float = 2000.0,
-    amplitude: float = _TWO_AXIS_AMPLITUDES[0],
+    amplitude: float = radians(23.0),
 ) -> Cycle:
     """Create the cycle of a two-axis simulator: flexion over 46° and adduction over 12°, a quarter of a cycle apart.
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations; see `Cycle`.
+    n_steps, order
+        As in `Cycle`.
     peak : float
         Largest force in N. The force has the waveform of ISO 14242-1, between a fifth of the peak and the peak.
     amplitude : float
@@ -183,11 +173,7 @@ def two_axis(
         name="two-axis",
         force=lambda phases: peak * (0.2 + 0.8 * (_iso_14242_1_force(phases) - 300.0) / 2700.0),
         angles=lambda phases: numpy.stack(
-            [
-                amplitude * numpy.cos(2 * pi * phases),
-                _TWO_AXIS_AMPLITUDES[1] * numpy.sin(2 * pi * phases),
-                0 * phases,
-            ]
+            [amplitude * numpy.cos(2 * pi * phases), radians(6.0) * numpy.sin(2 * pi * phases), 0 * phases]
         ),
         n_steps=n_steps,
         order=order,
@@ -202,10 +188,8 @@ def rocking(
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations. It has no effect on this motion.
+    n_steps, order
+        As in `Cycle`; the order has no effect on this motion.
     amplitude : float
         Half angle of the cone in rad.
     peak : float
@@ -238,10 +222,8 @@ def constant_load(
 
     Parameters
     ----------
-    n_steps : int
-        Number of time steps.
-    order : str
-        Order of the rotations; see `Cycle`.
+    n_steps, order
+        As in `Cycle`.
     force : float
         Load in N.
     amplitude : float

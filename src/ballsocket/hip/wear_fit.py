@@ -14,7 +14,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, shown
 from ..core.display import finite_or_none, plain_number
-from .history import History, NumericalError, Report
+from .history import History, NumericalError
 from .law_fields import law_summary
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
 from .specimens import mean_of_specimens
@@ -37,6 +37,7 @@ _MAX_CENTRES = 6
 _MAX_STEPS, _STEP_TOLERANCE = 100, 1e-12
 _MAX_LOG_RANGE = 20.0  # range of ln(coefficient) to both sides in which other readings of a rate are searched
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
+_FEW_CYCLES = 1e4  # number of cycles below which no wear is measured
 _MIN_NOTED_WIDENING = 1.05
 _ROUNDING = 1e-9  # width of a band, relative to the coefficient, that is rounding alone
 _PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
@@ -134,20 +135,20 @@ class MeasuredWear:
         object.__setattr__(self, "cycles", cycles)
 
     def _check_rate(self, rate: str) -> None:
+        quantity, begin = self.quantity, self.begin or 0.0
         if self.cycles is not None:
-            raise ValueError(f"a rate of {self.quantity} takes from and to, not cycles")
+            raise ValueError(f"a rate of {quantity} takes from and to, not cycles")
         if rate == "initial":
-            if self.quantity not in ("volume", "depth"):
-                raise ValueError(f"an initial rate of {self.quantity} is not defined: use volume, or a steady rate")
+            if quantity not in ("volume", "depth"):
+                raise ValueError(f"an initial rate of {quantity} is not defined: use volume, or a steady rate")
             if self.begin is not None or self.end is not None:
                 raise ValueError("an initial rate is that of the new bore: remove from and to")
             return
         if self.end is None or (rate == "steady" and self.begin is None):
             needed = "from and to" if rate == "steady" else "to"
-            raise ValueError(f"a {rate} rate of {self.quantity} needs {needed}: numbers of cycles, such as to = 5e6")
+            raise ValueError(f"a {rate} rate of {quantity} needs {needed}: numbers of cycles, such as to = 5e6")
         if rate == "mean" and self.begin:
             raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
-        begin = self.begin or 0.0
         rule = f"it is above the {plain_number(begin)} cycles of from, and finite"
         require("to", self.end, 0 <= begin < self.end < inf, rule)
 
@@ -157,12 +158,11 @@ class MeasuredWear:
     @property
     def specimen_numbers(self) -> list[int]:
         """Number of the specimen of each value in a data set without stations, from 0: its repetition of a count."""
-        counts = [nan] * len(self) if self.rate is not None else self.cycles.tolist()
-        keys = [str(count) for count in counts]
-        return [keys[:index].count(key) for index, key in enumerate(keys)]
+        counts = [0.0] * len(self) if self.rate is not None else self.cycles.tolist()
+        return [counts[:index].count(count) for index, count in enumerate(counts)]
 
     def standard_uncertainty(self, fitted: Numbers) -> Numbers:
-        """Compute the standard uncertainty of each value from its fitted value; the fitted value itself if unknown."""
+        """Compute the standard uncertainty of each value from its fitted value, which it is itself if unknown."""
         if self.uncertainty is not None:
             return numpy.asarray(self.uncertainty)
         return fitted if self.relative_uncertainty is None else self.relative_uncertainty * fitted
@@ -266,11 +266,6 @@ class WearFit:
     specimens: Mapping[str, Numbers]
 
     @property
-    def law_name(self) -> str:
-        """Name of the wear law, such as "archard"."""
-        return str(getattr(self.simulation.wear, "name", type(self.simulation.wear).__name__))
-
-    @property
     def unit(self) -> str:
         """Unit of the coefficient, such as mm³/(N m)."""
         field = coefficient_field(self.simulation.wear)
@@ -309,6 +304,9 @@ class WearFit:
             yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
         for density in dict.fromkeys(measured.density for measured in self.data if measured.density is not None):
             yield f"the measured mass is a volume by the density {density:g} mg/mm³"
+        last = max((measured.cycles.max() for measured in self.data if measured.cycles is not None), default=inf)
+        if last < _FEW_CYCLES:
+            yield f"the last reading is after {last:g} cycles: if these are millions, write 'cycles [Mc]' or {last:g}e6"
         yield from self._specimen_notes()
         if not isfinite(self.high):
             yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"
@@ -499,24 +497,16 @@ class _WearModel:
         reports = {report.cycles: report for report in history.reports}
         row: list[float] = []
         for measured in (*self.data, *self.readings):
-            totals = _totals_of(history, reports, measured.quantity, exposure_ratio)
+
+            def total(count: float, quantity: str = measured.quantity) -> float:
+                report = reports[float(count * exposure_ratio)]
+                if quantity == "radiographic_penetration":
+                    return history.radiographic_penetration(report)
+                return float(getattr(report, quantity))
+
             initial = getattr(history.use.first, measured.quantity, nan) * initial_ratio
-            row += measured.predict(totals, initial).tolist()
+            row += measured.predict(total, initial).tolist()
         return row
-
-
-def _totals_of(
-    history: History, reports: Mapping[float, Report], quantity: str, ratio: float
-) -> Callable[[float], float]:
-    """Make the function from a cycle count to the total of a quantity, in a run with scaled exposures."""
-
-    def total(count: float) -> float:
-        report = reports[float(count * ratio)]
-        if quantity == "radiographic_penetration":
-            return history.radiographic_penetration(report)
-        return float(getattr(report, quantity))
-
-    return total
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -565,9 +555,8 @@ def _find_nodes(model: _WearModel) -> _Nodes:
     first = model.log_results(numpy.array([model.start]))[0, : len(values)]
     centre = log(model.start) + float(numpy.mean(numpy.log(values) - first))
     for _ in range(_MAX_CENTRES):
-        polynomials = numpy.polynomial.polynomial.polyfit(
-            _NODES, model.log_results(numpy.exp(centre + _NODES)), _DEGREE
-        )
+        log_results = model.log_results(numpy.exp(centre + _NODES))
+        polynomials = numpy.polynomial.polynomial.polyfit(_NODES, log_results, _DEGREE)
         nodes = _Nodes(centre=centre, polynomials=polynomials, n_data=len(values))
         best = nodes.fit(model.data, numpy.arange(len(values)))
         if abs(best - centre) < _MAX_SHIFT:

@@ -36,21 +36,8 @@ def balance_cells(
 
     Through a face of width b, between films h of the filled fraction 1 - θ, flows Q = b (v h (1 - θ)/2 - h³ p'/(12 η)).
     Between two cells the film is taken as constant on each side and the pressure as continuous at the face, so that
-    a step of the film is exact and a smooth film is of second order.
-
-    Parameters
-    ----------
-    mesh : FilmMesh
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    viscosity : float
-        Viscosity in MPa s.
-    thickness, pressure, void : array (cells,)
-        Film thickness in mm, pressure in MPa, and the fraction of the film that is vapour.
-    rim_pressure : array (rim faces,)
-        Pressure of the lubricant at the rim in MPa.
-    central : array (faces,) or float
-        Share of central differences in the carried film, 1 by default; the rest is the film upstream.
+    a step of the film is exact and a smooth film is of second order. `central` is the share of central differences in
+    the carried film at each face; the rest is the film upstream. Units are rad/s, MPa s, mm and MPa.
     """
     velocity, rim_velocity = mesh.face_velocity(spin)
     first, second = mesh.first, mesh.second

@@ -28,17 +28,8 @@ def film_errors(
 ) -> Numbers:
     """Estimate the relative error (instants,) of central and smallest film.
 
-    Parameters
-    ----------
-    waves : sequence of FilmWave
-        Wave of each instant.
-    thickness : array (instants, cells)
-        Film in mm; NaN outside the contacts.
-    core : array (instants, cells)
-        Mask of the film that fresh lubricant does not reach within a cycle.
-    central : array (instants,)
-        Film at the load in mm.
-    motion : FilmMotion
+    `thickness` (instants, cells) in mm is NaN outside the contacts; `core` masks the film that fresh lubricant does not
+    reach within a cycle, and `central` (instants,) is the film at the load in mm.
     """
     inside = numpy.isfinite(thickness)
     has_core = (core & inside) @ motion.mesh.area > _SMALL_CORE * (inside @ motion.mesh.area)

@@ -20,11 +20,8 @@ from .film_core import CycleInstant, FilmMotion
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-REPEAT_TOLERANCE = 0.01
-"""Largest mean change of the film from one cycle to the next, relative to the mean film."""
-
-SETTLED_CHANGE = 0.1
-"""Largest relative change of a settled film of the core while the number of cycles doubles."""
+REPEAT_TOLERANCE = 0.01  # largest mean change of the film from one cycle to the next, relative to the mean film
+SETTLED_CHANGE = 0.1  # largest relative change of a settled film of the core while the number of cycles doubles
 
 _MARCHED, _MOST_MARCHED = 3, 10
 """Least and largest number of cycles that are followed instant by instant: one before the core's drift."""
@@ -89,22 +86,11 @@ class CycleFilm:
 
 
 def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant], cycles: int) -> CycleFilm:
-    """Carry the film over cycles from a flooded bore.
+    """Carry the film over a number of uninterrupted cycles from a flooded bore; the viscosity is in MPa s.
 
     The first cycle is followed instant by instant. The film of the core then drifts over the others, averaged over a
     cycle. Beside the core of the last cycles, the refreshed part is followed instant by instant until it repeats to
-    1 %.
-
-    Parameters
-    ----------
-    mesh : FilmMesh
-        Cells of the bore.
-    viscosity : float
-        Viscosity in MPa s.
-    instants : sequence of CycleInstant
-        Loaded instants in their order; the first follows the last.
-    cycles : int
-        Number of uninterrupted cycles.
+    1 %. The first of the loaded instants follows the last.
     """
     waves = _waves(mesh, viscosity, instants)
     motion = FilmMotion(mesh=mesh, instants=instants)

@@ -77,7 +77,6 @@ class FilmMotion:
 
     @property
     def duration(self) -> float:
-        """Duration of the cycle in s."""
         return sum(instant.duration for instant in self.instants)
 
     @cached_property
@@ -216,12 +215,7 @@ def _with_neighbours(mesh: FilmMesh, mask: Numbers) -> Numbers:
 class Triangles:
     """Linear interpolation between directions on a sphere, on triangles of their stereographic map.
 
-    Parameters
-    ----------
-    directions : array (cells, 3)
-        Unit vectors.
-    nodes : array of int (nodes,)
-        Numbers of the cells between which the triangles lie; none of them opposite to z.
+    The triangles lie between the cells numbered by `nodes`; none of their directions (cells, 3) is opposite to z.
     """
 
     def __init__(self, directions: Numbers, nodes: Numbers) -> None:

@@ -22,8 +22,7 @@ from .reynolds import FilmProblem, FilmState, develop_film, solve_steady
 if TYPE_CHECKING:
     from ..elasticity.off_axis.surfaces import Surface
 
-ELASTIC_MODELS = ("exact", "tabulated")
-"""Models of axial contacts whose elastic operator Reynolds' equation has."""
+ELASTIC_MODELS = ("exact", "tabulated")  # models of axial contacts whose elastic operator Reynolds' equation has
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,19 +136,11 @@ def check_reynolds(contact: Contact, dry: DryContact) -> None:
 def make_contact_film(
     contacts: Sequence[Contact], dry_contacts: Sequence[DryContact], spin: Numbers, viscosity: float
 ) -> ContactFilm:
-    """Make Reynolds' equation of a contact.
+    """Make Reynolds' equation of a contact; the viscosity is in MPa s.
 
-    Parameters
-    ----------
-    contacts : sequence of Contact
-        Contacts of one joint under loads along one axis, from the smallest to the largest. The mesh resolves the edges
-        of all, and the first one is the start.
-    dry_contacts : sequence of DryContact
-        The same contacts on cells.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s; the largest one if it changes.
-    viscosity : float
-        Viscosity in MPa s.
+    The contacts are those of one joint under loads along one axis, from the smallest to the largest. The mesh resolves
+    the edges of all, and the first one is the start. `spin` (3,) is the rotation rate of the ball in rad/s, the largest
+    one if it changes.
 
     Raises ValueError: an edge that moves too far for its short inlet.
     """

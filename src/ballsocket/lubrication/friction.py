@@ -56,20 +56,9 @@ class Stribeck:
     def shear_stress(
         self, pressure: Numbers, film: Numbers, speed: Numbers, *, roughness: float, viscosity: float
     ) -> Numbers:
-        """Compute the shear stress in MPa.
+        """Compute the shear stress in MPa at pressures in MPa, films in mm and sliding speeds in mm/s.
 
-        Parameters
-        ----------
-        pressure : array
-            Pressure in MPa.
-        film : array
-            Film thickness in mm; NaN counts as no contact.
-        speed : array
-            Sliding speed in mm/s.
-        roughness : float
-            Combined roughness in mm.
-        viscosity : float
-            Viscosity in MPa s.
+        A film that is NaN counts as no contact. The combined roughness is in mm, the viscosity in MPa s.
         """
         thickness = numpy.nan_to_num(film, nan=0.0)
         present = thickness > 0

@@ -38,7 +38,6 @@ class FilmMesh:
 
     @property
     def cells(self) -> int:
-        """Number of cells."""
         return len(self.area)
 
     def in_frame(self, frame: Numbers) -> FilmMesh:
@@ -139,16 +138,10 @@ class FilmMesh:
 
 
 def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> FilmMesh:
-    """Divide a sphere about its z axis into rings and meridians.
+    """Divide a sphere of a radius in mm about its z axis into rings and meridians.
 
-    Parameters
-    ----------
-    radius : float
-        Radius of the sphere in mm.
-    ring_edges : array (rings + 1,)
-        Polar angles of the lines between the rings in rad, from 0 to the rim.
-    meridians : int or array of int (rings,)
-        Number of cells in each ring.
+    The polar angles (rings + 1,) of the lines between the rings are in rad, from 0 to the rim. `meridians` is the
+    number of cells in each ring, or that of all.
     """
     rings = len(ring_edges) - 1
     counts = numpy.broadcast_to(meridians, rings).astype(int)
@@ -231,20 +224,10 @@ def thinned_meridians(ring_edges: Numbers, meridians: int) -> Numbers:
 def graded_rings(
     edge: float, *, finest: float, coarsest: float, rim: float = pi / 2, growth: float = 1.12, last_edge: float = 0.0
 ) -> Numbers:
-    """Make the angles between rings that are finest at the edge of the dry contact.
+    """Make the angles between rings that are finest at the edge of the dry contact; all angles are in rad.
 
-    Parameters
-    ----------
-    edge : float
-        Half angle of the dry contact in rad; one line between rings lies there.
-    finest, coarsest : float
-        Width of the rings at the edge, and the largest width, in rad.
-    rim : float
-        Polar angle of the rim in rad.
-    growth : float
-        Ratio of the widths of neighbouring rings.
-    last_edge : float
-        Largest half angle in rad of a contact whose edge moves; rings are finest as far as there.
+    One line between rings lies at `edge`, the half angle of the dry contact. Widths grow in the ratio `growth` from
+    `finest` to `coarsest`, as far as `rim`. If the edge moves, rings are finest as far as `last_edge`.
     """
     require("edge", edge, 0 < edge < rim, "the contact ends between the pole and the rim")
     last = max(edge, last_edge)

@@ -17,7 +17,6 @@ import numpy
 
 from ..core.arrays import Numbers
 from .balance import add_storage, balance_cells
-from .carried_film import CentralShare, all_central
 from .mesh import FilmMesh
 from .newton_system import CellUnknown, NewtonSystem
 
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from .dry_contact import ElasticSoftness
 
 _LARGEST_FALL = 0.6  # largest part of a cell's film that one Newton step may take away
+_SMOOTH, _FRONT = 0.1, 0.3  # largest relative change of a smooth film across a face, and the least of a front
 _SHARE_UPDATES = 3  # number of Newton steps after which the share of central differences is fixed
 _GROWTH = 1.8  # growth of the time steps on the way to the steady film
 _MAX_TIME_STEPS = 40  # number of time steps on the way to the steady film after which it counts as not converged
@@ -56,8 +56,9 @@ class FilmProblem:
     rim_pressure: Numbers  # (rim faces,), pressure of the lubricant at the rim in MPa
     force: Numbers | None = None  # (3,), load on the ball in N; None holds the ball where it is
     softness: ElasticSoftness | None = None  # further displacements of the surfaces, of elastic bodies
-    # share of central differences in the carried film at each face; the rest is the film upstream
-    central_share: CentralShare = all_central
+    # share of central differences in the carried film at each face, 0 to 1; the rest is the film upstream. None is
+    # `smooth_share`.
+    central_share: float | None = 1.0
 
     def displacement(self, pressure: Numbers) -> Numbers:
         """Compute the displacement of the surfaces in mm under pressures in MPa."""
@@ -71,6 +72,18 @@ class FilmProblem:
     def load(self, pressure: Numbers) -> Numbers:
         """Integrate the pressure over the cup to a force (3,) in N."""
         return (pressure * self.mesh.area) @ self.mesh.direction
+
+
+def smooth_share(mesh: FilmMesh, thickness: Numbers) -> Numbers:
+    """Compute the share of central differences in the carried film: 1 where it is smooth, and 0 at its fronts.
+
+    Central differences are of second order. In a time step they make new extremes at a front, a change by 30 % or more
+    of the thinner side, and the film may become thinner than nothing. The film upstream makes none, and is of first
+    order. A change up to 10 % counts as smooth.
+    """
+    across = numpy.abs(thickness[mesh.second] - thickness[mesh.first])
+    step = across / numpy.minimum(thickness[mesh.second], thickness[mesh.first])
+    return numpy.asarray(numpy.clip((_FRONT - step) / (_FRONT - _SMOOTH), 0.0, 1.0))
 
 
 def solve_steady(problem: FilmProblem, start: FilmState, *, tolerance: float = 1e-8, max_steps: int = 100) -> FilmState:
@@ -110,26 +123,17 @@ def advance(
     tolerance: float = 1e-8,
     max_steps: int = 60,
 ) -> FilmState:
-    """Solve for the film after a time step, by implicit Euler.
+    """Solve for the film after a time step in s by implicit Euler; `inf` gives the steady film.
 
-    Parameters
-    ----------
-    problem : FilmProblem
-    start : FilmState
-        First estimate.
-    volume : array (cells,) or None
-        Lubricant per area at the start of the step in mm; not used for a steady film.
-    step : float
-        Time step in s; `inf` for the steady film.
-    tolerance : float
-        Largest change of the last Newton step, relative to the largest pressure and to the film.
-    max_steps : int
-        Largest number of Newton steps.
+    `volume` (cells,) is the lubricant per area at the start of the step in mm, None for a steady film. `tolerance` is
+    the largest change of the last of at most `max_steps` Newton steps, relative to the largest pressure and to the
+    film.
     """
-    state, share = start, numpy.ones(1)
+    state = start
+    share: Numbers | float = 1.0 if problem.central_share is None else problem.central_share
     for iteration in range(max_steps):
-        if iteration < _SHARE_UPDATES:
-            share = problem.central_share(problem.mesh, problem.spin, problem.thickness(state))
+        if problem.central_share is None and iteration < _SHARE_UPDATES:
+            share = smooth_share(problem.mesh, problem.thickness(state))
         try:
             later, change = _newton_step(problem, state, volume, step, share)
         except (RuntimeError, numpy.linalg.LinAlgError):  # singular matrix
@@ -153,7 +157,7 @@ def _is_physical(problem: FilmProblem, state: FilmState) -> bool:
 
 
 def _newton_step(
-    problem: FilmProblem, state: FilmState, volume: Numbers | None, step: float, share: Numbers
+    problem: FilmProblem, state: FilmState, volume: Numbers | None, step: float, share: Numbers | float
 ) -> tuple[FilmState, float]:
     """Take one damped Newton step; return the new state and the largest relative change."""
     thickness = problem.thickness(state)

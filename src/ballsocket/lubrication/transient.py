@@ -12,7 +12,6 @@ from ..core.arrays import Array, Numbers
 from ..core.checks import check_numeric, check_vectors, require
 from ..core.validity import Status
 from ..problem import Joint
-from .carried_film import CentralShare, all_upwind, smooth_share
 from .dry_contact import check_single_contact, dry_contact
 from .film_problem import ContactFilm, check_reynolds, make_contact_film, shortest_inlet
 from .lubricant import Lubricant
@@ -20,13 +19,8 @@ from .reynolds import FilmProblem, FilmState, advance
 
 _TOLERANCE, _MAX_ITERATIONS = 1e-4, 25  # of a time step: largest change of its last Newton step, and most Newton steps
 
-_ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
-    (smooth_share, 1),
-    (all_upwind, 1),
-    (all_upwind, 4),
-    (all_upwind, 16),
-)
-"""Carried film and number of parts of a time step, in the order of the attempts."""
+_ATTEMPTS: tuple[tuple[float | None, int], ...] = ((None, 1), (0.0, 1), (0.0, 4), (0.0, 16))
+"""Central share of the carried film and number of parts of a time step, in the order of the attempts."""
 
 _MAX_EDGE_TRAVEL = 1.0
 """Largest movement of the edge in a time step, in inlet lengths, that implicit Euler resolves to about 3 %."""
@@ -67,26 +61,11 @@ class TransientFilm:
 def solve_cycle(
     problem: FilmProblem, start: FilmState, steps: Sequence[LoadStep], cycles: int = 1, parts: int = 1
 ) -> TransientFilm:
-    """Solve Reynolds' equation over cycles of load and motion, by implicit Euler.
+    """Solve Reynolds' equation over cycles of load and motion by implicit Euler; return the films of the last cycle.
 
     The error in time is of first order. Where Newton's method fails, the step is repeated with the film upstream, and
-    then in parts in which load and motion change bit by bit.
-
-    Parameters
-    ----------
-    problem : FilmProblem
-        Film, mesh and springs; its force and spin are replaced by those of the steps.
-    start : FilmState
-    steps : sequence of LoadStep
-    cycles : int
-        Number of cycles.
-    parts : int
-        Number of time steps in each step of load and motion, in which both change linearly from the step before.
-
-    Returns
-    -------
-    TransientFilm
-        Films of the last cycle.
+    then in parts in which load and motion change bit by bit. Force and spin of the problem are replaced by those of the
+    steps. Each step has `parts` time steps, in which both change linearly from the step before.
     """
     state, before = start, steps[-1]
     states: list[FilmState] = []
@@ -111,12 +90,7 @@ def _solve_step(problem: FilmProblem, start: FilmState, before: LoadStep, step: 
             current = replace(problem, force=piece.force, spin=piece.spin, central_share=central_share)
             volume = problem.thickness(state) * (1 - state.void)
             state = advance(
-                current,
-                state,
-                volume=volume,
-                step=piece.duration,
-                tolerance=_TOLERANCE,
-                max_steps=_MAX_ITERATIONS,
+                current, state, volume=volume, step=piece.duration, tolerance=_TOLERANCE, max_steps=_MAX_ITERATIONS
             )
             iterations += state.iterations
             if not state.converged:

@@ -243,12 +243,8 @@ class FilmWave:
     def solve_steady(self, tolerance: float = 1e-3, max_steps: int = 12) -> tuple[Numbers, bool]:
         """Solve for the steady film in mm, and state whether it is steady.
 
-        Parameters
-        ----------
-        tolerance : float
-            Largest mean change while the ball turns by the width of the contact, relative to the mean film.
-        max_steps : int
-            Largest number of such turns.
+        Its mean change while the ball turns by the width of the contact is then below `tolerance`, relative to the mean
+        film, after at most `max_steps` such turns.
         """
         inside = self.contact.inside
         film = numpy.where(inside, self.inlet_film, 0.0)

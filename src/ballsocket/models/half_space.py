@@ -109,10 +109,7 @@ class HalfSpace(ClosedForm):
 
 @cache
 def _peak_position_and_ratio(order: int) -> tuple[float, float]:
-    """Compute the relative radius r/a of the largest pressure, and the ratio of that pressure to p0.
-
-    For n = 2 they are 1/√2 and √2.
-    """
+    """Compute the relative radius r/a of the largest pressure and its ratio to p0: 1/√2 and √2 for n = 2."""
     if order == 1:
         return 0.0, 1.0
     # the pressure as a polynomial in y = sqrt(1 - r²/a²), its only maximum inside

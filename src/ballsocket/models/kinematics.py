@@ -140,10 +140,7 @@ def circular_versine(R2: Array, c: Array, d: Array) -> Array:
 
 
 def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Compute the indentation d in mm from the versine 1 - cos ε of the half angle for exact kinematics.
-
-    Beyond the largest half angle the result is NaN.
-    """
+    """Compute d in mm from the versine 1 - cos ε for exact kinematics; NaN beyond the largest half angle."""
     # smaller root of e² - 2 e R2 cos ε + R2² - R1² = 0, written for d = e - c; NaN beyond the largest half angle
     b = R2 - c - R2 * versine
     d = 2 * R2 * c * versine / safe_divisor(b + sqrt(b * b - 2 * R2 * c * versine))

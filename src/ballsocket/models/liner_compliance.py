@@ -26,10 +26,8 @@ class Liner(NamedTuple):
     """
 
     poisson: Array
-    growth: Array
-    """ln b"""
-    shrink: Array
-    """b^-2"""
+    growth: Array  # ln b
+    shrink: Array  # b^-2
     numerator: tuple[Array, ...]
     denominator: tuple[Array, ...]
 
@@ -94,10 +92,7 @@ def _scaled_polynomial(
 
 
 def log_compliance_any_wave(k: Array, liner: Liner) -> Pair:
-    """Compute the log modal compliance ln(c E/R2) and its slope by ln k, for all wave numbers.
-
-    N and D share the factor q - 1, which is divided out.
-    """
+    """Compute ln(c E/R2) and its slope by ln k for all wave numbers; N and D share the factor q - 1, divided out."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)

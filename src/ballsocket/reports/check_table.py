@@ -1,175 +1,23 @@
-"""Table of checks of a design: each demand beside its capacity, with ratio, verdict and source.
-
-Reports and the explorer show the same rows::
-
-    rows = checks_of(contact, cup)                                         # a contact of any model in its cup
-    rows = checks_at(joint, pressure=pressure, von_mises=stress)           # bars of a cycle or of a worn bore
-    html = checks_html(rows, units.text_of)                                # or reading.with_unit in the explorer
-    verdict, sentence = verdict_of(rows)
-"""
+"""Checks of a design as a table in HTML."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from math import nextafter
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..contact import Contact
-from ..contact.verdict import (
-    EDGE_DISTANCE,
-    Bounded,
-    Verdict,
-    ball_von_mises,
-    bar_text,
-    error_bar,
-    percent,
-    ratio_text,
-)
-from ..core.answers import Check
-from ..core.quantities import QUANTITIES, STRENGTH, Quantity
-from ..elasticity.off_axis.contact import OffAxisContact
-from ..problem import Joint, Material
-from ..problem.cup import Cup
+from ..contact.verdict import bar_text, percent
+from ..core.answers import Check as Check
+from ..core.quantities import QUANTITIES, Quantity
+from ..design_checks import checks_at as checks_at
+from ..design_checks import checks_of as checks_of
+from ..design_checks import sorted_checks as sorted_checks
+from ..design_checks import unchecked_text as unchecked_text
+from ..design_checks import verdict_of as verdict_of
+from ..design_checks import wear_check as wear_check
 from .pages import render_part
 
 Writer = Callable[[Quantity, float], str]
 """Function that writes a number in internal units with its unit: `Units.text_of`, or `Reading.with_unit`."""
-
-_PRESSURE, _VON_MISES = "allowable_pressure", "yield_stress"
-
-
-def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tuple[Check, ...]:
-    """List the checks of a single contact in its cup, the highest ratio first; empty for a contact without a result.
-
-    A contact of a model along the axis ends at its half angle from the pole. `von_mises` is the largest von Mises
-    stress in the liner in MPa, if it is solved for already; by default the `quick_von_mises`.
-    """
-    if contact.status.failed:
-        return ()
-    joint, radius = contact.joint, float(contact.joint.socket_radius)
-    if isinstance(contact, OffAxisContact):
-        reach, distance = float(contact.model.reach_of(joint)), error_bar(contact, EDGE_DISTANCE)
-    else:
-        reach = cup.rim - cup.chamfer / radius
-        value, low, high = error_bar(contact, "half_angle")
-        distance = Bounded(*(radius * (reach - angle) for angle in (value, high, low)))
-    return checks_at(
-        joint,
-        pressure=error_bar(contact, "max_pressure"),
-        von_mises=error_bar(contact, "quick_von_mises" if von_mises is None else "von_mises"),
-        edge=(reach, distance) if float(contact.half_angle) > 0 else None,
-        trusted=bool(contact.valid),
-    )
-
-
-def checks_at(
-    joint: Joint,
-    *,
-    pressure: Bounded,
-    von_mises: Bounded,
-    edge: tuple[float, Bounded] | None = None,
-    trusted: bool = True,
-) -> tuple[Check, ...]:
-    """List the checks of a joint for the numbers of a contact, the highest ratio first.
-
-    It takes the largest pressure and the largest von Mises stress in the liner in MPa; for a rim the angle in rad from
-    the pole of the dome to the end of the bore, and the edge distance in mm; and if the numbers lie in the range of
-    their model.
-    """
-    rows = list(_material_checks("liner", joint.liner, pressure, von_mises, trusted))
-    if joint.ball is not None:
-        ball_stress = ball_von_mises(joint, pressure)
-        rows += (row for row in _material_checks("ball", joint.ball, pressure, ball_stress, trusted) if row.capacity)
-    if edge is not None and not float(joint.clearance) < 0:  # a preloaded contact reaches the rim as a rule
-        rows.append(_rim_check(joint, *edge, trusted))
-    return sorted_checks(rows)
-
-
-def sorted_checks(rows: Iterable[Check]) -> tuple[Check, ...]:
-    """Sort checks by their ratio, the highest first and unknown ones last."""
-    return tuple(sorted(rows, key=lambda row: -1.0 if row.ratio is None else row.ratio.value, reverse=True))
-
-
-def wear_check(joint: Joint, depth: Bounded) -> Check:
-    """Compare the deepest wear (mm) with the thickness of the liner."""
-    return Check(
-        title="deepest wear",
-        quantity="liner_thickness",
-        demand=depth,
-        capacity=float(joint.liner_thickness),
-        limit="liner thickness",
-        source="at this depth the liner is worn through",
-    )
-
-
-def _material_checks(
-    part: str, material: Material, pressure: Bounded, stress: Bounded, trusted: bool
-) -> Iterator[Check]:
-    """Yield the checks of one body: pressure and von Mises stress, known capacity or not, and further strengths."""
-    strengths = {_PRESSURE: None, _VON_MISES: None, **material.strengths}
-    for name, capacity in strengths.items():
-        is_pressure, title = name == _PRESSURE, STRENGTH[name].title
-        yield Check(
-            title=f"{'pressure on' if is_pressure else 'von Mises stress in'} the {part}",
-            quantity="max_pressure" if is_pressure else "von_mises",
-            demand=pressure if is_pressure else stress,
-            capacity=None if capacity is None else float(capacity),
-            limit=title,
-            source=f"no {title} of the {part} is known" if capacity is None else _source_of(material, title),
-            trusted=trusted,
-        )
-
-
-def _source_of(material: Material, title: str) -> str:
-    """Return the source of one limit of a material: its part of the sources, else its name alone."""
-    parts = (part.strip() for part in material.source.split(";"))
-    source = next((part for part in parts if part.startswith(title.split()[0])), "value of the input")
-    return f"{material.name}, {source}" if material.name else source
-
-
-def _rim_check(joint: Joint, reach: float, distance: Bounded, trusted: bool) -> Check:
-    """Compare the arc from the pole to the edge of the contact with the arc to the end of the bore."""
-    length = reach * float(joint.socket_radius)
-    return Check(
-        title="reach of the contact",
-        quantity=EDGE_DISTANCE,
-        demand=Bounded(*(length - float(arc) for arc in (distance.value, distance.high, distance.low))),
-        capacity=nextafter(length, 0.0),  # a contact that ends at the rim is edge loaded
-        limit="arc from pole to rim",
-        source="arc of cover and chamfer of the cup",
-        trusted=trusted,
-    )
-
-
-def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
-    """Return the verdict on a design and its sentence; undecided without a strength of the liner."""
-    exceeded, undecided, kept = ([row for row in rows if row.verdict is verdict] for verdict in _WORST_FIRST)
-    if exceeded:
-        return Verdict.EXCEEDED, f"Exceeded: {_uses(exceeded)}"
-    if not rows:
-        return Verdict.UNDECIDED, "Undecided: there is no result"
-    if not all(row.trusted for row in rows):
-        return Verdict.UNDECIDED, "Undecided: this result is outside the range of its model"
-    near = [row for row in undecided if row.capacity is not None]
-    if near:
-        return Verdict.UNDECIDED, f"Undecided: {_uses(near)}"
-    if not any(row.quantity in ("max_pressure", "von_mises") for row in kept):
-        return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in undecided)}"
-    return Verdict.KEPT, f"Kept: {_uses(kept[:1])}, the highest ratio"
-
-
-def unchecked_text(rows: Sequence[Check]) -> str:
-    """List the demands without a known limit, such as "not checked: pressure on the liner"; empty without one."""
-    titles = ", ".join(row.title for row in rows if row.capacity is None)
-    return f"not checked: {titles}" if titles else ""
-
-
-_WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)
-
-
-def _uses(rows: Sequence[Check]) -> str:
-    """Write the ratios of checks in words, such as "pressure on the liner is 81 % of the allowable pressure"."""
-    return "; ".join(f"{row.title} is {ratio_text(row.ratio)} the {row.limit}" for row in rows if row.ratio is not None)
 
 
 def checks_html(rows: Sequence[Check], write: Writer) -> str:

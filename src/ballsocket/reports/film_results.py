@@ -45,7 +45,7 @@ def _title(film: FilmResult) -> str:
     central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
     return (
         f"{film.contact.model.name}, {plain_number(film.contact.force)} N, {numpy.linalg.norm(film.spin):g} rad/s, "
-        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.0f} nm, minimum {least:.0f} nm"
+        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.4g} nm, minimum {least:.4g} nm"
     )
 
 

@@ -26,10 +26,7 @@ _PANELS = {"volume": "worn volume [mm³]", "penetration": "penetration [mm]"}
 
 
 def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
-    """Draw worn volume and penetration over the cycles, with a line for each hip.
-
-    Simulations have a name in the legend; by default the name of their joint.
-    """
+    """Draw worn volume and penetration over the cycles, with a named line for each hip, by default its joint."""
     if not isinstance(histories, Mapping):
         histories = {history.use.joint.name or f"hip {i + 1}": history for i, history in enumerate(histories)}
     return comparison_figure([HipRun(name=name, history=history) for name, history in histories.items()])

@@ -114,11 +114,13 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
             axes.set_ylabel(upwards, fontsize=9)
             axes.spines[["top", "right"]].set_visible(False)
             axes.tick_params(labelsize=8, labelleft=column == 0)
+            axes.tick_params(axis="x", labelrotation=40)
+    drawn = "shaded: 50 and 95 % of" if count > 1 else "bars:"
     source = (
         f"dashed: 95 % by profile likelihood, quantile {result.information.quantile:.3g}\n"
-        "shaded: 50 and 95 % of a normal distribution that is as wide"
+        f"{drawn} a normal distribution that is as wide"
         if posterior is None
-        else f"posterior, R-hat {max(posterior.r_hat.values()):.3f}\ndashed: 95 %; shaded: 50 and 95 % of the samples"
+        else f"posterior, R-hat {max(posterior.r_hat.values()):.3f}\ndashed: 95 %; {drawn} the samples"
     )
     figure.suptitle(f"{result.model.name}: {source}", fontsize=9)
     return figure

@@ -13,12 +13,12 @@ from rich.text import Text
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
-from ..core.unit_systems import Units
+from ..core.unit_systems import Units, joint_sentence
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
 from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
-from .terminal import Terminal, print_columns, print_folded, print_joint, text_table
+from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -147,7 +147,6 @@ def _draw_rim(axes: Axes, orientations: Orientations, x: Numbers, y: Numbers) ->
 
 
 def _hatch(axes: Axes, x: Numbers, y: Numbers, where: Numbers, hatch: str, label: str) -> None:
-    """Hatch all cells at the points of a mask."""
     from matplotlib.patches import Rectangle
 
     if not where.any():
@@ -245,7 +244,7 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (),
     Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
     """
     terminal = Terminal(units)
-    print_joint(terminal, orientations.joint)
+    print_folded(terminal, joint_sentence(orientations.joint), "bold")
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():

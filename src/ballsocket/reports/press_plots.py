@@ -9,7 +9,7 @@ import numpy
 
 from ..comparison import force_curves, successful_contacts
 from ..contact import Contact
-from ..contact.describe import Column
+from ..contact.describe import values_of
 from ..core import arrays
 from ..core.display import plain_number
 from ..core.kinds import Unit
@@ -26,19 +26,14 @@ if TYPE_CHECKING:
 
     from ..core.arrays import Numbers
 
-FORCE_CURVE = (
-    Column(CONTACT["indentation"], CONTACT["indentation"].shown),
-    Column(CONTACT["force"], Unit("kN", 1e-3)),
-)
-"""Columns of the force curve: indentation and force."""
+FORCE_CURVE = CONTACT["indentation"], CONTACT["force"]
+"""Quantities of the axes of a force curve."""
 
 
-def force_axes(units: Units) -> tuple[Column, Column]:
-    """Return the columns of indentation and force in a system of units."""
-    if units is Units.SI:
-        return FORCE_CURVE
-    depth, force = (Column(column.quantity, units.unit_of(column.quantity)) for column in FORCE_CURVE)
-    return depth, force
+def force_axes(units: Units) -> tuple[Unit, Unit]:
+    """Return the units of indentation and force on the axes of a force curve."""
+    depth, force = map(units.unit_of, FORCE_CURVE)
+    return depth, Unit("kN", 1e-3) if units is Units.SI else force
 
 
 def press_figure(
@@ -71,7 +66,7 @@ def press_figure(
     matplotlib.figure.Figure
         Figure; curves outside the validity of their model are thin.
     """
-    figure, axes = new_figure(10.0, 4.6), force_axes(units)
+    figure, axes = new_figure(10.0, 4.6), list(zip(FORCE_CURVE, force_axes(units), strict=True))
     pressure = units.unit_of(FIELD["pressure"])
     pressure_axes, force_panel = figure.subplots(1, 2)
     for name, contact in contacts.items():
@@ -84,15 +79,15 @@ def press_figure(
             label=f"\u200b{name}" if name.startswith("_") else name,
             **style,
         )
-        force_panel.plot(*(arrays.to_numpy(axis.values_of(curves[name])) for axis in axes), **style)
-        force_panel.plot(*(axis.values_of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
+        force_panel.plot(*(arrays.to_numpy(values_of(curves[name], *axis)) for axis in axes), **style)
+        force_panel.plot(*(values_of(contact, *axis) for axis in axes), "o", color=line.colour, markersize=4.5)
     finish(pressure_axes, FIELD["angle"].label(), FIELD["pressure"].label(pressure))
     pressure_axes.set_xlim(0.0, 90.0)
     if pressure_axes.dataLim.ymin > -0.02 * pressure_axes.dataLim.ymax:
         pressure_axes.set_ylim(bottom=0.0)
     pressure_axes.set_xticks(range(0, 91, 15))
-    finish(force_panel, *(axis.label for axis in axes))
-    furthest = [max(axis.values_of(contact) for contact in contacts.values()) for axis in axes]
+    finish(force_panel, *(quantity.label(unit) for quantity, unit in axes))
+    furthest = [max(values_of(contact, *axis) for contact in contacts.values()) for axis in axes]
     force_panel.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
     force_panel.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
     columns = min(len(contacts), 4)

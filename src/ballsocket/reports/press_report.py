@@ -11,15 +11,17 @@ from pathlib import Path
 
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
-from ..contact.describe import columns_in, columns_of, number_text
-from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict, strength_lines
+from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
+from ..core.answers import Check, grid
 from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.unit_systems import Units
+from ..core.unit_systems import Units, joint_sentence
+from ..design_checks import checks_of, unchecked_text, verdict_of
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..files.joint_file import JointFile, ReportDetails
 from ..files.joint_toml import toml_of
 from ..files.schema import Text
+from ..press_answer import describe_press
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
@@ -27,7 +29,7 @@ from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
+from .check_table import checks_html
 from .pages import (
     HEAD_TEXTS,
     answer_table,
@@ -50,8 +52,8 @@ _VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.E
 _MAX_COLUMNS = 3
 """Designs beside each other in one table, which fits a printed page."""
 
-_MAX_MODELS = 5
-"""Models beside each other in one table."""
+_MAX_MODELS = 3
+"""Models beside each other in one table, each with its deviations."""
 
 TitledHtml = dict[str, tuple[str, str]]
 """Title and HTML of each section by its id."""
@@ -175,7 +177,7 @@ def _joint_sections(
     checked = () if contact is None else _checks(contact, file.cup)
     return {
         **({"checks": ("Checks", checks_html(checked, units.text_of))} if checked else {}),
-        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.joint(file.joint))),
+        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(joint_sentence(file.joint)))),
         "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
         "origin": ("Joint file", render_part(_TEMPLATE, "origin", text, checksum, command)),
@@ -243,7 +245,7 @@ def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:
         if name in _ORIENTATION and not cup.oriented:
             continue
         number = float(getattr(cup, name))
-        yield quantity.title, units.length(number) if name == "chamfer" else units.text_of(quantity, number), ""
+        yield quantity.title, units.text_of(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
 
 
@@ -336,7 +338,7 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     yield "edge distance (CPER)", units.short_length(float(getattr(contact, EDGE_DISTANCE))) if located else "-"
     ratio = error_bar(contact, "utilisation")
     bar = f" (estimate, {range_text(ratio)})" if joint.strengths() and ratio.is_estimate else ""
-    text = number_text(ratio.value, 3, "-") if joint.strengths() else "-"
+    text = f"{ratio.value:.3g}" if joint.strengths() else "-"
     yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", f"{text}{bar}"
     yield "verdict", "; ".join([_verdict(contact, file.cup)[0], *_rim_words(contact, units, design.uncertainty)])
 
@@ -357,28 +359,22 @@ def press_sections(
 
 
 def _number(contact: Contact, name: str, units: Units) -> str:
-    column = next(column for column in columns_in(units) if column.attribute == name)
-    gap = "" if column.unit == "°" else " "
-    return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
+    value = float(getattr(contact, name))
+    return units.text_of(CONTACT[name], value) if value == value else "no result"
 
 
 def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> str:
-    columns = columns_of(comparison.joint, units)
-    names = list(comparison)
+    """Return the table of results as HTML, with a column for each model."""
+    described = describe_press(comparison, remarks)
+    (table,) = described.tables
     tables = []
-    for start in range(0, len(names), _MAX_MODELS):
-        contacts = [comparison[name] for name in names[start : start + _MAX_MODELS]]
-        rows = [
-            (
-                f"{column.title} {column.symbol}",
-                *(number_text(column.values_of(contact), 4, "-") for contact in contacts),
-                column.unit,
-            )
-            for column in columns
-        ]
-        valid = ("valid", *("yes" if contact.valid else "no" for contact in contacts), "")
-        tables.append((("", *names[start : start + _MAX_MODELS], "unit"), [*rows, valid]))
-    notes = [units.sentence(note) for note in (*strength_lines(comparison.contacts), *remarks, *comparison.notes())]
+    for start in range(0, len(table.rows), _MAX_MODELS):
+        written = grid(table._replace(rows=table.rows[start : start + _MAX_MODELS]), units)
+        names, *numbers = zip(*written.rows, strict=True)
+        heads = [f"{column.title} {column.head}".strip() for column in written.columns]
+        rows = [(head, *cells, unit) for head, cells, unit in zip(heads[1:], numbers, written.units[1:], strict=True)]
+        tables.append((("", *names, "unit"), rows))
+    notes = [units.sentence(note) for note in (*table.lines, *described.notes)]
     return render_part(_TEMPLATE, "answers", tables, notes)
 
 

@@ -1,4 +1,4 @@
-"""Comparison of models in a terminal, and helpers for all terminal output."""
+"""Descriptions of results in a terminal: tables that fit its width, and folded sentences."""
 
 from __future__ import annotations
 
@@ -14,68 +14,33 @@ from rich.table import Column as RichColumn
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from ..comparison import Comparison, relative_deviation
-from ..contact import Contact
-from ..contact.describe import COLUMNS, Column, columns_of, number_text
-from ..contact.verdict import Verdict, strength_lines
-from ..core.answers import PAGE, Answer, Grid, Table, grid
-from ..core.quantities import CONTACT, HEADLINE
+from ..comparison import Comparison
+from ..contact.verdict import Verdict
+from ..core.answers import PAGE, Answer, Column, Grid, Table, grid
+from ..core.arrays import Numbers
 from ..core.unit_systems import Units
-from ..model_catalogue import reference
-from ..problem import Joint
+from ..press_answer import describe_press
 
 _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
-_PROFILE = "profile"
-_OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
-_DROPPED_LAST = ("stiffness", "area", "indentation", "force", "half_angle")
-_DROPPED = (
-    _PROFILE,
-    *(name for name in reversed(tuple(CONTACT)) if name not in (*_DROPPED_LAST, "max_pressure")),
-    *_DROPPED_LAST,
-)
-"""Columns that a narrow terminal omits, in this order; never the largest pressure, nor ratios of stress to strength."""
 
 
 def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Units = Units.SI) -> None:
-    """Print a comparison as a table: the exact solution first, below each other model its deviations.
-
-    Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
-    """
-    terminal, ordered, exact = Terminal(units), comparison, comparison.get(reference.name)
-    if exact is not None and exact.valid:
-        ordered = replace(comparison, contacts={reference.name: exact, **comparison.contacts})
-    print_joint(terminal, ordered.joint)
-    table, shown = _fitting_table(ordered, terminal, units)
-    terminal.print(table)
-    for line in strength_lines(ordered.contacts):
-        print_folded(terminal, line, "")
-    symbols = ", ".join(f"{column.symbol} {column.title}" for column in shown)
-    deviating = any(ordered.deviation(name) is not None for name in ordered)
-    lines = [f"{symbols}; Δ % from {reference.name}" if deviating else symbols]
-    known = [*_pole_columns(ordered), *(column.attribute for column in shown)]
-    omitted = [column for column in columns_of(ordered.joint, units) if column.attribute not in known]
-    if omitted:
-        text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
-        lines.append(f"not shown, the terminal is too narrow: {text}")
-    for line in (*lines, *remarks, *ordered.notes()):
-        print_folded(terminal, line, "dim")
-
-
-def print_curve(contact: Contact) -> None:
-    """Print contacts at increasing loads as a table of the main quantities, and the notes."""
-    terminal = Terminal()
-    print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
-    columns = [column for column in COLUMNS if column.attribute in HEADLINE]
-    values = [column.values_of(contact) for column in columns]
+    """Print a comparison; where the terminal is wide enough, bars show the pressure of each model over the angle."""
+    described = describe_press(comparison, remarks)
+    (table,) = described.tables
+    angles = numpy.linspace(0.0, _profile_end(comparison), 12)
+    profiles = _profiles(comparison, angles, _BARS if Terminal(units).encoding.startswith("utf") else _BARS_ASCII)
+    column = Column.of_words("profile", f" p, 0° to {degrees(angles[-1]):.0f}°", rank=PAGE - 1)
     rows = [
-        [*(number_text(value[index], 4, "-") for value in values), "yes" if valid else "no"]
-        for index, valid in enumerate(contact.valid)
+        row._replace(
+            cells=[*row.cells[:-1], f" {profiles.get(str(row.cells[0]), '')}", row.cells[-1]],
+            below=[[*cells[:-1], "", cells[-1]] for cells in row.below],
+        )
+        for row in table.rows
     ]
-    heads = [*(column.head for column in columns), "valid"]
-    print_columns(terminal, text_table(heads, rows, left=("valid",), gap=1))
-    for note in contact.notes:
-        print_folded(terminal, note, "dim")
+    table = table._replace(columns=[*table.columns[:-1], column, table.columns[-1]], rows=rows)
+    print_answer(replace(described, tables=[table]), units)
 
 
 _STYLES = {None: "", Verdict.KEPT: "", Verdict.UNDECIDED: "yellow", Verdict.EXCEEDED: "red"}
@@ -98,10 +63,10 @@ def print_table(terminal: Terminal, table: Table) -> None:
 
     Each block begins with the first column and the columns of words next to it.
     """
-    written = _fitting_grid(terminal, table)
+    written, gap = _fitting_grid(terminal, table)
     if written.rows:
         words = [column.head for column in written.columns if column.unit is None]
-        texts = text_table(written.heads, left=words, folded=words)
+        texts = text_table(written.heads, left=words, folded=words, gap=gap)
         if any(written.units):
             texts.add_row(*(Text(unit, style="dim") for unit in written.units))
         for row, verdict in zip(written.rows, written.verdicts, strict=True):
@@ -110,17 +75,34 @@ def print_table(terminal: Terminal, table: Table) -> None:
         print_columns(terminal, texts, lead)
     for line in table.lines:
         print_folded(terminal, line, "")
+    symbols = [column for column in written.columns if _meaning(column) != column.head]
+    if symbols:
+        print_folded(terminal, ", ".join(map(_meaning, symbols)), "dim")
+    omitted = [column for column in table.columns if column.rank < PAGE and column not in written.columns]
+    if omitted:
+        text = ", ".join(map(_meaning, omitted))
+        print_folded(terminal, f"not shown, the terminal is too narrow: {text}", "dim")
 
 
-def _fitting_grid(terminal: Terminal, table: Table) -> Grid:
-    """Write a table without the columns of the highest ranks, as long as it is too wide."""
+def _meaning(column: Column) -> str:
+    """Return the head of a column, and the title of a symbol; words stand for themselves."""
+    has_symbol = " " not in column.head and column.head not in column.title.split()
+    return f"{column.head} {column.title}".strip() if has_symbol else column.head
+
+
+def _fitting_grid(terminal: Terminal, table: Table) -> tuple[Grid, int]:
+    """Write a table without the columns of the highest ranks, as long as it is too wide, and return its gap.
+
+    One space between the columns comes before columns that are left out.
+    """
     ranks = sorted({column.rank for column in table.columns if column.rank < PAGE}, reverse=True)
     for rank in ranks:
         written = grid(table, terminal.units, rank)
-        widths = (max(map(len, texts)) for texts in zip(written.heads, written.units, *written.rows, strict=True))
-        if sum(widths) + 2 * len(written.heads) - 2 <= terminal.width:
-            break
-    return written
+        texts = zip(written.heads, written.units, *written.rows, strict=True)
+        width, gaps = sum(max(map(len, column)) for column in texts), len(written.heads) - 1
+        if width + gaps <= terminal.width:
+            return written, 2 if width + 2 * gaps <= terminal.width else 1
+    return written, 2
 
 
 class Terminal(Console):
@@ -147,25 +129,11 @@ def text_table(
     return table
 
 
-def print_folded(console: Console, text: str, style: str) -> None:
-    """Print a line in the units of the console, folded between words, with continuation lines indented."""
-    console.print(Text(_folded(_units_of(console).sentence(text), console), style=style), soft_wrap=True)
-
-
-def _folded(text: str, console: Console) -> str:
-    """Fold a line between words, with continuation lines indented."""
-    return textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
-
-
-def print_joint(terminal: Console, joint: Joint, end: str = "", start: str = "") -> None:
-    """Print the description of a joint, whose name is not converted to other units."""
-    folded = _folded(start + _units_of(terminal).joint(joint) + end, terminal)
-    terminal.print(Text(folded, style="bold"), soft_wrap=True)
-
-
-def _units_of(terminal: Console) -> Units:
-    """Return the units of a console; SI for one of another kind."""
-    return terminal.units if isinstance(terminal, Terminal) else Units.SI
+def print_folded(terminal: Terminal, text: str, style: str) -> None:
+    """Print a line in the units of the terminal, folded between words, with continuation lines indented."""
+    written, width = terminal.units.sentence(text), max(terminal.width, 20)
+    folded = textwrap.fill(written, width, subsequent_indent="    ", break_on_hyphens=False)
+    terminal.print(Text(folded, style=style), soft_wrap=True)
 
 
 def print_columns(terminal: Console, table: RichTable, lead: int = 1) -> None:
@@ -218,72 +186,10 @@ def _fitted_widths(limits: Sequence[tuple[int, int]], available: int) -> list[in
     return widths
 
 
-def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tuple[RichTable, list[Column]]:
-    """Return a table with as many columns as fit the width of the terminal, and these columns."""
-    unbounded = console.options.update(width=10_000)
-    bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
-    omitted = _pole_columns(comparison)
-    for count in range(len(_DROPPED) + 1):
-        dropped = (*omitted, *_DROPPED[:count])
-        columns = [column for column in columns_of(comparison.joint, units) if column.attribute not in dropped]
-        table = _press_table(comparison, columns, "" if _PROFILE in dropped else bars)
-        if console.measure(table, options=unbounded).maximum <= console.width:
-            break
-    return table, columns
-
-
-def _pole_columns(comparison: Comparison) -> tuple[str, ...]:
-    """Return the columns to omit if every valid pressure is largest at the pole."""
-    off_pole = any(contact.valid and contact.max_pressure_angle > 0 for contact in comparison.values())
-    return () if off_pole else _OFF_THE_POLE
-
-
-def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> RichTable:
-    """Make the table of a comparison; pressure profiles only if `bars` is not empty."""
-    table = RichTable(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
-    table.add_column("model", no_wrap=True)
-    for column in columns:
-        table.add_column(column.symbol, justify="right", no_wrap=True)
-    if bars:
-        table.add_column(f" p, 0° to {degrees(_profile_end(comparison)):.0f}°", no_wrap=True)
-    table.add_column("valid", justify="center", no_wrap=True)
-    table.add_row("", *(Text(column.unit, style="dim") for column in columns))
-    profiles = _profiles(comparison, bars) if bars else {}
-    for name, contact in comparison.items():
-        table.add_row(*_cells(name, contact, columns, [profiles[name]] if profiles else []))
-        if comparison.deviation(name) is not None and not contact.status.failed:
-            deviations = _percents(contact, comparison[reference.name], columns)
-            table.add_row(*(Text(text, style="dim") for text in ("  Δ %", *deviations)))
-    for name in comparison.missing:
-        gaps = [*["-"] * len(columns), *[""] * bool(bars)]
-        table.add_row(Text(name, style="dim"), *gaps, Text("no", style="red"))
-    return table
-
-
-def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> list[str]:
-    """Write the deviations from the exact contact in percent; empty if equal or undefined."""
-    deviations = [
-        100 * float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in columns
-    ]
-    return [
-        "" if deviation != deviation or deviation == 0 else f"{deviation:+.1f}".replace("-0.0", "+0.0")
-        for deviation in deviations
-    ]
-
-
-def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
-    style = "" if contact.valid else "yellow"
-    numbers = [number_text(column.values_of(contact), 4 if column.unit else 3, "-") for column in columns]
-    bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
-    mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
-    return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]
-
-
-def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
-    """Draw the pressure of every model from the pole to the end of the profile as a row of bars, to one scale."""
-    angle = numpy.linspace(0.0, _profile_end(comparison), 12)
+def _profiles(comparison: Comparison, angles: Numbers, bars: str) -> dict[str, str]:
+    """Draw the pressure of every model over the angles as a row of bars, to one scale."""
     pressures = {
-        name: 0 * angle if contact.status.failed else numpy.nan_to_num(contact.pressure(angle), posinf=0.0)
+        name: 0 * angles if contact.status.failed else numpy.nan_to_num(contact.pressure(angles), posinf=0.0)
         for name, contact in comparison.items()
     }
     highest = max((pressure.max() for pressure in pressures.values()), default=0.0)

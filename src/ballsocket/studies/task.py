@@ -11,10 +11,9 @@ from typing import Any
 import numpy
 
 from ..contact import Contact, Model
-from ..contact.describe import COLUMNS
 from ..contact.verdict import Verdict, error_bar
 from ..core.arrays import Numbers
-from ..core.quantities import BEARING, Quantity
+from ..core.quantities import BEARING, CONTACT, Quantity
 from ..core.quantities import QUANTITIES as CONTACT_QUANTITIES
 from ..core.storage.pieces import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
@@ -22,7 +21,7 @@ from ..problem import Joint
 from .design import Design
 from .parameters import press_arguments
 
-QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
+QUANTITIES = (*CONTACT, *BEARING)
 """Quantities that a study can have; `status` and `valid` are in every study."""
 
 EDGE_DISTANCE = "edge_distance"

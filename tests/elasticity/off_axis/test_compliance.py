@@ -45,7 +45,7 @@ def test_stiffness_is_the_inverse_of_the_softness(surface, joint):
     compliance = make_compliance(surface, joint, CUP, BORE)
     pressure = random_field(BORE)
     assert compliance.pressure(compliance.displacement(pressure)) == pytest.approx(pressure, abs=1e-3)
-    single = compliance.displacement_in_single_precision(pressure)
+    single = compliance.single_precision_softness(pressure)
     assert single == pytest.approx(compliance.displacement(pressure), rel=1e-4, abs=1e-9)
 
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import ceil, floor, inf, isclose, isnan, log10
+from typing import Any
 
-from ...contact.describe import Column
+from ...contact.describe import values_of
+from ...core.arrays import Array
 from ...core.kinds import Kind, Unit
-from ...core.quantities import CONTACT, JOINT, Quantity
+from ...core.quantities import JOINT, Quantity
 from ...core.unit_systems import Units
 
 _DIGITS, _BOX_DIGITS = 4, 5
 _INCH_DECIMALS = 4
 _LARGEST_PLAIN = 1e12  # value from which numbers are written with an exponent
-_INCH = Unit("in", 1 / 25.4)
 _CONVERTED_DIGITS = {"in": 4, "mil": 3, "lbf": 3, "psi": 3, "ksi": 3, "Mpsi": 3}
 """Digits in a box of a number that was converted from metric units, by its unit."""
 
@@ -30,11 +30,9 @@ class Reading:
     units: Units = Units.SI
 
     def unit(self, quantity: Quantity) -> Unit:
-        """Return the unit of a quantity; lengths in µm become mils on imperial pages."""
+        """Return the unit of a quantity."""
         if quantity.kind is Kind.ANGLE:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
-        if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
-            return _INCH
         unit = self.units.unit_of(quantity)
         if self.units is Units.IMPERIAL and quantity.name in _PSI_MULTIPLES:
             text, factor = _PSI_MULTIPLES[quantity.name]
@@ -66,10 +64,9 @@ class Reading:
         decimals = max(0, ceil(-log10(error * unit.factor)))
         return f"{number_text(round(value * unit.factor, decimals), unit.text)}{unit_suffix(unit.text)}"
 
-    @cached_property
-    def columns(self) -> tuple[Column, ...]:
-        """Every quantity of a contact."""
-        return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
+    def values_of(self, contact: Any, quantity: Quantity) -> Array:
+        """Return a quantity of a contact in its chosen unit."""
+        return values_of(contact, quantity, self.unit(quantity))
 
 
 def unit_suffix(unit: str) -> str:
@@ -108,7 +105,7 @@ def _digits(value: float, digits: int) -> str:
 
 def _in_tenths(value: float, unit: str) -> float:
     """Round inches to four decimals, or to two digits where these are smaller."""
-    if unit != _INCH.text or not 0 < abs(value) < inf:
+    if unit != "in" or not 0 < abs(value) < inf:
         return value
     return round(value, max(_INCH_DECIMALS, 1 - floor(log10(abs(value)))))
 

@@ -10,10 +10,10 @@ from typing import Any
 
 from ...comparison import Comparison, relative_deviation
 from ...contact import Contact
-from ...contact.describe import COLUMNS, Column
+from ...contact.describe import values_of
 from ...contact.verdict import Verdict
 from ...core.kinds import Unit
-from ...core.quantities import HEADLINE, Quantity
+from ...core.quantities import CONTACT, HEADLINE, Quantity
 from ...core.unit_systems import Units
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
@@ -44,6 +44,12 @@ def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
     return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
 
 
+def quantity_cell(quantity: Quantity, value: Any, reading: Reading, title: str = "", more: str = "") -> str:
+    """Return a number in internal units by the title of its quantity, or another one, in the units of the page."""
+    unit = reading.unit(quantity)
+    return number_cell(title or quantity.title, float(value) * unit.factor, unit.text, more)
+
+
 def _unit_html(unit: str) -> str:
     return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
 
@@ -61,11 +67,13 @@ def doubt(valid: bool, name: str = "") -> str:
 
 def models_table(comparison: Comparison, reading: Reading) -> str:
     """Tabulate the models with deviation from the exact result, validity and line style."""
-    exact, columns = comparison.contacts.get(reference.name), _shown_columns(reading)
+    exact = comparison.contacts.get(reference.name)
     rows = "".join(_row(name, contact, exact, reading) for name, contact in comparison.items())
-    heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{head}</th>" for head, column in columns)
+    heads = "".join(
+        f"<th scope='col' title='{escape(CONTACT[name].title)}'>{_head(name, reading)}</th>" for name in HEADLINE
+    )
     missing = "".join(
-        f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(columns) + 1}' class='text'>{escape(why)}</td></tr>"
+        f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(HEADLINE) + 1}' class='text'>{escape(why)}</td></tr>"
         for name, why in comparison.missing.items()
     )
     return (
@@ -75,14 +83,14 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
     )
 
 
-@lru_cache(maxsize=8)
-def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
-    return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
+@lru_cache(maxsize=64)
+def _head(name: str, reading: Reading) -> str:
+    return escape(CONTACT[name].head(reading.unit(CONTACT[name])))
 
 
 @lru_cache(maxsize=1024)
 def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
-    cells = "".join(_number(head, column, contact, exact) for head, column in _shown_columns(reading))
+    cells = "".join(_number(name, contact, exact, reading) for name in HEADLINE)
     valid = bool(contact.valid)
     why = "yes" if valid else f"no: {'; '.join(contact.notes)}"
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
@@ -90,13 +98,13 @@ def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
-def _number(head: str, column: Column, contact: Contact, exact: Contact | None) -> str:
+def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
     """Return a table cell with its deviation from the exact result, and its own heading for narrow pages."""
-    value, small = float(column.values_of(contact)), ""
+    value, small = float(reading.values_of(contact, CONTACT[name])), ""
     if exact is not None and exact is not contact:
-        share = float(relative_deviation(value, float(column.values_of(exact))))
+        share = float(relative_deviation(value, float(reading.values_of(exact, CONTACT[name]))))
         small = f"<small>{escape(percent(share, '+'))}</small>" if share else ""
-    return f"<td data-head='{head}'>{number_text(value)}{small}</td>"
+    return f"<td data-head='{_head(name, reading)}'>{number_text(value)}{small}</td>"
 
 
 def percent(share: float, sign: str = "") -> str:
@@ -113,12 +121,12 @@ def percent(share: float, sign: str = "") -> str:
 
 def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) -> list[list[Any]]:
     """Tabulate contacts for a file: a heading row, then one row for each contact."""
-    columns = COLUMNS if reading.units is Units.SI else reading.columns
+    columns = [(quantity, unit_of_files(quantity, reading)) for quantity in CONTACT.values()]
     rows = [
-        [name, *(float(column.values_of(contact)) for column in columns), bool(contact.valid)]
+        [name, *(float(values_of(contact, *column)) for column in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(column_of(column.quantity, column.reading) for column in columns), "valid"], *rows]
+    return [[head, *(column_of(*column) for column in columns), "valid"], *rows]
 
 
 def value_text(value: Any) -> str:
@@ -147,9 +155,9 @@ _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 
 
-def distinct_columns(reading: Reading, max_pressure_angle: float) -> list[Column]:
+def distinct_quantities(max_pressure_angle: float) -> list[Quantity]:
     """List the quantities of a contact, without those that repeat others if the pressure is largest at the pole."""
-    return [column for column in reading.columns if max_pressure_angle or column.attribute not in _AT_THE_POLE]
+    return [CONTACT[name] for name in CONTACT if max_pressure_angle or name not in _AT_THE_POLE]
 
 
 @lru_cache(maxsize=256)
@@ -157,13 +165,14 @@ def headline(
     contact: Contact, exact: Contact | None, cup: Cup, reading: Reading, von_mises: float | None = None
 ) -> str:
     """Return the numbers and checks of a contact as HTML; `von_mises` (MPa) and slow notes may follow."""
-    columns = distinct_columns(reading, float(contact.max_pressure_angle))
-    first = next(column for column in columns if column.attribute == _MAIN_QUANTITY)
-    cells = "".join(_quantity_cell(column, contact) for column in columns if column is not first)
+    first, quantities = CONTACT[_MAIN_QUANTITY], distinct_quantities(float(contact.max_pressure_angle))
+    cells = "".join(_quantity_cell(quantity, contact, reading) for quantity in quantities if quantity is not first)
     notes = contact.quick_notes if von_mises is None else contact.notes
+    if not contact.joint.liner.strengths:  # the verdict already states the utilisation
+        notes = tuple(note for note in notes if note != contact.utilisation_note)
     return (
-        f"<dl class='first'>{_quantity_cell(first, contact)}</dl>"
-        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, _unstated(contact, notes))}"
+        f"<dl class='first'>{_quantity_cell(first, contact, reading)}</dl>"
+        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes)}"
         f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
     )
 
@@ -176,17 +185,12 @@ def checked(rows: Sequence[Check], reading: Reading) -> str:
     return f"{status}{unchecked}{checks_html(rows, reading.with_unit) if rows else ''}"
 
 
-def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:
-    """List notes without that on utilisation where the verdict already states it."""
-    return [note for note in notes if contact.joint.liner.strengths or note != contact.utilisation_note]
-
-
-def _quantity_cell(column: Column, contact: Contact) -> str:
-    value = float(column.values_of(contact))
-    unit = "" if isnan(value) else _unit_html(column.unit)
+def _quantity_cell(quantity: Quantity, contact: Contact, reading: Reading) -> str:
+    value = float(reading.values_of(contact, quantity))
+    unit = "" if isnan(value) else _unit_html(reading.unit(quantity).text)
     return (
-        f"<div><dt title='{escape(column.symbol)}'>{escape(column.title)}</dt>"
-        f"<dd data-name='{column.attribute}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
+        f"<div><dt title='{escape(quantity.symbol)}'>{escape(quantity.title)}</dt>"
+        f"<dd data-name='{quantity.name}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
     )
 
 
@@ -195,9 +199,10 @@ def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:
     if isinstance(contact, OffAxisContact):
         return f"Estimated error of the largest pressure in the real cup: {percent(contact.error['max_pressure'])}"
     if exact is None or exact.model.name == contact.model.name:
-        known = [float(contact.error.get(column.attribute, 0.0)) for column in COLUMNS]
+        known = [float(contact.error.get(name, 0.0)) for name in CONTACT]
     else:
-        known = [float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in COLUMNS]
+        pairs = ((values_of(contact, quantity), values_of(exact, quantity)) for quantity in CONTACT.values())
+        known = [float(relative_deviation(value, truth)) for value, truth in pairs]
     apart = max((abs(share) for share in known if share == share), default=0.0)
     if apart == 0:
         return ""

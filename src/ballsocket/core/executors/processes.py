@@ -139,7 +139,6 @@ def _submit_until_worker_dies(
 
 @contextmanager
 def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
-    """Start worker processes, and stop them at the end of the block."""
     with limit_threads():
         pool = ProcessPoolExecutor(
             workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)
@@ -152,10 +151,7 @@ def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
 
 @contextmanager
 def limit_threads() -> Iterator[None]:
-    """Limit linear algebra to one thread in processes that are started within the block.
-
-    Threads of several processes on the same cores are many times slower.
-    """
+    """Limit linear algebra to one thread in processes started within the block: more threads than cores are slow."""
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
     try:
@@ -173,10 +169,7 @@ _work: Work | None = None
 
 
 def _initialize_worker(work: Work) -> None:
-    """Initialise a worker process: store its work function, and ignore Ctrl-C.
-
-    The parent process handles Ctrl-C.
-    """
+    """Store the work function of a worker process, and ignore Ctrl-C, which the parent process handles."""
     global _work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exit_with_parent()

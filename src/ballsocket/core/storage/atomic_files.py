@@ -212,10 +212,7 @@ def unpack_arrays(stream: BinaryIO, name: str) -> dict[str, Numbers]:
 
 
 def _count_zip_members(stream: BinaryIO) -> int:
-    """Read the number of members from the end record of a zip archive.
-
-    A damaged archive lists fewer members than it has.
-    """
+    """Read the number of members from the end record of a zip archive: a damaged archive lists fewer."""
     stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)
     return int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little")
 
@@ -247,10 +244,7 @@ def _cached_path(key: object) -> Path:
 
 
 def cache_folder() -> Path:
-    """Return the path of the cache folder.
-
-    It is the environment variable BALLSOCKET_CACHE, or `ballsocket` in the user's cache folder.
-    """
+    """Return the cache folder: BALLSOCKET_CACHE of the environment, or `ballsocket` in the user's cache folder."""
     folder = os.environ.get("BALLSOCKET_CACHE")
     if folder:
         return Path(folder)

@@ -123,10 +123,7 @@ class LocalFolder(ResultFolder):
 
 @dataclass(frozen=True)
 class RemoteFolder(ResultFolder):
-    """Folder in a remote store, such as "s3://bucket/hips.zarr".
-
-    Each call opens the address anew, so that a copy of this object works in another process.
-    """
+    """Folder in a remote store, such as "s3://bucket/hips.zarr"; a copy works in another process."""
 
     address: str
 

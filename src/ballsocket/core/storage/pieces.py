@@ -26,10 +26,7 @@ _SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
 @cache
 def fingerprint() -> str:
-    """Compute an identifier of the installed code: version and eight characters of a hash.
-
-    It changes with any line of code, data or page template of the package.
-    """
+    """Compute an identifier of the installed code, data and templates: the version and eight characters of a hash."""
     package = Path(__file__).parents[2]
     digest = sha256()
     for path in sorted(path for path in package.rglob("*") if path.suffix in _SUFFIXES):
@@ -50,10 +47,7 @@ def hash_inputs(*inputs: object) -> str:
 
 
 class PieceStore(ABC):
-    """Base class of stores for the results of numbered pieces of work.
-
-    Each worker process receives a copy of the store.
-    """
+    """Base class of stores for the results of numbered pieces of work; each worker process receives a copy."""
 
     @abstractmethod
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:

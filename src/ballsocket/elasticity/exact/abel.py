@@ -63,7 +63,7 @@ class AbelState(PeakPressure):
     @cached_property
     def _weights(self) -> Numbers:
         """Quadrature weights of integrals over [0, ε]."""
-        return self.half_angle[:, None] * (self.grid.weights * self.grid.slope)[self.grid.points :]
+        return self.half_angle[:, None] * (self.grid.nodes[1] * self.grid.slope)[self.grid.points :]
 
     @cached_property
     def _operators(self) -> tuple[Numbers, Numbers]:
@@ -98,11 +98,9 @@ class AbelState(PeakPressure):
         """
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
-            residual, slope = (
-                right_side(self._target_angles, d)
-                for right_side in (self.gap.transform, self.gap.indentation_derivative)
-            )
-            step = (self._solve_edge_value(residual) / self._solve_edge_value(slope))[:, None]
+            residual = self._solve_edge_value(self.gap.transform(self._target_angles, d))
+            slope = self._solve_edge_value(self.gap.indentation_derivative(self._target_angles, d))
+            step = (residual / slope)[:, None]
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
                 break
@@ -160,9 +158,8 @@ class AbelState(PeakPressure):
         """
         s = self._point_angles
         half_chord = numpy.sin(self.half_angle / 2)[:, None] ** 2 - numpy.sin(s / 2) ** 2
-        return numpy.all(
-            numpy.diff(self._odd_solution[0] / numpy.sin(s) * numpy.sqrt(half_chord), axis=-1) < 0, axis=-1
-        )
+        decreasing = numpy.diff(self._odd_solution[0] / numpy.sin(s) * numpy.sqrt(half_chord), axis=-1) < 0
+        return numpy.all(decreasing, axis=-1)
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
@@ -178,10 +175,7 @@ class AbelState(PeakPressure):
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Tangent stiffness dF/dd in N/mm.
-
-        It is that of a punch of constant contact area, because G is continuous at the edge.
-        """
+        """Tangent stiffness dF/dd in N/mm: of a punch of constant contact area, because G is continuous at the edge."""
         punch = (self._inverse @ self._indentation_transform[:, :-1, None])[..., 0]
         total = numpy.sum(self._weights * numpy.cos(1.5 * self._point_angles) * punch, axis=-1)
         return 2 * pi * self._squared_radius * total / self.kernel.compliance
@@ -235,12 +229,9 @@ class AbelState(PeakPressure):
 
         They are the coefficients of p = Σ p_n P_n(cos φ), in the shape (loads, count).
         """
-        if len(self._cached_modes) == 0 or self._cached_modes[0].shape[1] < count:
-            self._cached_modes[:] = [self._compute_modes(count)]
-        return self._cached_modes[0][:, :count]
-
-    def _compute_modes(self, count: int) -> Numbers:
-        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels of at most two wavelengths."""
+        if self._cached_modes and self._cached_modes[0].shape[1] >= count:
+            return self._cached_modes[0][:, :count]
+        # Gauss-Legendre quadrature in panels of at most two wavelengths
         panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 8)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
@@ -253,7 +244,8 @@ class AbelState(PeakPressure):
             # sin((n + 1/2) s) is the imaginary part of a product of powers, not a sine of each mode
             starts = _powers(numpy.exp(0.5j * s), numpy.exp(1j * _MODES_PER_BLOCK * s), blocks)
             contact_modes[:] = (starts @ _powers(G, numpy.exp(1j * s), _MODES_PER_BLOCK).T).imag
-        return pressure_modes.reshape(len(pressure_modes), -1)[:, :count] / self.kernel.compliance
+        self._cached_modes[:] = [pressure_modes.reshape(len(pressure_modes), -1)[:, :count] / self.kernel.compliance]
+        return self._cached_modes[0]
 
 
 def _powers(first: Numbers, factor: Numbers, count: int) -> Numbers:
@@ -282,13 +274,9 @@ def scaled_pressure(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> 
     return numpy.where(inside, 2 * numpy.sqrt(width) * total, 0.0)
 
 
-ROUNDING = 1e-9
-"""Relative rounding error of a pressure."""
-
+ROUNDING = 1e-9  # relative rounding error of a pressure
 _MODES_PER_BLOCK = 64
-
-_DEPTH_TOLERANCE = 1e-9
-"""Relative tolerance of an indentation, which is least accurate for the widest contact of a circular gap."""
+_DEPTH_TOLERANCE = 1e-9  # relative, of an indentation: least accurate for the widest contact of a circular gap
 
 
 def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:

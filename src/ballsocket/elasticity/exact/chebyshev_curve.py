@@ -35,9 +35,7 @@ _BLOCK = 2000  # contacts in one block, which fits into the cache
 _POWERS = {"indentation": 2.0, "force": 3.0}  # of ε in the loads of a point contact
 _STARTS, _MIN_START, _NEWTON_STEPS, _ROUNDING = 800, 1e-9, 3, 1e-12
 
-LOG_FUNCTIONS = 2
-"""Number of functions that are logarithms."""
-
+LOG_FUNCTIONS = 2  # number of functions that are logarithms
 _PRESSURE_RIPPLE = 1e-7  # relative ripple of a pressure from series
 
 
@@ -69,9 +67,8 @@ class ChebyshevCurve:
             angle = _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
         reachable = angle <= self.curve.widest_angle
         state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest_angle))
-        return JointContacts(
-            load=load, touching=touching, state=state, reached=reachable, error=self._errors(kind, state)
-        )
+        errors = self._errors(kind, state)
+        return JointContacts(load=load, touching=touching, state=state, reached=reachable, error=errors)
 
     def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
         """Estimate the relative error of each quantity at the applied load."""
@@ -102,14 +99,11 @@ class ChebyshevCurve:
     def is_accurate(self) -> bool:
         """True if the errors are within the tolerance and loads increase with the half angle."""
         state = ChebyshevState(series=self, half_angle=self.knots.half_angle)
-        load_errors = [error for kind in _POWERS for error in self._errors(kind, state).values()]
-        angle_errors = [
-            error[state.relative_clearance > _NEAR_PERFECT_FIT] for error in self._errors("half_angle", state).values()
-        ]
-        largest = max(numpy.max(error) for error in (*load_errors, *angle_errors))
-        return bool(
-            largest <= self.curve.tolerance and all(numpy.all(numpy.diff(x) > 0) for x in self._start_loads.values())
-        )
+        counted = state.relative_clearance > _NEAR_PERFECT_FIT
+        errors = [error for kind in _POWERS for error in self._errors(kind, state).values()]
+        errors += [error[counted] for error in self._errors("half_angle", state).values()]
+        accurate = max(numpy.max(error) for error in errors) <= self.curve.tolerance
+        return bool(accurate and all(numpy.all(numpy.diff(x) > 0) for x in self._start_loads.values()))
 
     @cached_property
     def expansion(self) -> Numbers:
@@ -132,9 +126,8 @@ class ChebyshevCurve:
 
     def evaluate_polynomials(self, angle: Numbers) -> Numbers:
         """Evaluate the Chebyshev polynomials (terms, contacts) at half angles."""
-        return chebyshev_polynomials(
-            2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1, self._chebyshev_coefficients.shape[1]
-        )
+        coordinate = 2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1
+        return chebyshev_polynomials(coordinate, self._chebyshev_coefficients.shape[1])
 
     @cached_property
     def stress_curve(self) -> StressCurve:
@@ -167,19 +160,17 @@ class ChebyshevCurve:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevState(PeakPressure):
-    """Contacts interpolated at half angles ε (contacts,) above 0, with the quantities of an `AbelState`."""
+    """Contacts interpolated at half angles ε (contacts,) above 0; the quantities are those of an `AbelState`."""
 
     series: ChebyshevCurve
     half_angle: Numbers
 
     @property
     def kernel(self) -> Kernel:
-        """Kernel of the joint's contact equation."""
         return self.series.curve.kernel
 
     @property
     def gap(self) -> Gap:
-        """Gap between ball and socket, as a function of angle and indentation."""
         return self.series.curve.gap
 
     @cached_property
@@ -188,62 +179,54 @@ class ChebyshevState(PeakPressure):
         return self.series.evaluate_dimensionless_functions(self.half_angle)
 
     @cached_property
-    def _relative_indentation(self) -> tuple[Numbers, Numbers]:
-        """Ratio of indentation d to total displacement X = c + d, and its difference from 1 (0 at the perfect fit)."""
-        ratio = numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
-        return ratio, 1 - ratio
+    def _relative_indentation(self) -> Numbers:
+        """Ratio of indentation d to total displacement X = c + d."""
+        return numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
 
-    @property
+    @cached_property
     def relative_clearance(self) -> Numbers:
         """Ratio c/X of clearance and total displacement, from 1 down to 0 at the perfect fit."""
-        return self._relative_indentation[1]
+        return 1 - self._relative_indentation
 
     @cached_property
     def _total_displacement(self) -> Numbers:
         """Total displacement X = c + d in mm, the sum of clearance and indentation."""
-        return self.gap.clearance / self._relative_indentation[1]
+        return self.gap.clearance / self.relative_clearance
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation d in mm."""
-        return self._total_displacement * self._relative_indentation[0]
+        return self._total_displacement * self._relative_indentation
 
     @cached_property
     def indentation_slope(self) -> Numbers:
-        """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad."""
         rate = self._function_values[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
-        return self._total_displacement * self._relative_indentation[0] * rate / self._relative_indentation[1]
+        return self._total_displacement * self._relative_indentation * rate / self.relative_clearance
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
-        """Pressure scale X ε/C in MPa, from the total displacement X and the compliance C of the kernel."""
+        """Pressure scale X ε/C in MPa."""
         return self._total_displacement * self.half_angle / self.kernel.compliance
 
     @cached_property
     def force(self) -> Numbers:
-        """Force F in N."""
         radius = self.gap.socket_radius * self.half_angle
         dimensionless_force = numpy.exp(self._function_values[0][1])
         return dimensionless_force * self._pressure_scale * radius * radius
 
     @cached_property
     def pole_pressure(self) -> Numbers:
-        """Pressure p0 at the pole in MPa."""
         return self._function_values[0][2] * self._pressure_scale
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Tangent stiffness dF/dd in N/mm."""
         return self._function_values[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
 
     @cached_property
     def energy(self) -> Numbers:
-        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
         return self._function_values[0][4] * self.force * self.indentation
 
     @cached_property
     def pressure_integral(self) -> Numbers:
-        """Integral of the pressure over the contact area, ∫ p dA, in N."""
         return self._function_values[0][5] * self.force
 
     @cached_property
@@ -253,23 +236,16 @@ class ChebyshevState(PeakPressure):
         The half angle ε and the total displacement X count as exact.
         """
         truncation_error, values = self.series.truncation_error[:, None], abs(self._function_values[0][LOG_FUNCTIONS:])
-        return (
-            numpy.max(truncation_error[:LOG_FUNCTIONS])
-            + numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
-            + numpy.max(self.series.knots.error)
-        )
+        relative = numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
+        return numpy.max(truncation_error[:LOG_FUNCTIONS]) + relative + numpy.max(self.series.knots.error)
 
     @property
     def displacement_error(self) -> Numbers:
-        """Relative error of the total displacement X at a half angle.
-
-        It equals that of the distance to the perfect fit.
-        """
-        return self.series.truncation_error[0] * self._relative_indentation[0] / self._relative_indentation[1]
+        """Relative error of the total displacement X at a half angle, and of the distance to the perfect fit."""
+        return self.series.truncation_error[0] * self._relative_indentation / self.relative_clearance
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
-        """Largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.series.knots.pressure_decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)
@@ -281,16 +257,10 @@ class ChebyshevState(PeakPressure):
         values[reachable] = self.series.stress_curve.stress_ratio(angle) * self.max_pressure[reachable]
         return values
 
-    @cached_property
-    def _expansion(self) -> Numbers:
-        """Legendre coefficients of the pressure profile G/sin s/X of each contact."""
-        return self.series.expansion @ self.series.evaluate_polynomials(self.half_angle)
-
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute the contact pressure p(φ) in MPa at polar angles (any, contacts); 0 outside the contact."""
-        return scaled_pressure(self.half_angle, self._expansion, angle) * (
-            self._total_displacement / self.kernel.compliance
-        )
+        expansion = self.series.expansion @ self.series.evaluate_polynomials(self.half_angle)
+        return scaled_pressure(self.half_angle, expansion, angle) * (self._total_displacement / self.kernel.compliance)
 
     def single_contact(self, number: int) -> AbelState:
         """Solve the contact with index `number` exactly."""
@@ -315,6 +285,5 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
 def _evaluate_contacts_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
     if len(contacts) <= _BLOCK:
         return function(contacts)
-    return numpy.concatenate(
-        [function(contacts[first : first + _BLOCK]) for first in range(0, len(contacts), _BLOCK)], axis=-1
-    )
+    starts = range(0, len(contacts), _BLOCK)
+    return numpy.concatenate([function(contacts[first : first + _BLOCK]) for first in starts], axis=-1)

@@ -110,9 +110,8 @@ class ElasticContact(SolvedContact):
         )
         thickness = sum(shell.thickness for shell in self._interior_state.kernel.socket.shells)
         inside = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
-        require(
-            "depth", depths, inside, f"a depth (mm) must lie between 0 and {thickness:g}, the thickness of the socket"
-        )
+        allowed = f"a depth (mm) must lie between 0 and {thickness:g}, the thickness of the socket"
+        require("depth", depths, inside, allowed)
         stresses = stress(self._interior_state, angles, depths)
         if angles.ndim or depths.ndim:
             return stresses
@@ -126,7 +125,12 @@ class ElasticContact(SolvedContact):
         The solution itself is that of a closed sphere. The keys are the names in `hemisphere.CHANGES`. A change is NaN
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
-        changes = self.laws.combine(_hemisphere_changes, rows=(len(CHANGES),))
+
+        def changes_of(contacts: JointContacts) -> numpy.ndarray:
+            changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
+            return numpy.stack([changes[name] for name in CHANGES])
+
+        changes = self.laws.combine(changes_of, rows=(len(CHANGES),))
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
@@ -137,9 +141,8 @@ class ElasticContact(SolvedContact):
     @property
     def quick_notes(self) -> tuple[str, ...]:
         """Notes without the numbers of a hemisphere."""
-        follows = self.hemisphere_change_bound("largest") > NOTED_CHANGE and not bool(
-            numpy.all(arrays.to_numpy(self._failed))
-        )
+        has_solution = not bool(numpy.all(arrays.to_numpy(self._failed)))
+        follows = self.hemisphere_change_bound("largest") > NOTED_CHANGE and has_solution
         return (*super().notes, *((_PREPARING,) if follows else ()))
 
     def _hemisphere_note(self) -> list[str]:
@@ -149,13 +152,10 @@ class ElasticContact(SolvedContact):
         negligible = numpy.all([~(abs(values) > NOTED_CHANGE) for values in changes.values()], axis=0)
         bounded = numpy.all([numpy.isfinite(values) for values in changes.values()], axis=0)
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
-        if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
+        is_noted = not unaffected.all() and bounded.all() and self.joint.strengths()
+        if is_noted and prod(self.laws.shape) == 1 and self.single_state.half_angle[0] >= MIN_HALF_ANGLE:
             changes["von Mises"] = numpy.array(self._hemisphere_von_mises_change)
         return self._note_on_invalid_points(unaffected, _describe_changes(changes))
-
-    @property
-    def _is_single(self) -> bool:
-        return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
     @cached_property
     def _hemisphere_von_mises_change(self) -> float:
@@ -211,18 +211,9 @@ class ElasticContact(SolvedContact):
         """Solved state of a single contact; several contacts or a narrow one raise ValueError."""
         state: AbelState = self.single_state.single_contact(0)
         width = float(state.half_angle[0])
-        require(
-            "half_angle",
-            width,
-            width >= MIN_HALF_ANGLE,
-            "stresses inside need a half angle of at least 1 degree: use hertz for narrower contacts",
-        )
+        allowed = "stresses inside need a half angle of at least 1 degree: use hertz for narrower contacts"
+        require("half_angle", width, width >= MIN_HALF_ANGLE, allowed)
         return state
-
-
-def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:
-    changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
-    return numpy.stack([changes[name] for name in CHANGES])
 
 
 _PREPARING = "closed sphere: preparing its differences from a hemisphere with a free rim"
@@ -238,7 +229,5 @@ def _describe_changes(changes: dict[str, numpy.ndarray]) -> str:
     if not listed:
         return "closed sphere: on a hemisphere the contact at this force reaches the rim; use fem or sphere"
     up_to = "" if all(values.size == 1 for values in changes.values()) else "up to "
-    return (
-        f"closed sphere: a hemisphere with a free rim has {up_to}{', '.join(listed)} at the same force; "
-        "use fem or sphere"
-    )
+    change = f"{up_to}{', '.join(listed)} at the same force"
+    return f"closed sphere: a hemisphere with a free rim has {change}; use fem or sphere"

@@ -87,39 +87,27 @@ class FreeFace:
         The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
         """
         r, w, f, slope, layer = self._radial_functions
-        young, nu = (
-            numpy.array([getattr(s, name) for s in self.socket.shells])[layer] for name in ("young", "poisson")
-        )
+        young, nu = numpy.array([(shell.young, shell.poisson) for shell in self.socket.shells])[layer].T
         lame, shear = _lame_constants(young, nu)
         x, weight = (numpy.array(part) for part in gauss_legendre(POLAR_TERMS + 3))
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(x)
         hoop, g = Q_rate + Q_cot, slope * r[:, None]
 
-        def integrate_polar(a: Numbers, b: Numbers) -> Numbers:
+        def polar(a: Numbers, b: Numbers) -> Numbers:  # integrals along the meridian: (a, b)
             return a.T @ (weight[:, None] * b)
 
-        def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
-            """Integrate products of radial functions a and b, times a factor, over the radius: (a, b)."""
+        def radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:  # integrals over the radius: (a, b)
             return a.T @ ((w * factor)[:, None] * b)
 
         # rr, rp, pp: blocks of the radial, mixed and polar displacement coefficients
-        mixed = integrate_radial(g, f, lame)
-        rr = numpy.kron(
-            integrate_radial(g, g, lame + 2 * shear)
-            + 2 * (mixed + mixed.T)
-            + integrate_radial(f, f, 4 * (lame + shear)),
-            integrate_polar(P, P),
-        ) + numpy.kron(integrate_radial(f, f, shear), integrate_polar(P_rate, P_rate))
-        rp = numpy.kron(mixed + integrate_radial(f, f, 2 * (lame + shear)), integrate_polar(P, hoop)) + numpy.kron(
-            integrate_radial(f, g - f, shear), integrate_polar(P_rate, Q)
-        )
-        pp = (
-            numpy.kron(integrate_radial(f, f, lame), integrate_polar(hoop, hoop))
-            + numpy.kron(
-                integrate_radial(f, f, 2 * shear), integrate_polar(Q_rate, Q_rate) + integrate_polar(Q_cot, Q_cot)
-            )
-            + numpy.kron(integrate_radial(g - f, g - f, shear), integrate_polar(Q, Q))
-        )
+        mixed, kron = radial(g, f, lame), numpy.kron
+        stretch = radial(g, g, lame + 2 * shear) + 2 * (mixed + mixed.T) + radial(f, f, 4 * (lame + shear))
+        rr = kron(stretch, polar(P, P)) + kron(radial(f, f, shear), polar(P_rate, P_rate))
+        rp = kron(mixed + radial(f, f, 2 * (lame + shear)), polar(P, hoop))
+        rp = rp + kron(radial(f, g - f, shear), polar(P_rate, Q))
+        pp = kron(radial(f, f, lame), polar(hoop, hoop))
+        pp = pp + kron(radial(f, f, 2 * shear), polar(Q_rate, Q_rate) + polar(Q_cot, Q_cot))
+        pp = pp + kron(radial(g - f, g - f, shear), polar(Q, Q))
         return numpy.block([[rr, rp], [rp.T, pp]])
 
     @cached_property
@@ -129,8 +117,11 @@ class FreeFace:
         They are the work of the reversed tractions -t of the equator on each function.
         """
         r, w, f, _, _ = self._radial_functions
-        n = numpy.arange(MODES)
-        P, slope = _legendre_at_equator(MODES)
+        n, P = numpy.arange(MODES), numpy.zeros(MODES)  # P_n(0), and slopes P_n'(0)
+        P[0] = 1.0
+        for k in range(2, MODES, 2):
+            P[k] = -(k - 1) / k * P[k - 2]
+        slope = n * numpy.concatenate([[0.0], P[:-1]])
         fields = self.socket.fields(n, r)
         factor = w * r
         corner = _shifted_legendre(numpy.zeros(1), POLAR_TERMS)[0][0]
@@ -173,7 +164,12 @@ class FreeFace:
     @cached_property
     def bore_displacement(self) -> Numbers:
         """Legendre coefficients of the additional radial displacement of the bore, per unit of p_n: (terms, modes)."""
-        return _full_range_matrix() @ self.displacement_coefficients[0, 0]
+        # coefficients of P_n(x) in each polynomial P_k(2x - 1)
+        x, weight = legendre.leggauss(POLAR_TERMS)
+        waves = legendre.legvander(x, POLAR_TERMS - 1)
+        half_range = legendre.legvander(2 * x - 1, POLAR_TERMS - 1)
+        full_range = ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ half_range
+        return full_range @ self.displacement_coefficients[0, 0]
 
 
 def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -198,24 +194,6 @@ def _polar_functions(x: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, Nu
 def _lame_constants(young: Any, poisson: Any) -> tuple[Any, Any]:
     """Compute Lamé's constants λ and G in MPa; G is the shear modulus."""
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
-
-
-def _full_range_matrix() -> Numbers:
-    """Compute the matrix of the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
-    x, weight = legendre.leggauss(POLAR_TERMS)
-    waves = legendre.legvander(x, POLAR_TERMS - 1)
-    return ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ legendre.legvander(
-        2 * x - 1, POLAR_TERMS - 1
-    )
-
-
-def _legendre_at_equator(count: int) -> tuple[Numbers, Numbers]:
-    """Compute the Legendre polynomials and their derivatives at the equator, P_n(0) and P_n'(0)."""
-    P, n = numpy.zeros(count), numpy.arange(count)
-    P[0] = 1.0
-    for k in range(2, count, 2):
-        P[k] = -(k - 1) / k * P[k - 2]
-    return P, n * numpy.concatenate([[0.0], P[:-1]])
 
 
 @lru_cache(maxsize=8)

@@ -41,11 +41,6 @@ class QuadratureGrid:
         return y[self.points :], w[self.points :]
 
     @cached_property
-    def weights(self) -> Numbers:
-        """Gauss-Legendre weights of the sources, for integrals over y."""
-        return self.nodes[1]
-
-    @cached_property
     def integral_to_edge(self) -> Numbers:
         """Matrix that integrates an odd function, known at the points, from each point to y = 1."""
         y, w = self.positive_nodes
@@ -82,7 +77,7 @@ class QuadratureGrid:
     @cached_property
     def log_weights(self) -> Numbers:
         """Weights of integrals over y with the kernel ln(|t - s|/ε): (targets, sources)."""
-        return _product_weights(_log_moments, self) + self.weights * numpy.log(self._distance_ratio)
+        return _product_weights(_log_moments, self) + self.nodes[1] * numpy.log(self._distance_ratio)
 
     @cached_property
     def distance_weights(self) -> Numbers:

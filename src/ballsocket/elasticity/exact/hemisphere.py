@@ -48,9 +48,7 @@ class HemisphereGap(LinearGap):
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
-        """Sum the cosines or sines of the additional displacement at t, times a factor for each mode."""
-        total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._wave_numbers))
-        return total
+        return numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._wave_numbers))
 
 
 def hemisphere_response(socket: Socket, ball: ElasticBall | None) -> Numbers:
@@ -106,10 +104,8 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
 def low_pressure_modes(state: AbelState) -> Numbers:
     """Compute the pressure modes p_n in MPa of the lowest degrees: (contacts, MODES)."""
     waves, sines = _quadrature_waves(tuple(state.half_angle.tolist()))
-    size = state.grid.points
-    series = state.expansion @ _even_legendre(size)
-    modes: Numbers = numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
-    return modes
+    series = state.expansion @ _even_legendre(state.grid.points)
+    return numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
 
 
 @lru_cache(maxsize=16)
@@ -121,16 +117,14 @@ def _quadrature_waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
     y, weight = (numpy.array(part) for part in gauss_legendre(_POINTS))
     angle = numpy.array(angles)[:, None]
     s = angle * numpy.sin(pi / 2 * y)
-    return numpy.sin(s[..., None] * (numpy.arange(MODES) + 0.5)), angle * weight * pi / 2 * numpy.cos(
-        pi / 2 * y
-    ) * numpy.sin(s)
+    weights = angle * weight * pi / 2 * numpy.cos(pi / 2 * y) * numpy.sin(s)
+    return numpy.sin(s[..., None] * (numpy.arange(MODES) + 0.5)), weights
 
 
 @cache
 def _even_legendre(count: int) -> Numbers:
-    """Compute the even Legendre polynomials P_0, P_2, ... at the quadrature points: (count, points)."""
     even: Numbers = legendre.legvander(numpy.array(gauss_legendre(_POINTS)[0]), 2 * count - 1)[:, ::2].T
-    return even
+    return even  # P_0, P_2, ... at the quadrature points: (count, points)
 
 
 def _make_hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
@@ -154,8 +148,7 @@ def _extrapolate_iterates(iterates: Numbers) -> Numbers:
     steps = steps / scale
     bends = numpy.diff(steps, axis=-1)
     weights = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
-    limit: Numbers = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
-    return limit
+    return iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -170,11 +163,13 @@ class ContactSeries:
     logs: dict[str, Numbers]
 
     @classmethod
-    def from_quantities(cls, clearance: float, angle: Numbers, quantities: dict[str, Numbers]) -> ContactSeries:
-        """Make the series from indentation, force and largest pressure at half angles (rad)."""
-        reach = clearance + quantities["indentation"]
-        scales = {"indentation": 2 * numpy.sin(angle / 2) ** 2, "force": angle**3, "max_pressure": angle}
-        logs = {name: numpy.log(values / reach / scales[name]) for name, values in quantities.items()}
+    def from_state(cls, state: AbelState, count: int) -> ContactSeries:
+        """Make the series from the first contacts of a state."""
+        angle, clearance = state.half_angle[:count], state.gap.clearance
+        d, F, p = (values[:count] for values in (state.indentation, state.force, _estimate_max_pressure(state)))
+        scaled = {"indentation": d / (clearance + d) / (2 * numpy.sin(angle / 2) ** 2)}
+        scaled |= {"force": F / (clearance + d) / angle**3, "max_pressure": p / (clearance + d) / angle}
+        logs = {name: numpy.log(values) for name, values in scaled.items()}
         return cls(clearance=clearance, x=numpy.log(angle), logs=logs)
 
     @cached_property
@@ -231,7 +226,6 @@ class Hemisphere:
 
     @cached_property
     def _extra_response(self) -> Numbers:
-        """Additional displacement of both surfaces per mode of pressure, in mm/MPa."""
         return hemisphere_response(self.kernel.socket, self.kernel.ball)
 
     @cached_property
@@ -239,9 +233,7 @@ class Hemisphere:
         return self._solve_bodies(self._load_curve.knots)
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
-        """Return contacts on the closed sphere and on the hemisphere around half angles, or None.
-
-        Only a few contacts are solved if the half angles are close together.
+        """Solve the contacts of both bodies around half angles, a few if these are close together.
 
         The result is None if the hemisphere has too few contacts or the numbers of the joint overflow.
         """
@@ -259,22 +251,12 @@ class Hemisphere:
     def _solve_bodies(self, closed: AbelState) -> Bodies | None:
         """Solve the hemisphere at the half angles of contacts on the closed sphere; make the series of both."""
         free = solve_on_hemisphere(closed, self._extra_response)
-        clearance, angle = closed.gap.clearance, closed.half_angle
-        quantity_sets = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
-        for quantities, state in zip(quantity_sets, (closed, free), strict=True):
-            quantities["max_pressure"] = _estimate_max_pressure(state)
-        valid = numpy.min([value > 0 for value in quantity_sets[1].values()], axis=0)
-        valid[1:] &= numpy.diff(quantity_sets[1]["force"]) > 0  # rounding can break this close to the perfect fit
+        valid = (free.indentation > 0) & (free.force > 0) & (_estimate_max_pressure(free) > 0)
+        valid[1:] &= numpy.diff(free.force) > 0  # rounding can break this close to the perfect fit
         count = int(numpy.argmin(numpy.append(valid, False)))
         if count < _MIN_CONTACTS:
             return None
-        first, second = (
-            ContactSeries.from_quantities(
-                clearance, angle[:count], {name: value[:count] for name, value in quantities.items()}
-            )
-            for quantities in quantity_sets
-        )
-        return first, second
+        return ContactSeries.from_state(closed, count), ContactSeries.from_state(free, count)
 
     def changes(self, half_angle: Numbers) -> dict[str, Numbers]:
         """Compute the relative change of each quantity on a hemisphere at the same force; NaN beyond the rim."""

@@ -14,6 +14,7 @@ to the integral at the points and at t = ε. They are linear in a_1 .. a_6 and i
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import ceil, pi
@@ -46,12 +47,12 @@ class Intervals:
         square = edge * grid.distance
         square *= square
         weights = _evaluate_polynomial(logarithm_coefficients(a), square)
-        weights *= grid.weights * numpy.log(edge) + grid.log_weights
+        weights *= grid.nodes[1] * numpy.log(edge) + grid.log_weights
         term = _evaluate_polynomial(distance_coefficients(a), square)
         term *= edge * grid.distance_weights
         weights += term
         term = _evaluate_polynomial(smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
-        term *= grid.weights
+        term *= grid.nodes[1]
         weights += term
         weights *= edge * (grid.slope / 2)
         left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
@@ -84,12 +85,11 @@ class CachedIntervals:
         return even, odd
 
     @cached_property
-    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
-        """Cosines and sines with their integrals computed so far, by their number."""
+    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:  # by their number
         return {}
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
+        """Compute the operators of `Intervals.closed_form_operators` from those of unit coefficients."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
@@ -103,9 +103,8 @@ class CachedIntervals:
             self._cached_waves[count] = _waves_and_integration_matrices(self.half_angle, self.grid, count)
         even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
-        _add_products(
-            (even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]), remainder, operators
-        )
+        waves = even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]
+        _add_products(waves, remainder, operators)
 
 
 def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
@@ -121,8 +120,7 @@ def _waves_and_integration_matrices(
     """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
 
     The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
-    The waves are shorter than the variations of the pressure, so they are
-    integrated at their own points.
+    The waves are shorter than the variations of the pressure, so they are integrated at their own points.
     """
     edge = half_angle[:, None]
     panels = _wave_panels(half_angle, grid, count)
@@ -140,8 +138,8 @@ def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Pane
     """Choose panels that resolve `count` cosines and sines, with points rounded up so that few rules are built."""
     points = grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4
     if points <= _LONGEST_PANEL:
-        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
-    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
+        return _panels_of(panels=1, points=_PANEL_STEP * ceil(points / _PANEL_STEP))
+    return _panels_of(panels=ceil(points / _LONGEST_PANEL), points=_LONGEST_PANEL)
 
 
 def _cosines_and_sines(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
@@ -193,9 +191,7 @@ class _Panels:
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-@cache
-def _panels_of(panels: int, points: int) -> _Panels:
-    return _Panels(panels=panels, points=points)
+_panels_of = cache(_Panels)
 
 
 @cache
@@ -222,20 +218,19 @@ class Kernel:
 
     def excess(self, degrees: Numbers) -> Numbers:
         """Compute the excess ρ_n = c_n (n + ½)/C - 1 of the modal compliance of both bodies together."""
-        socket = self.socket.excess(degrees)
-        if self.ball is None:
-            return socket
-        share = self.ball.asymptote / self.compliance
-        return (1 - share) * socket + share * self.ball.excess(degrees)
+        return self._mix(lambda body: body.excess(degrees))
 
     @cached_property
     def expansion(self) -> Numbers:
         """Coefficients a_1 .. a_8 of the expansion of ρ_n in 1/(n + ½)."""
-        socket = self.socket.expansion(ORDER + 2)
+        return self._mix(lambda body: body.expansion(ORDER + 2))
+
+    def _mix(self, quantity: Callable[[Socket | ElasticBall], Numbers]) -> Numbers:
+        """Compute the mean of a quantity of both bodies, weighted with their shares of the compliance C."""
         if self.ball is None:
-            return socket
+            return quantity(self.socket)
         share = self.ball.asymptote / self.compliance
-        return (1 - share) * socket + share * self.ball.expansion(ORDER + 2)
+        return (1 - share) * quantity(self.socket) + share * quantity(self.ball)
 
     @cached_property
     def remainder(self) -> Numbers:
@@ -246,10 +241,7 @@ class Kernel:
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
     def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
-        """Compute the integral operators of the kernel over [-ε, ε] for even and for odd functions f.
-
-        They are ½ ∫ k(t - s) f(s) ds.
-        """
+        """Compute the integral operators ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even and for odd functions f."""
         operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)
         return operators

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import inf
-from typing import Protocol
+from typing import Any
 
 import numpy
 
@@ -29,23 +29,6 @@ _KNOT_INTERVALS = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(_COARSE_P
 _WINDOW, _WINDOW_STEP = 8, 4  # number of knots in a window of half angles, and the step between windows
 
 _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
-
-
-class CurvePoints(Protocol):
-    """Quantities of contacts on a load curve, solved or interpolated."""
-
-    @property
-    def half_angle(self) -> Numbers: ...
-    @property
-    def indentation(self) -> Numbers: ...
-    @property
-    def force(self) -> Numbers: ...
-    @property
-    def stiffness(self) -> Numbers: ...
-    @property
-    def indentation_slope(self) -> Numbers: ...
-    @property
-    def error(self) -> Numbers: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,9 +58,8 @@ class LoadCurve:
 
     def state(self, angle: Numbers, points: int) -> AbelState:
         """Make the contacts with these half angles (rad), on a grid with this number of points."""
-        return AbelState(
-            kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points))
-        )
+        intervals = Intervals(half_angle=angle, grid=cached_grid(points))
+        return AbelState(kernel=self.kernel, gap=self.gap, intervals=intervals)
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
         state = self.state(angle, points)
@@ -132,34 +114,23 @@ class LoadCurve:
             return self._knot_state
         inside = _ANGLES[self._max_computed_angle > _ANGLES]
         margin = self._max_computed_angle - inside.max(initial=0.0)
-        return self.state(
-            numpy.append(inside, self._max_computed_angle - margin * numpy.array([0.5, 0.2, 0.07, 0.02])),
-            _COARSE_POINTS,
-        )
+        outermost = self._max_computed_angle - margin * numpy.array([0.5, 0.2, 0.07, 0.02])
+        return self.state(numpy.append(inside, outermost), _COARSE_POINTS)
 
     def knots_in(self, window: slice) -> AbelState | None:
         """Return the contacts at a slice of the tabulated half angles, or None if one of them is not valid."""
         state = AbelState(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
         return state if _is_contact(state).all() else None
 
-    @cached_property
-    def _knot_logarithms(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
-        """Interpolation data ln(load), ln ε and d ln ε/d ln(load) at the knots, by the kind of load."""
-        coarse = self.knots
-        y = numpy.log(coarse.half_angle)
-        return {kind: (numpy.log(law(coarse)), y, 1 / log_slope(kind, coarse)) for kind, law in _LAWS.items()}
-
     def _estimate_angle(self, kind: str, load: Numbers) -> Numbers:
         """Estimate the half angle in rad by cubics between the knots, or by a power law below the first."""
-        x, y, slope = self._knot_logarithms[kind]
+        knots = self.knots
+        x, y, slope = numpy.log(_LAWS[kind](knots)), numpy.log(knots.half_angle), 1 / log_slope(kind, knots)
         goal = numpy.log(load)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
         width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
-        cubic = (
-            y[i] * (1 + 2 * t) * (1 - t) ** 2
-            + y[i + 1] * t * t * (3 - 2 * t)
-            + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
-        )
+        cubic = y[i] * (1 + 2 * t) * (1 - t) ** 2 + y[i + 1] * t * t * (3 - 2 * t)
+        cubic = cubic + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
         bounded = numpy.clip(cubic, y[i], y[i + 1])
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), bounded))
 
@@ -174,7 +145,6 @@ def knot_window(angle: Numbers) -> slice | None:
 
 @cache
 def _window_intervals(start: int, stop: int) -> CachedIntervals:
-    """Return the integration intervals of a slice of the tabulated half angles, from a cache."""
     return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(_COARSE_POINTS))
 
 
@@ -185,24 +155,21 @@ def _is_contact(state: AbelState) -> Numbers:
         return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
-def log_slope(kind: str, state: CurvePoints) -> Numbers:
-    """Compute the logarithmic derivative of the load by the half angle, d ln(load)/d ln ε."""
+def log_slope(kind: str, state: Any) -> Numbers:
+    """Compute d ln(load)/d ln ε of solved or interpolated contacts."""
     deepening = state.half_angle * state.indentation_slope
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def estimate_errors(kind: str, state: CurvePoints) -> dict[str, Numbers]:
+def estimate_errors(kind: str, state: Any) -> dict[str, Numbers]:
     """Estimate the relative error of each quantity at the applied load."""
     state_error = _SAFETY * state.error
     slopes = {name: log_slope(name, state) for name in _LAWS}
     shift = state_error / slopes[kind] if kind in _LAWS else 0.0 * state_error
     errors = {name: state_error + shift * slope for name, slope in slopes.items()}
     errors["half_angle"] = shift
-    errors.update(
-        dict.fromkeys(
-            ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"), state_error + shift * slopes["force"]
-        )
-    )
+    for name in ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"):
+        errors[name] = state_error + shift * slopes["force"]
     errors["energy"] = errors["force"] + errors["indentation"]
     if kind in errors:
         errors[kind] = 0.0 * state_error

@@ -13,22 +13,16 @@ from math import ceil, inf, isinf, log, log1p
 import numpy
 from numpy.typing import ArrayLike
 
-from ...core.arrays import Array, Numbers
+from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
-from ...problem import Joint, Material, Support
+from ...problem import Joint, Support
 from .waves import UNIT, SupportedLayer, fixed_surface_condition, free_surface_condition
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shell:
-    """Spherical layer of a socket.
-
-    Raises
-    ------
-    ValueError
-        A number that is not allowed, named with its value.
-    """
+    """Spherical layer of a socket."""
 
     thickness: float  # in mm, positive; `inf` for the last layer of a massive socket
     young: float  # Young's modulus E in MPa, positive
@@ -64,11 +58,6 @@ class Fields:
 class Socket:
     """Spherical socket of elastic layers that are bonded to each other.
 
-    Raises
-    ------
-    ValueError
-        No layer, an infinite one inside, or a radius that is not positive.
-
     Examples
     --------
     >>> liner = Shell(thickness=6.75, young=1000.0, poisson=0.4)
@@ -93,7 +82,7 @@ class Socket:
     @property
     def asymptote(self) -> float:
         """Compliance C in mm/MPa, the limit of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
-        return asymptote_of(self.radius, self.shells[0].young, self.shells[0].poisson)
+        return 2 * (1 - self.shells[0].poisson ** 2) * self.radius / self.shells[0].young
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
         """Compute the modal compliances c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
@@ -119,9 +108,8 @@ class Socket:
     def expansion(self, order: int) -> numpy.ndarray:
         """Compute the coefficients a_1, ..., a_order of the asymptotic series ρ_n ~ Σ a_j (n + ½)^-j.
 
-        They are those of an infinite socket of the innermost material.
-
-        That series converges for n >= 2; the contribution of the layers is exponentially small, see `backing_degree`.
+        They are those of an infinite socket of the innermost material, whose series converges for n >= 2. The
+        contribution of the layers is exponentially small, see `backing_degree`.
         """
         return homogeneous_expansion(self.shells[0].poisson, order)
 
@@ -143,11 +131,6 @@ class Socket:
         """Compute displacements and stresses of each mode at radii (mm) of at least R2, per unit of p_n.
 
         Where two layers meet, the hoop stresses are those of the inner one.
-
-        Raises
-        ------
-        ValueError
-            A radius in the bore or beyond the outermost surface.
         """
         n, r = numpy.atleast_1d(_check_degrees(degrees)), numpy.atleast_1d(numpy.asarray(radii, dtype=float))
         bounds = self._interface_radii
@@ -188,11 +171,6 @@ class ElasticBall:
     surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition. The position of
     the ball is that of the sphere that fits its deformed surface best.
 
-    Raises
-    ------
-    ValueError
-        A number that is not allowed, named with its value.
-
     Examples
     --------
     >>> ElasticBall(radius=17.9, young=1000.0, poisson=0.4).compliance([0, 1, 2]).round(8)
@@ -211,13 +189,10 @@ class ElasticBall:
     @property
     def asymptote(self) -> float:
         """Compliance C in mm/MPa, the limit of c_n (n + ½): 2 (1 - ν²) R1/E."""
-        return asymptote_of(self.radius, self.young, self.poisson)
+        return 2 * (1 - self.poisson**2) * self.radius / self.young
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
-        """Compute the modal compliances c_n in mm/MPa: the pressure p_n P_n moves the surface by c_n p_n P_n.
-
-        The displacement is along the radius, inwards.
-        """
+        """Compute the modal compliances c_n in mm/MPa: a pressure p_n P_n moves the surface inwards by c_n p_n P_n."""
         n, nu = _check_degrees(degrees), self.poisson
         rigid = n == 1
         P = 2 * (1 - nu) * n * n + nu * n - (1 - 2 * nu)
@@ -231,10 +206,7 @@ class ElasticBall:
         return numpy.where(rigid, -1.0, homogeneous_excess(-(n + rigid + 0.5), self.poisson))
 
     def expansion(self, order: int) -> numpy.ndarray:
-        """Compute the coefficients a_1, ..., a_order of the series ρ_n = Σ a_j (n + ½)^-j.
-
-        The series converges for n >= 2.
-        """
+        """Compute the coefficients a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
         return homogeneous_expansion(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
 
 
@@ -247,9 +219,12 @@ def socket_of(joint: Joint) -> Socket:
     >>> socket_of(bs.joints["hip-28"]).shells
     (Shell(thickness=5.0, young=1000.0, poisson=0.4),)
     """
-    liner = _make_shell(joint.liner_thickness, joint.liner)
-    backing = (_make_shell(layer.thickness, layer.material) for layer in joint.backing)
-    return Socket(radius=float(joint.socket_radius), shells=(liner, *backing), support=joint.support)
+    layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
+    shells = (
+        Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
+        for thickness, material in layers
+    )
+    return Socket(radius=float(joint.socket_radius), shells=tuple(shells), support=joint.support)
 
 
 def ball_of(joint: Joint) -> ElasticBall | None:
@@ -259,10 +234,6 @@ def ball_of(joint: Joint) -> ElasticBall | None:
     return ElasticBall(
         radius=float(joint.ball_radius), young=float(joint.ball.young), poisson=float(joint.ball.poisson)
     )
-
-
-def _make_shell(thickness: Array, material: Material) -> Shell:
-    return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
 
 _NEGLIGIBLE = 1e-17  # contribution of the layers to ρ_n
@@ -286,11 +257,6 @@ def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:
     return n.astype(float)
 
 
-def asymptote_of(radius: float, young: float, poisson: float) -> float:
-    """Compute the compliance C in mm/MPa, the limit of c_n (n + ½), where a sphere acts as a half-space."""
-    return 2 * (1 - poisson**2) * radius / young
-
-
 def _excess_polynomials(nu: float) -> tuple[list[float], list[float]]:
     """Compute numerator and denominator of ρ_n in an infinite socket, in falling powers of q = n + ½.
 
@@ -302,10 +268,7 @@ def _excess_polynomials(nu: float) -> tuple[list[float], list[float]]:
 
 
 def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
-    """Compute the excess ρ_n of an infinite socket at q = n + ½, or of a ball at q = -(n + ½).
-
-    The excess is ρ_n = c_n (n + ½)/C - 1.
-    """
+    """Compute ρ_n = c_n (n + ½)/C - 1 of an infinite socket at q = n + ½, or of a ball at q = -(n + ½)."""
     numerator, _ = _excess_polynomials(nu)
     return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
 

@@ -63,13 +63,8 @@ def _sum_fields(state: AbelState, modes: Numbers, depths: Numbers, waves: tuple[
     """Sum modes times stress fields times waves: σ_rr, σ_φφ and σ_θθ of P, σ_cot and σ_rφ: (5, depths, angles)."""
     fields = state.kernel.socket.fields(numpy.arange(len(modes)), state.gap.socket_radius + depths)
     P, cotangent, sine = waves
-    pairs = (
-        (fields.sigma_rr, P),
-        (fields.sigma_phiphi, P),
-        (fields.sigma_thetatheta, P),
-        (fields.sigma_cot, cotangent),
-        (fields.sigma_rphi, sine),
-    )
+    pairs = [(fields.sigma_rr, P), (fields.sigma_phiphi, P), (fields.sigma_thetatheta, P)]
+    pairs += [(fields.sigma_cot, cotangent), (fields.sigma_rphi, sine)]
     return numpy.array([(modes[:, None] * field).T @ wave for field, wave in pairs])
 
 
@@ -80,10 +75,8 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
         angles, depths = _refine_points_around(angles, int(i)), _refine_points_around(depths, int(j))
-        maximum = Peak(
-            von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
-        )
-    return maximum
+    depth, angle = float(depths[_HALF_INTERVALS]), float(angles[_HALF_INTERVALS])
+    return Peak(von_mises=float(values[i, j]), depth=depth, angle=angle)
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
@@ -98,14 +91,13 @@ def estimate_von_mises(state: AbelState) -> Numbers:
 
     The estimate differs from `largest_von_mises` by at most `VON_MISES_TOLERANCE`.
     """
-    return _evaluate_contacts(_estimate_peak, state, numpy.ones_like(state.half_angle, dtype=bool))
 
+    def estimate_peak(contact: AbelState) -> float:
+        angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
+        count = _mode_count(contact, 0.0) // _FEWER_MODES
+        return float(_sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max())
 
-def _estimate_peak(contact: AbelState) -> float:
-    """Estimate the largest von Mises stress of one contact in MPa at a few points."""
-    angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
-    count = _mode_count(contact, 0.0) // _FEWER_MODES
-    return float(_sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max())
+    return _evaluate_contacts(estimate_peak, state, numpy.ones_like(state.half_angle, dtype=bool))
 
 
 VON_MISES_TOLERANCE = 0.1
@@ -138,9 +130,11 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
 
 def largest_von_mises(state: AbelState, reachable: Numbers) -> Numbers:
     """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others."""
-    return _evaluate_contacts(
-        lambda contact: find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises, state, reachable
-    )
+
+    def peak(contact: AbelState) -> float:
+        return find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises
+
+    return _evaluate_contacts(peak, state, reachable)
 
 
 def _evaluate_contacts(peak: Callable[[AbelState], float], state: AbelState, mask: Numbers) -> Numbers:
@@ -256,7 +250,8 @@ class StressCurve:
         position = (angle_root(angle, self.curve.ratio) - start) / step
         position = numpy.clip(position, 0.0, _STRESS_INTERVALS - 1e-9)
         first, fraction = position.astype(int), position % 1
-        low, high = (self._stress_ratios_at(number) for number in (first, first + 1))
+        unique, which = numpy.unique(numpy.stack([first, first + 1]), return_inverse=True)
+        low, high = numpy.array([self._solve_stress_ratio(int(i)) for i in unique])[which.reshape(2, -1)]
         return low + fraction * (high - low)
 
     @property
@@ -264,10 +259,6 @@ class StressCurve:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
         first = min(float(angle_root(_NARROWEST, self.curve.ratio)), self._widest_coordinate)
         return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
-
-    def _stress_ratios_at(self, numbers: Numbers) -> Numbers:
-        unique, positions = numpy.unique(numbers, return_inverse=True)
-        return numpy.array([self._solve_stress_ratio(int(number)) for number in unique])[positions.ravel()]
 
     def _solve_stress_ratio(self, number: int) -> float:
         """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""

@@ -52,11 +52,11 @@ class CondensedBody:
     def _factorize_stiffness(self) -> Any:
         return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
 
-    def compliance(self) -> Numbers:
-        """Compute the compliance matrix of the contact nodes: normal displacements by unit normal forces."""
+    def surface_compliance(self) -> tuple[Numbers, Numbers]:
+        """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
         factors, count = self._factorize_stiffness(), len(self.contact)
         stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
-        return numpy.linalg.inv((stiffness + stiffness.T) / 2)
+        return self.elastic.block.angle[:count], numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
     def displacements(self, forces: Numbers) -> Numbers:
         """Compute the displacements u_φ and u_r of all nodes, (nodes, 2), under normal forces on contact nodes."""
@@ -85,10 +85,7 @@ def elimination_ranks(block: Block) -> Numbers:
 
 
 def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
-    """Order the nodes of a grid by nested dissection along lines between elements.
-
-    `start` is the index of the part's first node in the full grid.
-    """
+    """Order the nodes of a part of a grid, which begins at `start`, by nested dissection between elements."""
     if nodes.size <= _MAX_LEAF_SIZE or min(nodes.shape) <= 2:
         return nodes.ravel()
     along = 0 if nodes.shape[0] >= nodes.shape[1] else 1
@@ -97,9 +94,8 @@ def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0
     middle += (start[along] + middle) % order  # counted in the full block
     second_start = (start[0] + middle + 1, start[1]) if along == 0 else (start[0], start[1] + middle + 1)
     first, second = (half if along == 0 else half.T for half in (lines[:middle], lines[middle + 1 :]))
-    return numpy.concatenate(
-        [nested_dissection(first, order, start), nested_dissection(second, order, second_start), lines[middle]]
-    )
+    parts = nested_dissection(first, order, start), nested_dissection(second, order, second_start)
+    return numpy.concatenate([*parts, lines[middle]])
 
 
 def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
@@ -149,16 +145,10 @@ def _axis_mask(mesh: Block) -> Numbers:
 @lru_cache(maxsize=64)
 def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Compute angles (rad) and compliance matrix of the nodes on the bore, from a cache."""
-    return _surface_compliance(socket_body(shape, resolution))
+    return socket_body(shape, resolution).surface_compliance()
 
 
 @lru_cache(maxsize=64)
 def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Compute angles (rad) and compliance matrix of the nodes on the ball's surface, from a cache."""
-    return _surface_compliance(ball_body(poisson, resolution))
-
-
-def _surface_compliance(body: CondensedBody) -> tuple[Numbers, Numbers]:
-    """Compute angles (rad) of a body's contact nodes and their normal displacements by unit normal forces."""
-    block = body.elastic.block
-    return block.angle[: len(body.contact)], body.compliance()
+    return ball_body(poisson, resolution).surface_compliance()

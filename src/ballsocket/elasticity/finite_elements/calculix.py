@@ -14,8 +14,8 @@ from typing import Any
 import numpy
 
 from ...core.arrays import Numbers
-from .deck import deck_paths
 from .deck_bodies import TYPES
+from .deck_lines import deck_paths
 
 SECTORS = 180
 """Number of sectors in a ring: CalculiX solves two degrees of an axisymmetric element."""
@@ -100,63 +100,33 @@ def read_results(out: Path) -> CcxAnswer:
     path, expected = deck_paths(out)
     deck = json.loads(expected.read_text(encoding="ascii"))
     dat = path.with_suffix(".dat")
-    forces, bore, ball = read_printed(dat, "PUSHED"), read_printed(dat, "BORE"), read_printed(dat, "ROUND")
+    forces, bore, ball = (read_printed(dat, name) for name in ("PUSHED", "BORE", "ROUND"))
     pressures = read_contact_pressures(path.with_suffix(".frd"))
     answer = CcxAnswer(**{field.name: numpy.full(len(deck["steps"]), numpy.nan) for field in fields(CcxAnswer)})
+    angle = numpy.array(deck["bore"]["angle"])
     for step in forces.keys() & bore.keys() & ball.keys() & pressures.keys():
-        surfaces = _Surfaces(deck=deck, bore=bore[step], ball=ball[step], pressures=pressures[step])
-        answer.indentation[step] = surfaces.indentation
+        indentation, gap = indentation_and_gap(deck, bore[step], ball[step])
+        answer.indentation[step] = indentation
         answer.force[step] = -float(forces[step][0, 1]) * SECTORS / deck["scale"]
         if deck["element"] != TYPES[1]:
-            answer.half_angle[step] = surfaces.half_angle
-            answer.pole_pressure[step] = surfaces.pole_pressure
+            half_angle = edge_angle(angle, gap / indentation)
+            nodal = numpy.array([pressures[step][node] for node in deck["bore"]["node"]]) / deck["scale"]
+            answer.half_angle[step] = half_angle
+            answer.pole_pressure[step] = pressure_at_pole(angle, nodal, half_angle)
     return answer
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Surfaces:
-    """Surfaces of socket and ball in one step: displacements by node, and pressures by node."""
-
-    deck: dict[str, Any]
-    bore: Numbers
-    ball: Numbers
-    pressures: dict[int, float]
-
-    @property
-    def _bore_angles(self) -> Numbers:
-        return numpy.array(self.deck["bore"]["angle"])
-
-    def _surface_displacements(self, name: str, rows: Numbers) -> Numbers:
-        """Return the displacements of a surface in mm, across and along the axis: (2, nodes), from the pole on."""
+def indentation_and_gap(deck: dict[str, Any], bore: Numbers, ball: Numbers) -> tuple[float, Numbers]:
+    """Compute the indentation in mm, and the gaps in mm between the bore's nodes and the ball, from printed rows."""
+    angle, moved = numpy.array(deck["bore"]["angle"]), {}
+    for name, rows in (("bore", bore), ("round", ball)):  # across and along the axis, from the pole on
         rows_by_node = {int(node): row for row, node in enumerate(rows[:, 0])}
-        return rows[[rows_by_node[node] for node in self.deck[name]["node"]], 1:3].T / self.deck["scale"]
-
-    @property
-    def indentation(self) -> float:
-        """Indentation in mm: the displacement of the ball's equator."""
-        return -float(self._surface_displacements("round", self.ball)[1, -1])
-
-    @property
-    def gap(self) -> Numbers:
-        """Gap in mm between the bore's nodes and the ball."""
-        angle, clearance = self._bore_angles, self.deck["joint"]["clearance"]
-        ball = [
-            numpy.interp(angle, self.deck["round"]["angle"], displacement)
-            for displacement in self._surface_displacements("round", self.ball)
-        ]
-        across, up = self._surface_displacements("bore", self.bore) - ball
-        return across * numpy.sin(angle) - up * numpy.cos(angle) + clearance * 2 * numpy.sin(angle / 2) ** 2
-
-    @property
-    def half_angle(self) -> float:
-        """Half angle of the contact in rad."""
-        return edge_angle(self._bore_angles, self.gap / self.indentation)
-
-    @property
-    def pole_pressure(self) -> float:
-        """Pressure at the pole in MPa."""
-        pressures = numpy.array([self.pressures[node] for node in self.deck["bore"]["node"]])
-        return pressure_at_pole(self._bore_angles, pressures / self.deck["scale"], self.half_angle)
+        moved[name] = rows[[rows_by_node[node] for node in deck[name]["node"]], 1:3].T / deck["scale"]
+    ball_at_bore = [numpy.interp(angle, deck["round"]["angle"], component) for component in moved["round"]]
+    across, up = moved["bore"] - ball_at_bore
+    opening = deck["joint"]["clearance"] * 2 * numpy.sin(angle / 2) ** 2
+    equator = moved["round"][1, -1]
+    return -float(equator), across * numpy.sin(angle) - up * numpy.cos(angle) + opening
 
 
 def edge_angle(angle: Numbers, gap: Numbers) -> float:

@@ -17,12 +17,10 @@ large. CAX8R has no such error.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, prod
-from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
@@ -31,15 +29,11 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text
-from ...core.storage.atomic_files import make_folder, write_text
 from ...problem.gaps import LinearGap, select_gap
 from ...version import __version__
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
-from .deck_lines import contact_lines, material_lines, node_set_lines, step_lines
+from .deck_lines import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .model import MeshedContact
-
-_NAME, _EXPECTED = "ballsocket", "expected.json"
-"""Names of the deck for CalculiX, and of the file with the expected results."""
 
 MAX_STEPS = 1000
 """Largest number of steps of a deck; the expected result of each is computed."""
@@ -47,20 +41,6 @@ MAX_STEPS = 1000
 _PENALTY_FACTOR = 2000.0
 _MAX_FACETING_GAP = 2e-3  # over the indentation
 _LINE_WIDTH = 100
-
-
-def deck_paths(out: Path) -> tuple[Path, Path]:
-    """Return the paths of the deck and of its expected results, from a folder or from a file that ends in `.inp`.
-
-    Examples
-    --------
-    >>> [path.as_posix() for path in (*deck_paths(Path("a")), *deck_paths(Path("a/hip.inp")))]
-    ['a/ballsocket.inp', 'a/expected.json', 'a/hip.inp', 'a/hip_expected.json']
-    """
-    out = Path(out)
-    if out.suffix.lower() == ".inp":
-        return out, out.with_name(f"{out.stem}_{_EXPECTED}")
-    return out / f"{_NAME}.inp", out / _EXPECTED
 
 
 def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> Deck:
@@ -103,8 +83,12 @@ def deck_of(contact: MeshedContact, *, steps: int = 8, scale: float = 1e-3) -> D
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Deck:
+class Deck(InputDeck):
     """Input deck of one contact; see `deck_of`.
+
+    `expected.json` has the joint, the scale, the element type and the expected results of the real joint under "steps":
+    `indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null for missing
+    values. It lists the nodes of both surfaces with their angles in rad under "bore" and "round".
 
     Attributes
     ----------
@@ -118,34 +102,16 @@ class Deck:
     steps: int
     scale: float
 
-    def text(self) -> str:
-        """Return the deck as ASCII text."""
+    def lines(self) -> Iterator[str]:
+        """Yield the lines of the deck in ASCII."""
         bodies = self._bodies
-        lines = [*self._title_lines(), *mesh_lines(bodies), *material_lines(bodies.materials)]
-        lines += [*contact_lines(*touching_faces(bodies), self.contact_penalty), *support_lines(bodies)]
+        yield from self._title_lines()
+        yield from mesh_lines(bodies)
+        yield from material_lines(bodies.materials)
+        yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
+        yield from support_lines(bodies)
         for depth in self._indentations:
-            lines += step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
-        return "\n".join(lines) + "\n"
-
-    def write(self, out: Path) -> Path:
-        """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the former.
-
-        A path that ends in `.inp` is the deck itself, with the results beside it: see `deck_paths`.
-
-        `expected.json` has the joint, the scale, the element type and the expected results of the real joint under
-        "steps": `indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null
-        for missing values. It lists the nodes of both surfaces with their angles in rad under "bore" and "round". Each
-        file is written atomically: an interrupted write leaves none.
-
-        Raises
-        ------
-        OSError
-            The folder cannot be written to.
-        """
-        deck, expected = deck_paths(out)
-        make_folder(deck.parent)
-        write_text(expected, json.dumps(self._expected_record(), indent=1) + "\n", encoding="ascii")
-        return write_text(deck, self.text(), encoding="ascii")
+            yield from step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
 
     @cached_property
     def _bodies(self) -> DeckBodies:
@@ -157,13 +123,8 @@ class Deck:
     def expected(self) -> dict[str, Numbers]:
         """Expected results at each step (steps,) by name, with indentation in mm, force in N, pressures in MPa."""
         contact = self.contact.model.press(self._bodies.joint, indentation=self._indentations)
-        return {
-            "indentation": self._indentations,
-            "force": contact.force,
-            "max_pressure": contact.max_pressure,
-            "pole_pressure": contact.pole_pressure,
-            "half_angle_deg": numpy.degrees(contact.half_angle),
-        }
+        results = {name: getattr(contact, name) for name in ("force", "max_pressure", "pole_pressure")}
+        return {"indentation": self._indentations, **results, "half_angle_deg": numpy.degrees(contact.half_angle)}
 
     @property
     def contact_penalty(self) -> float:
@@ -182,16 +143,16 @@ class Deck:
     def _expected_rows(self) -> list[list[float]]:
         return numpy.stack(list(self.expected.values()), axis=-1).tolist()
 
-    def _expected_record(self) -> dict[str, Any]:
+    def expected_record(self) -> dict[str, Any]:
+        """Return the expected results for JSON; see the class."""
+        rows = (zip(self.expected, row, strict=True) for row in self._expected_rows())
+        steps = [{name: None if numpy.isnan(value) else value for name, value in row} for row in rows]
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
             "scale": self.scale,
             "element": TYPES[self._bodies.solved.pair.resolution.order],
-            "steps": [
-                {name: None if numpy.isnan(value) else value for name, value in zip(self.expected, row, strict=True)}
-                for row in self._expected_rows()
-            ],
+            "steps": steps,
             "bore": self._bodies.socket.surface(),
             "round": self._bodies.ball.surface(),
         }
@@ -254,14 +215,11 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     They act along x and y on the axis and for fixed nodes of the ball, elsewhere along radius and angle.
     """
     socket, ball = bodies.socket, bodies.ball
-    upright = [
-        *socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes),
-        *ball.node_numbers(ball.axis_nodes | ball.fixed_nodes),
-    ]
+    upright = socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes)
+    upright += ball.node_numbers(ball.axis_nodes | ball.fixed_nodes)
     seated, rolling = socket.fixed_directions & ~socket.fixed_nodes & ~socket.axis_nodes
-    yield from node_set_lines(
-        "PUSHED", ball.node_numbers(ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes))
-    )
+    pushed = ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes)
+    yield from node_set_lines("PUSHED", ball.node_numbers(pushed))
     yield from _polar_lines(socket, seated | rolling)
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),

@@ -56,14 +56,18 @@ class ElasticBlock:
 
     @cached_property
     def element_unknowns(self) -> Numbers:
-        """Indices of each element's unknowns, shape (elements, unknowns).
+        """Indices (elements, unknowns) of each element's unknowns: u_φ and u_r of node i are 2i and 2i + 1."""
+        return self.number_unknowns(2)
 
-        The unknowns u_φ and u_r of node i are 2i and 2i + 1. Where layers slide on each other they share u_r.
+    def number_unknowns(self, per_node: int) -> Numbers:
+        """Return the indices (elements, unknowns) of each element's unknowns; the second of a node is u_r.
+
+        Where layers slide on each other they share u_r.
         """
-        shared = numpy.arange(2 * self.block.number.size)
+        shared = numpy.arange(per_node * self.block.number.size)
         for column in self.block.sliding:
-            shared[2 * self.block.number[:, column + 1] + 1] = 2 * self.block.number[:, column] + 1
-        indices = shared[2 * self.block.elements[..., None] + numpy.arange(2)]
+            shared[per_node * self.block.number[:, column + 1] + 1] = per_node * self.block.number[:, column] + 1
+        indices = shared[per_node * self.block.elements[..., None] + numpy.arange(per_node)]
         return indices.transpose(1, 0, 2).reshape(self.block.elements.shape[1], -1)
 
     @cached_property
@@ -73,15 +77,12 @@ class ElasticBlock:
 
     def stiffness_matrix(self) -> csc_matrix:
         """Assemble the stiffness matrix, from displacements to forces on full rings."""
-        size = 2 * self.block.number.size
         count = self.element_unknowns.shape[1]
         K = numpy.empty((len(self.element_unknowns), count, count))
         elements = numpy.arange(len(self.element_unknowns))
         for chunk in self.chunks(elements):
             K[chunk] = self._element_stiffness(elements[chunk])
-        rows, columns = numpy.broadcast_arrays(self.element_unknowns[:, :, None], self.element_unknowns[:, None, :])
-        positions = (rows.ravel().astype(numpy.int32), columns.ravel().astype(numpy.int32))
-        return coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc()
+        return assemble(K, self.element_unknowns, 2 * self.block.number.size)
 
     def chunks(self, elements: Numbers) -> Iterator[slice]:
         """Yield slices of a list of elements, each small enough for the cache."""
@@ -89,10 +90,7 @@ class ElasticBlock:
             yield slice(first, first + _CHUNK)
 
     def _element_stiffness(self, element_indices: Numbers) -> Numbers:
-        """Compute the stiffness matrices of elements.
-
-        They integrate the energy density 2G (|ε|² - tr²/3) + K tr². In its last term the change of volume is projected.
-        """
+        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements; in its last term tr is projected."""
         points, weights = element_quadrature(self.block.order)
         strains = self.strains(element_indices, points)
         volume = strains.volume * weights
@@ -111,16 +109,9 @@ class ElasticBlock:
         quadrature_points, weights = element_quadrature(self.block.order)
         integrated = self.gradients(element_indices, quadrature_points)
         evaluated = integrated if points is quadrature_points else self.gradients(element_indices, points)
-        swelling = self.project_volume(
-            element_indices,
-            integrated.coordinates,
-            integrated.volume * weights,
-            integrated.trace,
-            evaluated.coordinates,
-        )
-        return Strains(
-            coordinates=evaluated.coordinates, strain=evaluated.strain, swelling=swelling, volume=evaluated.volume
-        )
+        weighted = integrated.coordinates, integrated.volume * weights, integrated.trace
+        swelling = self.project_volume(element_indices, *weighted, evaluated.coordinates)
+        return Strains(**vars(evaluated), swelling=swelling)
 
     def project_volume(
         self,
@@ -132,14 +123,8 @@ class ElasticBlock:
     ) -> Numbers:
         """Project the volume change in elements onto polynomials, by weighted least squares.
 
-        Parameters
-        ----------
-        element_indices : array of int (elements,)
-        coordinates, other_coordinates : array (2, elements, points)
-            Coordinates (ρ, z) of the points with weights, and of the points of evaluation (default: the same).
-        volume : array (elements, points)
-            Weights of the points.
-        trace : array (elements, points, unknowns)
+        `trace` (elements, points, unknowns) is known at points (ρ, z), `coordinates` (2, elements, points), which have
+        the weights `volume` (elements, points). The result is evaluated at them or at the other coordinates.
         """
         Q = self._volume_polynomials(element_indices, coordinates)
         weighted = (Q * volume[..., None]).swapaxes(1, 2)
@@ -170,9 +155,8 @@ class ElasticBlock:
         strain[..., _HOOP, 0, :] = shapes.T / coordinates[0][..., None]
         phi = self.block.angle[elements // self.block.radius.shape[1]].T[:, None, None]
         across, along = strain[..., 0, :], strain[..., 1, :]
-        polar = numpy.stack(
-            [across * numpy.cos(phi) - along * numpy.sin(phi), across * numpy.sin(phi) + along * numpy.cos(phi)], -1
-        )
+        along_angle = across * numpy.cos(phi) - along * numpy.sin(phi)
+        polar = numpy.stack([along_angle, across * numpy.sin(phi) + along * numpy.cos(phi)], -1)
         return Gradients(
             coordinates=coordinates,
             strain=polar.reshape(*polar.shape[:-2], -1),
@@ -189,6 +173,13 @@ class ElasticBlock:
         det = J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0]
         adjugate = numpy.stack([J[..., 1, 1], -J[..., 1, 0], -J[..., 0, 1], J[..., 0, 0]], -1).reshape(J.shape)
         return shapes, numpy.einsum("ndq,eqcd->eqcn", slopes, adjugate / det[..., None, None]), det
+
+
+def assemble(matrices: Numbers, unknowns: Numbers, size: int) -> csc_matrix:
+    """Assemble element matrices (elements, unknowns, unknowns) to a sparse matrix (size, size)."""
+    rows, columns = numpy.broadcast_arrays(unknowns[:, :, None], unknowns[:, None, :])
+    positions = rows.ravel().astype(numpy.int32), columns.ravel().astype(numpy.int32)
+    return coo_matrix((matrices.ravel(), positions), shape=(size, size)).tocsc()
 
 
 def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:

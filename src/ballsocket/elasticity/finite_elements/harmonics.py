@@ -13,12 +13,12 @@ from functools import cached_property
 from math import inf
 
 import numpy
-from scipy.sparse import coo_matrix, csc_matrix
+from scipy.sparse import csc_matrix
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
 from .bodies import elimination_ranks, factorize, socket_block, socket_elastic
-from .elasticity import ElasticBlock, element_quadrature
+from .elasticity import ElasticBlock, assemble, element_quadrature
 from .mesh import Block, Resolution, SocketShape
 from .surfaces import lagrange
 
@@ -49,20 +49,11 @@ class Harmonics:
         return self._block.number[:reach, 0]
 
     def ring_compliance(self, edges: Numbers, degrees: Iterable[int]) -> Numbers:
-        """Compute the compliance matrices between rings for pressures that vary as cos mφ.
+        """Compute the compliance matrices between rings for pressures that vary as cos mφ: (degrees, rings, rings).
 
-        Parameters
-        ----------
-        edges : array (rings + 1,)
-            Polar angles between rings in rad, among the corners of the elements.
-        degrees : int
-            Harmonic numbers m.
-
-        Returns
-        -------
-        array (degrees, rings, rings)
-            ∫ u dA over the ring of the row by a unit of pressure on that of the column, without the factor
-            ∫ cos² mφ dφ/2π; symmetric. For a bore of radius 1 and a liner of Young's modulus 1.
+        They are ∫ u dA over the ring of the row by a unit of pressure on that of the column, without the factor ∫ cos²
+        mφ dφ/2π, for a bore of radius 1 and a liner of Young's modulus 1. The edges (rings + 1,) are polar angles
+        between rings in rad, among the corners of the elements.
         """
         loads = self._ring_loads(edges)
         return numpy.stack([self._harmonic_compliance(m, loads) for m in degrees])
@@ -134,12 +125,7 @@ class Harmonics:
 
     @cached_property
     def _element_unknowns(self) -> Numbers:
-        """Indices of each element's unknowns (elements, unknowns); layers that slide on each other share u_r."""
-        shared = numpy.arange(3 * self._block.number.size)
-        for column in self._block.sliding:
-            shared[3 * self._block.number[:, column + 1] + 1] = 3 * self._block.number[:, column] + 1
-        numbers = shared[3 * self._block.elements[..., None] + numpy.arange(3)]
-        return numbers.transpose(1, 0, 2).reshape(self._block.elements.shape[1], -1)
+        return self.elastic.number_unknowns(3)
 
     def has_mesh_of(self, other: Harmonics) -> bool:
         """Return True if both meshes have the same elements, at any radii."""
@@ -149,18 +135,11 @@ class Harmonics:
     def stiffness_powers(self) -> StiffnessPowers:
         """Stiffness matrices K0, K1 and K2 of the powers of m."""
         size = 3 * self._block.number.size
-        rows, columns = numpy.broadcast_arrays(self._element_unknowns[:, :, None], self._element_unknowns[:, None, :])
-        positions = rows.ravel(), columns.ravel()
-        constant, linear, quadratic = (
-            coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc() for K in self._element_matrices()
-        )
+        constant, linear, quadratic = (assemble(K, self._element_unknowns, size) for K in self._element_matrices())
         return constant, linear, quadratic
 
     def _element_matrices(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute the element stiffness matrices of the powers 0, 1 and 2 of m.
-
-        They integrate the energy density 2G (|ε|² - tr²/3) + K tr².
-        """
+        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements, for the powers 0, 1 and 2 of m."""
         elements = numpy.arange(self._block.elements.shape[1])
         points, weights = element_quadrature(self._block.order)
         gradients = self.elastic.gradients(elements, points)
@@ -185,9 +164,7 @@ class Harmonics:
     def _harmonic_strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and terms per unit of m.
 
-        The components are ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ and γ_zφ.
-
-        `axisymmetric` holds the first four components by the unknowns along angle and radius.
+        The components are ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ and γ_zφ; `axisymmetric` holds the first four.
         """
         shapes, slopes, _ = self.elastic.cartesian_shape_functions(numpy.arange(len(rho)), points)
         count = len(shapes)
@@ -207,14 +184,7 @@ _GROWTH, _DEEPEST = 1.6, 0.27
 
 
 def socket_harmonics(shape: SocketShape, edges: Numbers) -> Harmonics:
-    """Mesh a socket for rings of pressure between these angles, with one biquadratic element along each.
-
-    Parameters
-    ----------
-    shape : SocketShape
-    edges : array (rings + 1,)
-        Angles in rad, from 0 to the end of the bore.
-    """
+    """Mesh a socket for rings of pressure between these angles in rad, with one biquadratic element along each."""
     size = float(numpy.diff(edges).max())
     resolution = Resolution(size=size, reach=inf, growth=_GROWTH, widest=size, deepest=_DEEPEST, order=2)
     angle = shape.extend_to_rim(edges, size)

@@ -78,16 +78,8 @@ class Block:
 def mesh_block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
     """Mesh a spherical block from the corners of its elements.
 
-    Parameters
-    ----------
-    angle : array (corners,)
-        Angles of the corners in rad.
-    layers : list of arrays
-        Radii of each layer's corners (corners,), from the inside out; each layer begins at the end of the previous one.
-        Radii may vary along the angle (corner angles, corners).
-    order : int
-    sliding_layers : tuple of int
-        Layers that slide on the next inner one.
+    `angle` (corners,) is in rad. Each layer has the radii of its corners (corners,) or (corner angles, corners), from
+    the inside out, and begins at the end of the previous one. `sliding_layers` slide on the next inner one.
     """
     angle = add_midpoints(angle, order)
     columns: list[Numbers] = []
@@ -222,11 +214,8 @@ class SocketShape:
 def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
     """Make the shape of the socket of a joint of plain numbers."""
     R2, outer, layers = float(joint.socket_radius), 1.0, []
-    thickness_and_material = [
-        (joint.liner_thickness, joint.liner),
-        *((layer.thickness, layer.material) for layer in joint.backing),
-    ]
-    for thickness, material in thickness_and_material:
+    backing = ((layer.thickness, layer.material) for layer in joint.backing)
+    for thickness, material in ((joint.liner_thickness, joint.liner), *backing):
         outer += float(thickness) / R2
         layers.append((outer, float(material.young) / float(joint.liner.young), float(material.poisson)))
     return SocketShape(

@@ -10,6 +10,8 @@ of contact hold.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -24,8 +26,52 @@ _INDENTATION_TOLERANCE = 1e-13  # relative
 _POLE_FRACTION = 0.35  # fraction of the contact whose pressures determine the one at the pole, by an even polynomial
 
 
+class PairContact(ABC):
+    """Quantities of a contact on a surface pair that follow from its pressures."""
+
+    pair: SurfacePair
+    gap: Gap
+    half_angle: float  # ε in rad
+    indentation: float  # d in mm
+
+    @property
+    @abstractmethod
+    def nodal_pressures(self) -> Numbers:
+        """Pressures in MPa of the nodes from the pole on."""
+
+    @abstractmethod
+    def integrate_pressure(self, function: Callable[[Numbers], Numbers]) -> float:
+        """Integrate the pressure times a function of the polar angle over the contact area."""
+
+    @cached_property
+    def force(self) -> float:
+        """Force F in N."""
+        return self.integrate_pressure(numpy.cos)
+
+    @property
+    def strain_energy(self) -> float:
+        """Strain energy ½ ∫ p u dA in N mm."""
+        return self.integrate_pressure(lambda angle: self.gap.displacement(angle, self.indentation)) / 2
+
+    @property
+    def pressure_integral(self) -> float:
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
+        return self.integrate_pressure(numpy.ones_like)
+
+    @property
+    def tension(self) -> float:
+        """Largest tension as a fraction of the pole pressure; negative if all pressures are positive."""
+        return float(-self.nodal_pressures.min() / self.pole_pressure)
+
+    @cached_property
+    def pole_pressure(self) -> float:
+        """Pressure p0 at the pole in MPa, extrapolated because the node at the pole has almost no area."""
+        pressures = self.nodal_pressures
+        return pressure_at_pole(self.pair.angle[: len(pressures)], pressures, self.half_angle)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PartialContact:
+class PartialContact(PairContact):
     """Contact of half angle ε (rad) on a surface pair; `last` is the node k before the edge functions."""
 
     pair: SurfacePair
@@ -47,22 +93,17 @@ class PartialContact:
         rise_steps = numpy.diff(rise_ends)[:, None]
         rising_angle = (rise_ends[:-1, None] + rise_steps * _NODES).ravel()
         width = self.half_angle - start
-        t_ends = numpy.sqrt(
-            numpy.maximum(self.half_angle - self._corners_between(start, self.half_angle), 0.0) / width
-        )[::-1]
+        to_edge = self.half_angle - self._corners_between(start, self.half_angle)
+        t_ends = numpy.sqrt(numpy.maximum(to_edge, 0.0) / width)[::-1]
         t_steps = numpy.diff(t_ends)[:, None]
         t = (t_ends[:-1, None] + t_steps * _NODES).ravel()  # φ = ε - width t²
         falling_angle = self.half_angle - width * t * t
         angle = numpy.concatenate([rising_angle, falling_angle])
         weights = numpy.concatenate([(rise_steps * _WEIGHTS).ravel(), (t_steps * _WEIGHTS).ravel() * 2 * width * t])
         zero = numpy.zeros_like(rising_angle)
-        shape = numpy.stack(
-            [
-                numpy.concatenate([(rising_angle - previous) / (start - previous), t]),
-                numpy.concatenate([zero, t - t**3]),
-            ]
-        )
-        slope = numpy.concatenate([numpy.zeros_like(rising_angle), (1 / t - t) / (2 * width)])
+        hat = numpy.concatenate([(rising_angle - previous) / (start - previous), t])
+        shape = numpy.stack([hat, numpy.concatenate([zero, t - t**3])])
+        slope = numpy.concatenate([zero, (1 / t - t) / (2 * width)])
         return angle, weights * self.pair.area(angle), shape, slope
 
     def _corners_between(self, start: float, end: float) -> Numbers:
@@ -108,9 +149,8 @@ class PartialContact:
     def _right_hand_side(self, displacement: Numbers, edge_displacement: Numbers) -> Numbers:
         """Compute the right-hand side from displacements at the pair's points and at the edge points."""
         _, weights, shape, _ = self._edge_functions
-        return numpy.append(
-            self.pair.integrate_with_shapes(displacement)[: self.last], (weights * shape) @ edge_displacement
-        )
+        inside = self.pair.integrate_with_shapes(displacement)[: self.last]
+        return numpy.append(inside, (weights * shape) @ edge_displacement)
 
     @cached_property
     def _slope_pressures(self) -> Numbers:
@@ -120,23 +160,17 @@ class PartialContact:
     def _edge_residual(self, displacement: Numbers, edge_displacement: Numbers) -> float:
         """Compute the mean remaining gap, weighted with the slope of t by ε; the indentation makes it 0."""
         _, weights, _, slope = self._edge_functions
-        return float(
-            (weights * slope) @ edge_displacement
-            - self._slope_pressures @ self._right_hand_side(displacement, edge_displacement)
-        )
+        side = self._right_hand_side(displacement, edge_displacement)
+        return float((weights * slope) @ edge_displacement - self._slope_pressures @ side)
 
     def _ball_displacements(self, d: float) -> tuple[Numbers, Numbers]:
         """Compute the displacements in mm that a rigid ball imposes, at the pair's and at the edge points."""
         return self.gap.displacement(self.pair.points[0], d), self.gap.displacement(self._edge_functions[0], d)
 
-    @cached_property
-    def _cosines(self) -> tuple[Numbers, Numbers]:
-        return numpy.cos(self.pair.points[0]), numpy.cos(self._edge_functions[0])
-
     # --- results ---
 
     @cached_property
-    def indentation(self) -> float:
+    def indentation(self) -> float:  # type: ignore[override]
         """Indentation d in mm for this half angle, by the secant method (one step for the linear gap).
 
         NaN for a contact that is wider than the perfect fit.
@@ -158,25 +192,13 @@ class PartialContact:
         """Pressures p_0 .. p_k of the nodes and q of the second edge function, in MPa."""
         return self._solve_pressures(self._right_hand_side(*self._ball_displacements(self.indentation)))
 
-    @cached_property
-    def force(self) -> float:
-        """Force F in N."""
-        return float(self.pressures @ self._right_hand_side(*self._cosines))
-
     @property
-    def strain_energy(self) -> float:
-        """Strain energy ½ ∫ p u dA in N mm."""
-        return float(self.pressures @ self._right_hand_side(*self._ball_displacements(self.indentation))) / 2
+    def nodal_pressures(self) -> Numbers:
+        return self.pressures[:-1]
 
-    @property
-    def pressure_integral(self) -> float:
-        """Integral of the pressure over the contact area, ∫ p dA, in N."""
-        return float(self.pressures @ self._right_hand_side(*(numpy.ones_like(part) for part in self._cosines)))
-
-    @property
-    def tension(self) -> float:
-        """Largest tension as a fraction of the pole pressure; negative if all pressures are positive."""
-        return float(-self.pressures[:-1].min() / self.pole_pressure)
+    def integrate_pressure(self, function: Callable[[Numbers], Numbers]) -> float:
+        side = self._right_hand_side(function(self.pair.points[0]), function(self._edge_functions[0]))
+        return float(self.pressures @ side)
 
     @property
     def edge_element(self) -> float:
@@ -204,14 +226,9 @@ class PartialContact:
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 outside the contact."""
         nodes = self.pair.angle[: self.last + 1]
-        inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:-1]))
+        inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.nodal_pressures[1:]))
         t = numpy.sqrt(numpy.clip((self.half_angle - angle) / (self.half_angle - nodes[-1]), 0.0, 1.0))
         return numpy.where(angle <= nodes[-1], inside, self.pressures[-2] * t + self.pressures[-1] * (t - t**3))
-
-    @cached_property
-    def pole_pressure(self) -> float:
-        """Pressure p0 at the pole in MPa, extrapolated because the node at the pole has almost no area."""
-        return pressure_at_pole(self.pair.angle[: self.last + 1], self.pressures[:-1], self.half_angle)
 
 
 def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
@@ -228,16 +245,16 @@ def partial_contact(pair: SurfacePair, gap: Gap, half_angle: float) -> PartialCo
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FullContact:
-    """Contact that fills the bore, at an indentation in mm; it has the quantities of a `PartialContact`."""
+class FullContact(PairContact):
+    """Contact that fills the bore, at an indentation in mm."""
 
     pair: SurfacePair
     gap: Gap
     indentation: float
 
     @property
-    def half_angle(self) -> float:
-        """Half angle in rad: the polar angle of the bore's end."""
+    def half_angle(self) -> float:  # type: ignore[override]
+        """Polar angle of the bore's end in rad."""
         return float(self.pair.angle[-1])
 
     @cached_property
@@ -246,29 +263,12 @@ class FullContact:
         displacement = self.pair.integrate_with_shapes(self.gap.displacement(self.pair.points[0], self.indentation))
         return self.pair.whitening.T @ (self.pair.whitening @ displacement)
 
-    def _integrate_pressure(self, values: Numbers) -> float:
-        """Integrate the pressure times values at the quadrature points over the contact area."""
-        return float(self.pressures @ self.pair.integrate_with_shapes(values))
-
-    @cached_property
-    def force(self) -> float:
-        """Force F in N."""
-        return self._integrate_pressure(numpy.cos(self.pair.points[0]))
-
     @property
-    def strain_energy(self) -> float:
-        """Strain energy ½ ∫ p u dA in N mm."""
-        return self._integrate_pressure(self.gap.displacement(self.pair.points[0], self.indentation)) / 2
+    def nodal_pressures(self) -> Numbers:
+        return self.pressures
 
-    @property
-    def pressure_integral(self) -> float:
-        """Integral of the pressure over the contact area, ∫ p dA, in N."""
-        return self._integrate_pressure(numpy.ones_like(self.pair.points[0]))
-
-    @property
-    def tension(self) -> float:
-        """Largest tension as a fraction of the pole pressure; negative if all pressures are positive."""
-        return float(-self.pressures.min() / self.pole_pressure)
+    def integrate_pressure(self, function: Callable[[Numbers], Numbers]) -> float:
+        return float(self.pressures @ self.pair.integrate_with_shapes(function(self.pair.points[0])))
 
     @property
     def overlap(self) -> float:
@@ -296,8 +296,3 @@ class FullContact:
         nodes = self.pair.angle
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:]))
         return numpy.where(angle <= nodes[-1], inside, 0.0)
-
-    @cached_property
-    def pole_pressure(self) -> float:
-        """Pressure p0 at the pole in MPa."""
-        return pressure_at_pole(self.pair.angle, self.pressures, self.half_angle)

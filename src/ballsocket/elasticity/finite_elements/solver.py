@@ -50,10 +50,9 @@ class MeshedLoadCurve:
         touching = load > 0
         loads = load[touching].tolist()
         numbers = [self._mesh_class(kind, value) for value in loads]
+        pairs = list(zip(loads, numbers, strict=True))
         fine, *coarse = (
-            MeshedStates(
-                solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True))
-            )
+            MeshedStates(solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in pairs))
             for mesh in (FINE, COARSE)[: self.meshes]
         )
         reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
@@ -80,9 +79,8 @@ class MeshedLoadCurve:
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
-            self._cached_brackets[number, mesh] = ContactBracket(
-                pair=self.pairs(number, mesh), gap=self.gap, low=low, high=high
-            )
+            pair = self.pairs(number, mesh)
+            self._cached_brackets[number, mesh] = ContactBracket(pair=pair, gap=self.gap, low=low, high=high)
         return self._cached_brackets[number, mesh]
 
     def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
@@ -170,16 +168,8 @@ class MeshedStates(PeakPressure):
 
 
 _SAFETY = 2.0  # factor on Richardson's error estimate
-_MIN_ERRORS = {
-    "force": 0.03,
-    "indentation": 0.03,
-    "half_angle": 0.7,
-    "max_pressure": 0.2,
-    "pole_pressure": 0.2,
-    "stiffness": 1.0,
-    "energy": 0.07,
-    "pressure_integral": 0.02,
-}
+_MIN_ERRORS = {"force": 0.03, "indentation": 0.03, "half_angle": 0.7, "max_pressure": 0.2, "pole_pressure": 0.2}
+_MIN_ERRORS |= {"stiffness": 1.0, "energy": 0.07, "pressure_integral": 0.02}
 """Observed errors of random contacts against the exact solution, over the square of relative element size.
 
 They hold for biquadratic elements; bilinear ones had three times the errors. test_fem.py draws new contacts and
@@ -236,15 +226,12 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
 
     thickness, order = float(joint.liner_thickness), settings.order
 
-    def make_resolution(spacing: Spacing, class_index: int, mesh: int) -> Resolution:
-        coarse = spacing.coarse(class_limits[class_index], radius, thickness, order)
-        return coarse if mesh == COARSE else replace(coarse, halvings=1)
-
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        socket, ball = (
-            make_resolution(spacing, class_index, mesh) for spacing in (settings.spacing, settings.ball_spacing)
-        )
-        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * class_limits[class_index], widest))
+        limit = class_limits[class_index]
+        spacings = settings.spacing, settings.ball_spacing
+        coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
+        socket, ball = (part if mesh == COARSE else replace(part, halvings=1) for part in coarse)
+        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
@@ -259,15 +246,10 @@ def check_cup(cup: Cup, joint: Joint) -> None:
         if not ground:
             raise ValueError("interface = 'sliding' needs a backing or a fixed outer surface behind the liner")
     chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
-    require(
-        "chamfer", chamfer, chamfer < 0.9 * liner, f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
-    )
-    require(
-        "chamfer",
-        chamfer,
-        chamfer == 0 or chamfer > 1e-3 * liner,
-        "a chamfer must be 0 or above a thousandth of the liner thickness",
-    )
+    leaves = f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
+    require("chamfer", chamfer, chamfer < 0.9 * liner, leaves)
+    allowed = "a chamfer must be 0 or above a thousandth of the liner thickness"
+    require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, allowed)
     require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
@@ -288,13 +270,13 @@ def _make_surface_pair(
     check_memory(size, resolution.order)
     report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
-    angle, compliance = socket_compliance(socket_shape(joint, settings.cup), resolution)
-    surfaces = [ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.liner.young)))]
+    unit_bodies = [(*socket_compliance(socket_shape(joint, settings.cup), resolution), joint.liner)]
     if joint.ball is not None:
-        angle, compliance = ball_compliance(float(joint.ball.poisson), ball_resolution)
-        surfaces.append(
-            ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(joint.ball.young)))
-        )
+        unit_bodies.append((*ball_compliance(float(joint.ball.poisson), ball_resolution), joint.ball))
+    surfaces = [
+        ContactSurface(angle=angle, order=order, compliance=compliance / (R2 * float(material.young)))
+        for angle, compliance, material in unit_bodies
+    ]
     return SurfacePair(
         surfaces=tuple(surfaces), radius=R2, reach=reach, resolution=resolution, ball_resolution=ball_resolution
     )

@@ -115,10 +115,7 @@ class SurfacePair:
 
     @cached_property
     def compliance_matrix(self) -> Numbers:
-        """Compliance matrix of both bodies between shape functions of the pressure, in mm³/MPa.
-
-        Its entries are ∫ φ_i (displacement by φ_j) dA.
-        """
+        """Integrals ∫ φ_i (displacement of both bodies by φ_j) dA in mm³/MPa, for shape functions φ of the pressure."""
         return sum(
             forces.T @ displacements for forces, displacements in zip(self.forces, self.displacements, strict=True)
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Any
 
 import numpy
 
@@ -35,10 +35,7 @@ class GapField:
     def overlap(self, displacement: Numbers) -> Numbers:
         """Compute the overlap of ball and undeformed bore in mm, negative in a gap: (batch, rings, meridians).
 
-        Parameters
-        ----------
-        displacement : array (batch, 3)
-            Displacement of the ball's centre from the centre of the bore, in mm.
+        `displacement` (batch, 3) is that of the ball's centre from the centre of the bore, in mm.
         """
         along = numpy.einsum("bk,kij->bij", displacement, self.grid.normals)
         if self.kind is LinearGap:
@@ -65,48 +62,20 @@ class GapField:
         return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along
 
 
-class BoreSize(Protocol):
-    """Sizes of a bore: clearance and radius in mm."""
-
-    @property
-    def clearance(self) -> float: ...
-    @property
-    def socket_radius(self) -> float: ...
-
-
-def initial_displacement(bore: BoreSize, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
+def initial_displacement(bore: Any, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
     """Estimate displacements (n, 3) in mm along the loads, from springs in a full sphere at the largest wear depth.
 
-    Parameters
-    ----------
-    bore : object with a clearance and a socket_radius
-        Radii in mm.
-    modulus : float
-        Foundation modulus in MPa/mm: that of the bore under uniform pressure.
-    depth : array
-        Depth of the worn bore below its sphere, in mm.
-    force, axes : array (n,), array (n, 3)
-        Magnitudes of the loads in N, and unit vectors along them.
+    `bore` has a clearance and a socket_radius in mm. The modulus of the foundation is that of the bore under uniform
+    pressure, in MPa/mm. `depth` is that of the worn bore below its sphere, in mm. The loads have magnitudes (n,) in N
+    and unit vectors (n, 3).
     """
     clearance = max(bore.clearance, 0.0)
     indentation = linear_indentation(bore.socket_radius, clearance, modulus, force)
-    start: Numbers = axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
-    return start
+    return axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
 
 
 _PATH_POINTS = 4  # number of contacts on the way of a ball, at which the work of the load is integrated
 _BATCH_CELLS = 150_000  # number of cells that are solved together: more exceed the processor's cache
-
-
-class Equilibria(Protocol):
-    """Solved balls: displacement (batch, 3), pressure (batch, rings, meridians) and converged (batch,)."""
-
-    @property
-    def displacement(self) -> Numbers: ...
-    @property
-    def pressure(self) -> Numbers: ...
-    @property
-    def converged(self) -> Numbers: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,7 +86,7 @@ class EquilibriumBatch:
     pressure: Numbers  # (batch, rings, meridians), pressure in MPa
     converged: Numbers  # bool (batch,), True where the solver reached its tolerance
 
-    def store(self, indices: Numbers, part: Equilibria) -> None:
+    def store(self, indices: Numbers, part: EquilibriumBatch) -> None:
         """Copy the solved balls of a part to these indices."""
         for name in ("displacement", "pressure", "converged"):
             getattr(self, name)[indices] = getattr(part, name)
@@ -151,33 +120,23 @@ class BoreContact:
             return None
         return replace(self, compliance=compliance, gap=self.gap.on_coarser_grid(compliance.grid))
 
-    def refine(self, fields: Numbers) -> Numbers:
-        """Transfer fields from the cells of the coarser grid to those of this grid: (..., rings, meridians)."""
-        return self.compliance.grid.refine(fields)
-
     def force(self, pressure: Numbers) -> Numbers:
         """Compute the force on the bore in N, (batch, 3), from pressures (batch, rings, meridians)."""
-        force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
-        return force
+        return pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
 
     def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
         """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""
-        pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
+        batch = self.unsolved_batch(displacement)
         for block in self.split_into_blocks(numpy.arange(len(displacement))):
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
-            pressure[block], converged[block] = solution.pressure, solution.converged
-        return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
+            batch.pressure[block], batch.converged[block] = solution.pressure, solution.converged
+        return batch
 
     def work_beyond_stored_energy(self, displacement: Numbers) -> Numbers:
         """Compute the work of the load in N mm, (batch,), less the stored energy, on straight ways from the centre.
 
         The pressure acts along the normals of the bore, but the overlap of a circular gap grows by less than the
         displacement along them. The difference is small, so that contacts on the coarser grid suffice.
-
-        Parameters
-        ----------
-        displacement : array (batch, 3)
-            Displacement of the ball's centre in mm at the end of the way.
         """
         if self.gap.kind.conservative:
             return numpy.zeros(len(displacement))
@@ -202,10 +161,7 @@ class BoreContact:
         tolerance: float = 0.1,
         edge_compliance: Numbers | float = 1.0,
     ) -> Numbers:
-        """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians).
-
-        See `solve_pressure_change` for the shares (batch, rings, meridians) of the cells in contact.
-        """
+        """Compute the derivative of pressures by displacement in MPa/mm: (batch, 3, rings, meridians)."""
         shape = (len(share), 3, *share.shape[1:])
         overlap_slope = numpy.broadcast_to(self.gap.overlap_slope(displacement), shape).reshape(-1, *shape[2:])
         shares = numpy.broadcast_to(share[:, None], shape).reshape(-1, *shape[2:])
@@ -216,10 +172,7 @@ class BoreContact:
         return change.reshape(shape)
 
     def tangent(self, sensitivity: Numbers) -> Numbers:
-        """Compute the tangent stiffness of contact and tether in N/mm: (batch, 3, 3).
-
-        `sensitivity` is the derivative of the pressures by the displacement.
-        """
+        """Compute the tangent stiffness (batch, 3, 3) of contact and tether in N/mm from the sensitivity."""
         tangent = sensitivity.reshape(len(sensitivity), 3, len(self._force_weights)) @ self._force_weights
         return tangent.swapaxes(1, 2) + self.tether
 
@@ -229,10 +182,11 @@ class BoreContact:
         size = max(_BATCH_CELLS // (grid.rings * grid.meridians), 1)
         return [indices[i : i + size] for i in range(0, len(indices), size)]
 
-    def zero_pressure(self, count: int) -> Numbers:
-        """Return pressures of 0 for a number of contacts: (count, rings, meridians)."""
-        grid = self.compliance.grid
-        return numpy.zeros((count, grid.rings, grid.meridians))
+    def unsolved_batch(self, displacement: Numbers) -> EquilibriumBatch:
+        """Return balls at displacements (batch, 3) in mm, without pressure and not converged."""
+        count, grid = len(displacement), self.compliance.grid
+        pressure, converged = numpy.zeros((count, grid.rings, grid.meridians)), numpy.zeros(count, dtype=bool)
+        return EquilibriumBatch(displacement=displacement.copy(), pressure=pressure, converged=converged)
 
 
 def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:

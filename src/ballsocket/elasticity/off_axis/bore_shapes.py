@@ -105,15 +105,11 @@ class OvalBore:
         """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""
         x, y, _ = directions
         twofold = (x * x - y * y) * numpy.cos(2 * self.direction) + 2 * x * y * numpy.sin(2 * self.direction)
-        depth: Numbers = -self.squeeze / 2 * twofold
-        return depth
+        return -self.squeeze / 2 * twofold
 
 
 class InterpolatedDeviation:
-    """Base class of deviations interpolated between measured points.
-
-    The depth at the last read-only array of directions is cached.
-    """
+    """Deviation interpolated between measured points; the depth at the last read-only directions is cached."""
 
     def depth(self, directions: Numbers) -> Numbers:
         """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""
@@ -123,8 +119,7 @@ class InterpolatedDeviation:
         if last is not directions:
             depth = self.interpolate(directions)
             vars(self)["_last"] = directions, depth
-        result: Numbers = depth
-        return result
+        return depth
 
     @abstractmethod
     def interpolate(self, directions: Numbers) -> Numbers:
@@ -186,5 +181,4 @@ class DepthTable(InterpolatedDeviation):
         polar = numpy.clip(polar_angle(directions), self.polar[0], self.polar[-1])
         first = self._interpolator.grid[1][0]
         azimuth = first + (numpy.arctan2(y, x) - first) % (2 * pi)
-        depth: Numbers = self._interpolator(numpy.stack([polar, azimuth], axis=-1))
-        return depth
+        return self._interpolator(numpy.stack([polar, azimuth], axis=-1))

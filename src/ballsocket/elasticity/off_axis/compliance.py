@@ -35,10 +35,6 @@ class AxisymmetricOperator:
         transformed = products.reshape(len(self.matrices), rings, 2 * batch).view(waves.dtype).transpose(2, 1, 0)
         return scipy.fft.irfft(transformed, n=meridians)
 
-    def in_single_precision(self) -> AxisymmetricOperator:
-        """Return the operator in single precision."""
-        return AxisymmetricOperator(matrices=self.matrices.astype(numpy.float32))
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UniformOperator:
@@ -49,10 +45,6 @@ class UniformOperator:
     def __call__(self, fields: Numbers) -> Numbers:
         """Apply the operator to fields (batch, rings, meridians)."""
         return fields * self.factor
-
-    def in_single_precision(self) -> UniformOperator:
-        """Return this operator, which has no matrices to convert."""
-        return self
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,14 +60,12 @@ class Compliance:
         """Compute the sum of both surface displacements in mm from pressures in MPa, (batch, rings, meridians)."""
         return self.softness(pressure)
 
-    def displacement_in_single_precision(self, pressure: Numbers) -> Numbers:
-        """Compute the sum of both surface displacements in mm from pressures in MPa, in single precision."""
-        return self.single_precision_softness(pressure)
-
     @cached_property
     def single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
         """Operator from pressures to displacements in single precision."""
-        return self.softness.in_single_precision()
+        if isinstance(self.softness, UniformOperator):
+            return self.softness
+        return AxisymmetricOperator(matrices=self.softness.matrices.astype(numpy.float32))
 
     def pressure(self, displacement: Numbers) -> Numbers:
         """Compute the pressures in MPa, of either sign, that displace all cells by given amounts in mm."""
@@ -104,28 +94,17 @@ def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
     The inverse only guides the iteration; the compliance decides when it ends.
     """
     inverse = numpy.linalg.inv(matrices).astype(numpy.float32)
-    return Compliance(
-        grid=grid, softness=AxisymmetricOperator(matrices=matrices), stiffness=AxisymmetricOperator(matrices=inverse)
-    )
+    softness, stiffness = (AxisymmetricOperator(matrices=operator) for operator in (matrices, inverse))
+    return Compliance(grid=grid, softness=softness, stiffness=stiffness)
 
 
 def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Compliance:
-    """Compute the compliance of bore and ball of one joint on a grid, without a cache.
-
-    Parameters
-    ----------
-    surface : Surface
-    joint : Joint
-        A joint without arrays.
-    cup : Cup
-    grid : Grid
-    """
+    """Compute the compliance of bore and ball of one joint of plain numbers on a grid, without a cache."""
     ball = ball_of(joint)
     if isinstance(surface, Springs) and ball is None:
         modulus = float(surface.modulus(joint))
-        return Compliance(
-            grid=grid, softness=UniformOperator(factor=1 / modulus), stiffness=UniformOperator(factor=modulus)
-        )
+        softness, stiffness = (UniformOperator(factor=factor) for factor in (1 / modulus, modulus))
+        return Compliance(grid=grid, softness=softness, stiffness=stiffness)
     matrices = surface.rings(joint, cup, grid)
     if ball is not None:
         matrices = matrices + grid.average_over_cells(sphere_rings(ball.compliance, grid))
@@ -137,10 +116,7 @@ _CACHE_SIZE, _LOCK = 8, Lock()
 
 
 def cached_compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    """Return the compliance of bore and ball of one joint in rings of this width (rad), from a cache.
-
-    The last eight compliances are cached.
-    """
+    """Return the compliance of one joint in rings of this width (rad); the last eight are cached."""
     key = (surface, joint, cup.arc_of_cover, cup.chamfer, cup.interface, width)
     with _LOCK:
         if key not in _CACHE:

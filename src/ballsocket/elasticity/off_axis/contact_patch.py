@@ -9,22 +9,9 @@ from math import nan
 import numpy
 
 from ...core.arrays import Numbers
+from . import patch_measures as measures
 from .grid import Grid
-from .patch_measures import (
-    CellArrays,
-    Patches,
-    edge_loaded,
-    edge_margins,
-    half_angles,
-    interpolate,
-    largest_pressures,
-    make_cell_arrays,
-    measure_edges,
-    pressure_table,
-    ray_azimuths,
-    ray_directions,
-    rim_angles,
-)
+from .patch_measures import CellArrays, Patches
 
 _EDGE_RINGS = numpy.array([2.0, 3.0, 4.0])
 """Distances from the edge in ring widths at which the rise of the pressure is fitted."""
@@ -45,7 +32,7 @@ class ContactPatch:
 
     @cached_property
     def _cells(self) -> CellArrays:
-        return make_cell_arrays(self.grid, self.inset)
+        return measures.make_cell_arrays(self.grid, self.inset)
 
     @cached_property
     def _patches(self) -> Patches:
@@ -53,71 +40,61 @@ class ContactPatch:
 
     @cached_property
     def _table(self) -> Numbers:
-        table: Numbers = pressure_table(self._cells, self.pressure[None])
-        return table
+        return measures.pressure_table(self._cells, self.pressure[None])
 
     def pressure_at(self, directions: Numbers) -> Numbers:
         """Interpolate the pressure in MPa in directions (..., 3) of the cup's frame; 0 outside contact and bore."""
-        pressure: Numbers = interpolate(self._cells, self._table, numpy.asarray(directions)[None])[0]
-        return pressure
+        return measures.interpolate(self._cells, self._table, numpy.asarray(directions)[None])[0]
 
     def pressure_along(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles from the load towards the rim, in the plane of load and axis."""
-        return self.pressure_at(ray_directions(self.axis, angle, 0.0 * angle))
+        return self.pressure_at(measures.ray_directions(self.axis, angle, 0.0 * angle))
 
     @cached_property
     def largest(self) -> tuple[float, Numbers]:
         """Largest pressure in MPa and the unit vector to it, from a quadratic fit around the cell with the maximum."""
-        pressure, direction = largest_pressures(self._cells, self.pressure[None], self.axis[None])
+        pressure, direction = measures.largest_pressures(self._cells, self.pressure[None], self.axis[None])
         return float(pressure[0]), direction[0]
 
     @cached_property
     def outline(self) -> Numbers:
         """Edge of the contact, as unit vectors (rays, 3) at the ends of rays from its centre."""
-        return ray_directions(self._contact_centre, self._edge_angles, ray_azimuths(self.pressure))
+        centre, angles = self._edges
+        return measures.ray_directions(centre, angles, measures.ray_azimuths(self.pressure))
 
     @cached_property
     def _edges(self) -> tuple[Numbers, Numbers]:
-        """Centre (1, 3) of the contact, and the angles (1, rays) in rad from it to the edge along rays."""
-        return measure_edges(self._cells, self._patches)
-
-    @property
-    def _contact_centre(self) -> Numbers:
-        """Centre of the contact: direction of the load, or of the largest pressure if the load points outside it."""
-        centre: Numbers = self._edges[0][0]
-        return centre
-
-    @property
-    def _edge_angles(self) -> Numbers:
-        angles: Numbers = self._edges[1][0]
-        return angles
+        """Centre (3,) of the contact, and the angles (rays,) in rad from it to the edge along rays."""
+        centres, angles = measures.measure_edges(self._cells, self._patches)
+        return centres[0], angles[0]
 
     @cached_property
     def half_angle(self) -> float:
         """Half angle in rad of a round contact of the same area."""
-        return float(half_angles(self._cells, self._patches, self._edges[1])[0])
+        return float(measures.half_angles(self._cells, self._patches, self._edges[1][None])[0])
 
     def edge_constant(self, exponent: float) -> float:
         """Compute the mean over the edge of p/s^n for a distance s (rad) to it; NaN in a contact of few rings.
 
         A power p^(1/n) of the pressure is smooth there. A parabola through three points of each ray has its slope.
         """
-        rays = self._edge_angles > _MIN_EDGE_RINGS * self.grid.width
-        rays &= self._edge_angles < rim_angles(self._cells, self._edges[0])[0] - self.grid.width
+        centre, angles = self._edges
+        rays = angles > _MIN_EDGE_RINGS * self.grid.width
+        rays &= angles < measures.rim_angles(self._cells, centre[None])[0] - self.grid.width
         if not rays.any():
             return nan
-        edge, azimuths = self._edge_angles[rays], ray_azimuths(self.pressure)[rays]
+        edge, azimuths = angles[rays], measures.ray_azimuths(self.pressure)[rays]
         distance = self.grid.width * _EDGE_RINGS[:, None] + 0 * edge
-        power = self.pressure_at(ray_directions(self._contact_centre, edge - distance, azimuths)) ** (1 / exponent)
+        power = self.pressure_at(measures.ray_directions(centre, edge - distance, azimuths)) ** (1 / exponent)
         slope = numpy.polynomial.polynomial.polyfit(distance[:, 0], power, 2)[1]
         return float((numpy.maximum(slope, 0.0) ** exponent).mean())
 
     @property
     def edge_loaded(self) -> bool:
         """True if there is pressure at the end of the bore."""
-        return bool(edge_loaded(self.pressure[None])[0])
+        return bool(measures.edge_loaded(self.pressure[None])[0])
 
     @property
     def edge_margin(self) -> float:
         """Smallest angle in rad from the contact's edge to the end of the bore; 0 if the contact reaches it."""
-        return float(edge_margins(self._cells, self._patches)[0])
+        return float(measures.edge_margins(self._cells, self._patches)[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,35 +11,17 @@ import numpy
 
 from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
+from . import patch_measures as measures
 from .bore_contact import BoreContact, EquilibriumBatch
 from .contact_patch import ContactPatch
 from .directions import magnitudes_and_directions
 from .lane_solver import can_solve_lanes, solve_tangents
-from .patch_measures import (
-    CellArrays,
-    Patches,
-    axis_pressures,
-    cell_shares,
-    edge_loaded,
-    edge_margins,
-    half_angles,
-    largest_pressures,
-    make_cell_arrays,
-    measure_edges,
-    tangents_at,
-)
+from .patch_measures import CellArrays, Patches
 from .rim_curve import CurveFunction
 from .surfaces import EdgeRelation
 
-_PRESSURE_ERRORS = {
-    "force": 0.3,
-    "indentation": 0.2,
-    "max_pressure": 0.3,
-    "pole_pressure": 0.3,
-    "stiffness": 0.7,
-    "energy": 0.4,
-    "pressure_integral": 0.3,
-}
+_PRESSURE_ERRORS = {"force": 0.3, "indentation": 0.2, "max_pressure": 0.3, "pole_pressure": 0.3}
+_PRESSURE_ERRORS |= {"stiffness": 0.7, "energy": 0.4, "pressure_integral": 0.3}
 """Factors of the errors that follow from the pressures and the edge: of (ring width / half angle)²."""
 
 _HALF_ANGLE_ERROR = 0.1
@@ -87,14 +69,12 @@ class ContactStates:
     @property
     def loaded_area(self) -> Numbers:
         """Area of the loaded cells on a unit sphere: (contacts,)."""
-        area: Numbers = ((self.equilibrium.pressure > 0) * self.bore.compliance.grid.areas).sum(axis=(1, 2))
-        return area
+        return ((self.equilibrium.pressure > 0) * self.bore.compliance.grid.areas).sum(axis=(1, 2))
 
     @property
     def rim_level(self) -> Numbers:
         """Largest level in mm over the cells of the ring at the rim: (contacts,)."""
-        largest: Numbers = self.levels[:, -1].max(axis=1)
-        return largest
+        return self.levels[:, -1].max(axis=1)
 
     @property
     def unconverged(self) -> Numbers:
@@ -117,7 +97,7 @@ class ContactStates:
 
     @cached_property
     def _cells(self) -> CellArrays:
-        return make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
+        return measures.make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
 
     def _measure(self, measure: Callable[..., Numbers], *values: Numbers) -> Numbers:
         """Measure all contacts by a function of cells and values, in blocks that fit into the processor's cache."""
@@ -126,20 +106,20 @@ class ContactStates:
         with numpy.errstate(all="ignore"):  # rays that miss the rim
             return numpy.concatenate([measure(self._cells, *block) for block in blocks])
 
-    def _measure_patches(self, measure: Callable[[CellArrays, Patches], Numbers]) -> Numbers:
-        return self._measure(
-            lambda cells, *block: measure(cells, Patches(*block)), self.equilibrium.pressure, self.levels, self.axes
-        )
+    def _measure_patches(self, measure: Callable[..., Numbers], *values: Numbers) -> Numbers:
+        """Measure all contacts by a function of cells, patches and values."""
+        fields = self.equilibrium.pressure, self.levels, self.axes
+        return self._measure(lambda cells, *block: measure(cells, Patches(*block[:3]), *block[3:]), *fields, *values)
 
     @cached_property
     def levels(self) -> Numbers:
         """Level in mm of every cell: positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
-        return self._measure(self._block_levels, self.equilibrium.pressure, self.equilibrium.displacement)
 
-    def _block_levels(self, _cells: CellArrays, pressure: Numbers, displacement: Numbers) -> Numbers:
-        """Compute the levels of a block of contacts; single precision suffices for gaps."""
-        deformed = self.bore.compliance.displacement_in_single_precision(pressure)
-        return self.edges.levels(pressure, deformed - self.bore.gap.overlap(displacement))
+        def block_levels(_cells: CellArrays, pressure: Numbers, displacement: Numbers) -> Numbers:
+            deformed = self.bore.compliance.single_precision_softness(pressure)  # suffices for gaps
+            return self.edges.levels(pressure, deformed - self.bore.gap.overlap(displacement))
+
+        return self._measure(block_levels, self.equilibrium.pressure, self.equilibrium.displacement)
 
     @cached_property
     def force_vector(self) -> Numbers:
@@ -160,10 +140,9 @@ class ContactStates:
         weights, levers = pressure * grid.areas, numpy.zeros(len(pressure))
         for contact, load_axis in enumerate(self.axes):
             cosine = numpy.tensordot(load_axis, grid.centroids, 1)
-            first, second = tangents_at(load_axis)
-            azimuth = numpy.arctan2(
-                numpy.tensordot(second, grid.centroids, 1), numpy.tensordot(first, grid.centroids, 1)
-            )
+            first, second = measures.tangents_at(load_axis)
+            along_first, along_second = (numpy.tensordot(tangent, grid.centroids, 1) for tangent in (first, second))
+            azimuth = numpy.arctan2(along_second, along_first)
             sine = numpy.sqrt(numpy.maximum(1.0 - cosine * cosine, 0.0))
             for turn in numpy.arange(_FRICTION_AXES) * (numpy.pi / _FRICTION_AXES):
                 along = cosine * numpy.cos(axis_angle) + sine * numpy.sin(axis_angle) * numpy.cos(azimuth - turn)
@@ -175,36 +154,24 @@ class ContactStates:
     def force(self) -> Numbers:
         """Magnitude of the force in N; in a preloaded joint its component along the load, negative in tension."""
         if self._preloaded:
-            return self._project_on_axes(self.force_vector)
+            return numpy.einsum("kn,nk->n", self.force_vector, self.axes)
         return numpy.linalg.norm(self.force_vector, axis=0)
 
     @property
     def indentation(self) -> Numbers:
         """Displacement of the ball in mm beyond the clearance; in a preloaded joint its component along the load."""
         if self._preloaded:
-            return self._project_on_axes(self.displacement) - self.bore.gap.clearance
+            return numpy.einsum("kn,nk->n", self.displacement, self.axes) - self.bore.gap.clearance
         return numpy.linalg.norm(self.displacement, axis=0) - self.bore.gap.clearance
 
     @property
     def _preloaded(self) -> bool:
         return self.bore.gap.clearance < 0
 
-    def _project_on_axes(self, vectors: Numbers) -> Numbers:
-        return numpy.einsum("kn,nk->n", vectors, self.axes)
-
     @cached_property
     def tangent(self) -> Numbers:
-        """Tangent stiffness matrices in N/mm: (3, 3, contacts).
-
-        The edge of the contact crosses the cells steadily: see `cell_shares`.
-        """
-        share = self._measure(
-            lambda cells, *fields: cell_shares(cells, Patches(*fields[:3]), fields[3][:, :3], fields[3][:, 3:]),
-            self.equilibrium.pressure,
-            self.levels,
-            self.axes,
-            self._edges,
-        )
+        """Tangent stiffness matrices in N/mm, (3, 3, contacts), with the edge between cells: see `cell_shares`."""
+        share = self._measure_patches(measures.cell_shares, self._edges[:, :3], self._edges[:, 3:])
         if can_solve_lanes(self.bore):
             return numpy.moveaxis(solve_tangents(self.bore, share, self.edges.compliance), 0, -1)
         tangents = [numpy.zeros((0, 3, 3))]
@@ -243,28 +210,22 @@ class ContactStates:
     @cached_property
     def half_angle(self) -> Numbers:
         """Half angles in rad of round contacts of the same area."""
-        return self._measure(
-            lambda cells, *fields: half_angles(cells, Patches(*fields[:3]), fields[3]),
-            self.equilibrium.pressure,
-            self.levels,
-            self.axes,
-            self._edges[:, 3:],
-        )
+        return self._measure_patches(measures.half_angles, self._edges[:, 3:])
 
     @cached_property
     def _edges(self) -> Numbers:
         """Centre of each contact, and the angles in rad from it to the edge along rays: (contacts, 3 + rays)."""
-        return self._measure_patches(lambda cells, patches: numpy.column_stack(measure_edges(cells, patches)))
+        return self._measure_patches(lambda cells, patches: numpy.column_stack(measures.measure_edges(cells, patches)))
 
     @property
     def edge_loaded(self) -> Numbers:
         """Flag of each contact: 1 if there is pressure at the end of the bore, else 0."""
-        return numpy.asarray(edge_loaded(self.equilibrium.pressure)).astype(float)
+        return numpy.asarray(measures.edge_loaded(self.equilibrium.pressure)).astype(float)
 
     @cached_property
     def edge_margin(self) -> Numbers:
         """Angle in rad from the edge of each contact to the end of the bore; 0 if it reaches the end."""
-        return self._measure_patches(edge_margins)
+        return self._measure_patches(measures.edge_margins)
 
     @property
     def unbounded(self) -> Numbers:
@@ -275,7 +236,7 @@ class ContactStates:
     def _largest(self) -> Numbers:
         """Largest pressure of each contact in MPa, and the unit vector to it: (contacts, 4)."""
         return self._measure(
-            lambda cells, pressure, axis: numpy.column_stack(largest_pressures(cells, pressure, axis)),
+            lambda cells, pressure, axis: numpy.column_stack(measures.largest_pressures(cells, pressure, axis)),
             self.equilibrium.pressure,
             self.axes,
         )
@@ -299,7 +260,7 @@ class ContactStates:
     @property
     def pole_pressure(self) -> Numbers:
         """Pressure in MPa at the axis of the load."""
-        return self._measure(axis_pressures, self.equilibrium.pressure, self.axes)
+        return self._measure(measures.axis_pressures, self.equilibrium.pressure, self.axes)
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles (..., contacts) in rad from the load towards the rim.
@@ -310,53 +271,33 @@ class ContactStates:
         return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
 
 
+_SUMMARY_QUANTITIES = (
+    *("load", "components", "dislocated", "converged", "unconverged", "reachable", "force_vector", "displacement"),
+    *("force", "indentation", "half_angle", "loaded_area", "max_pressure", "max_pressure_at", "max_pressure_angle"),
+    *("pole_pressure", "tangent", "stiffness", "energy", "pressure_integral", "edge_loaded", "unbounded"),
+    *("edge_margin", "rim_level"),
+)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSummaries:
-    """Numbers of the contacts of one joint without their fields; the names are those of `ContactStates`.
-
-    Arrays have a last axis of contacts.
-    """
+    """Quantities of `ContactStates` by their names, without the fields; arrays have a last axis of contacts."""
 
     bore: BoreContact
     edges: EdgeRelation
     solve: LoadSolver
     rim_curve: CurveFunction | None
-    load: Numbers
-    components: Numbers
-    dislocated: Numbers
-    converged: Numbers
-    reachable: Numbers
-    force_vector: Numbers
-    displacement: Numbers
-    force: Numbers
-    indentation: Numbers
-    half_angle: Numbers
-    loaded_area: Numbers
-    max_pressure: Numbers
-    max_pressure_at: Numbers
-    max_pressure_angle: Numbers
-    pole_pressure: Numbers
-    tangent: Numbers
-    stiffness: Numbers
-    energy: Numbers
-    pressure_integral: Numbers
-    edge_loaded: Numbers
-    unbounded: Numbers
-    edge_margin: Numbers
-    rim_level: Numbers
+    quantities: dict[str, Numbers]  # by the names of `_SUMMARY_QUANTITIES`
 
     @property
     def axes(self) -> Numbers:
         """Unit vectors of the loads in the cup's frame: (contacts, 3)."""
         return self.components.T
 
-    @property
-    def unconverged(self) -> Numbers:
-        """Flag of each contact: 1 if its iteration did not converge, else 0."""
-        return (~self.converged & ~self.dislocated).astype(float)
-
     def __getattr__(self, name: str) -> Any:
-        """Raise ValueError for what needs the pressure fields."""
+        """Return a quantity; raise ValueError for what needs the pressure fields."""
+        if name in _SUMMARY_QUANTITIES:
+            return self.quantities[name]
         if hasattr(ContactStates, name) or name == "equilibrium":
             raise ValueError(
                 f'a summary has no {name}: profiles, maps and outlines need pressure fields; press with keep="fields"'
@@ -366,17 +307,17 @@ class ContactSummaries:
 
 def summarise(blocks: Iterable[ContactStates]) -> ContactSummaries:
     """Compute the summaries of blocks of contacts, one block after the other."""
-    shared: dict[str, Any] = {}
-    collected: dict[str, list[Numbers]] = {}
+    parts: dict[str, list[Numbers]] = {name: [] for name in _SUMMARY_QUANTITIES}
     for states in blocks:
-        for field in fields(ContactSummaries):
-            value = getattr(states, field.name)
-            if isinstance(value, numpy.ndarray):
-                collected.setdefault(field.name, []).append(value)
-            else:
-                shared[field.name] = value
-    joined: dict[str, Any] = {name: numpy.concatenate(values, axis=-1) for name, values in collected.items()}
-    return ContactSummaries(**shared, **joined)
+        for name, values in parts.items():
+            values.append(getattr(states, name))
+    return ContactSummaries(
+        bore=states.bore,
+        edges=states.edges,
+        solve=states.solve,
+        rim_curve=states.rim_curve,
+        quantities={name: numpy.concatenate(values, axis=-1) for name, values in parts.items()},
+    )
 
 
 def estimate_errors(states: ContactStates | ContactSummaries, load_kind: str) -> dict[str, Numbers]:

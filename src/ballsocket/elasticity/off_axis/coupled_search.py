@@ -190,21 +190,11 @@ def estimate_pressure(bore: BoreArrays, displacement: Array) -> Array:
 
 
 class Measured(NamedTuple):
-    """Overlaps and forces of balls at given displacements and pressures.
+    """Overlaps and forces of balls at given displacements and pressures."""
 
-    Attributes
-    ----------
-    overlap_scale : array (lanes,)
-        Largest undeformed overlap in mm.
-    remaining : array (meridians, rings, lanes)
-        Overlap in mm under the pressures.
-    imbalance : array (3, lanes)
-        Load minus force in N.
-    """
-
-    overlap_scale: Array
-    remaining: Array
-    imbalance: Array
+    overlap_scale: Array  # (lanes,), largest undeformed overlap in mm
+    remaining: Array  # (meridians, rings, lanes), overlap in mm under the pressures
+    imbalance: Array  # (3, lanes), load minus force in N
 
 
 def measure(bore: BoreArrays, load: Array, displacement: Array, pressure: Array) -> Measured:
@@ -248,23 +238,14 @@ def start_coarse(bore: BoreArrays, load: Array, force_scale: Array, start: Array
     """Start a search in wide cells at displacements (3, lanes), with pressures from a few iterations."""
     pressure = estimate_pressure(bore, start)
     lanes = start_lanes(load, force_scale, start, pressure, measure(bore, load, start, pressure))
-    warmed: Lanes = arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
-    return warmed
+    return arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
 
 
 class Sensitivity(NamedTuple):
-    """Derivative of pressures and forces by the displacement, in fixed touching cells.
+    """Derivative of pressures and forces by the displacement, in fixed touching cells."""
 
-    Attributes
-    ----------
-    pressure : array (meridians, rings, 3 * lanes)
-        In MPa/mm, for each component of the displacement.
-    tangent : array (lanes, 3, 3)
-        Tangent stiffness in N/mm, with that of the tether.
-    """
-
-    pressure: Array
-    tangent: Array
+    pressure: Array  # (meridians, rings, 3 * lanes), in MPa/mm, for each component of the displacement
+    tangent: Array  # (lanes, 3, 3), tangent stiffness in N/mm, with that of the tether
 
 
 def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) -> Sensitivity:
@@ -296,19 +277,10 @@ def solve_change(
 ) -> tuple[Array, Array]:
     """Compute changes of pressure in cells in contact under overlaps (mm), and the overlaps that remain.
 
-    Both are fields (meridians, rings, lanes), from preconditioned conjugate gradients.
-
-    Parameters
-    ----------
-    bore : BoreArrays
-    share : array (meridians, rings, lanes)
-        Mask of the cells in contact, or the share w of each cell in contact, 0 to 1. With t² = w and the edge
-        compliance C, the pressures are t u of (t S t + C (1 - w)) u = t overlap: the solution for a mask of 0 and 1,
-        and in between it changes steadily as the edge crosses a cell.
-    overlap : array (meridians, rings, lanes)
-    iterations : int
-    edge_compliance : array (rings, 1)
-        Compliance C in mm/MPa of a ring next to the contact.
+    Both are fields (meridians, rings, lanes), from preconditioned conjugate gradients. `share` is the mask of the cells
+    in contact, or the share w of each cell in contact, 0 to 1. With t² = w and the compliance C (mm/MPa) of a ring next
+    to the contact, the pressures are t u of (t S t + C (1 - w)) u = t overlap: the solution for a mask of 0 and 1, and
+    in between it changes steadily as the edge crosses a cell.
     """
     xp = arrays.namespace(overlap)
     root = xp.sqrt(share + 0.0 * overlap)
@@ -366,12 +338,8 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
     """Compute the Newton steps in mm, (3, lanes), towards the loads that the converged pressures will balance."""
     xp = arrays.namespace(lanes.pressure)
     count = lanes.pressure.shape[-1]
-    missing = xp.stack(
-        [
-            integrate(bore, predictor.sensitivity[..., axis * count : (axis + 1) * count], lanes.residual)
-            for axis in range(len(bore.tether))
-        ]
-    )
+    parts = [predictor.sensitivity[..., axis * count :][..., :count] for axis in range(len(bore.tether))]
+    missing = xp.stack([integrate(bore, part, lanes.residual) for part in parts])
     # (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA: what the pressures will still add on their own is not asked of the ball
     imbalance = lanes.imbalance - bore.scale * missing
     step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)

@@ -21,12 +21,17 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text
-from ...core.storage.atomic_files import make_folder, write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.calculix import last_output, read_printed, run_calculix
-from ..finite_elements.deck import deck_paths
-from ..finite_elements.deck_lines import contact_lines, material_lines, node_set_lines, step_lines
+from ..finite_elements.deck_lines import (
+    InputDeck,
+    contact_lines,
+    deck_paths,
+    material_lines,
+    node_set_lines,
+    step_lines,
+)
 from ..finite_elements.mesh import SocketShape, add_midpoints, graded_points, join_points, socket_shape
 from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
@@ -52,10 +57,7 @@ class SphericalBlock:
 
     @cached_property
     def number(self) -> Numbers:
-        """Number of the node at each polar angle, azimuth and radius; 0 where there is no node.
-
-        Nodes in the middle of edges are included.
-        """
+        """Number of the node at each polar angle, azimuth and radius, also in the middle of edges; 0 without a node."""
         shape = tuple(2 * len(corners) - 1 for corners in (self.polar, self.azimuth, self.radius))
         i, j, k = numpy.indices(shape)
         used = (i % 2 + j % 2 + k % 2) <= 1
@@ -109,7 +111,7 @@ _WEDGE = _element_nodes([(0, 0), (2, 0), (2, 2)], [(1, 0), (2, 1), (1, 2)])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TiltedDeck:
+class TiltedDeck(InputDeck):
     """Input deck of a rigid ball that is displaced into a cup at a tilt.
 
     Raises ValueError: an elastic ball, a liner that slides, a free outer surface, a number outside its allowed range.
@@ -184,25 +186,30 @@ class TiltedDeck:
     def _displacement_direction(self) -> Numbers:
         return numpy.array([sin(self.tilt), 0.0, cos(self.tilt)])
 
-    def text(self) -> str:
-        """Return the deck as ASCII text."""
+    def lines(self) -> Iterator[str]:
+        """Yield the lines of the deck in ASCII."""
         penalty = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
         lined, pressed = (
             [f"{number}, {face}" for number, _, (_, _, k), _ in body.elements() if k == 0]
             for body, face in ((self.socket, _INNER_FACE), (self.ball, _OUTER_FACE))
         )
         x, _, z = self.scale * self.indentation * self._displacement_direction
-        lines = [*self._title_lines(), *self._mesh_lines(), *material_lines(self._materials)]
-        lines += [*contact_lines(lined, pressed, penalty), *self._support_lines(), *step_lines([(1, x), (3, z)])]
-        return "\n".join(lines) + "\n"
+        yield f"** {ascii_text(str(self.joint))}"[:200]
+        yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
+        yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
+        yield "** the forces are those of the whole cup. Units N, mm, MPa."
+        yield from self._mesh_lines()
+        # the skin of the ball is almost rigid
+        liner = float(self.joint.liner.young)
+        layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
+        yield from material_lines({**layers, "SKIN": (1e3 * liner, 0.3)})
+        yield from contact_lines(lined, pressed, penalty)
+        yield from self._support_lines()
+        yield from step_lines([(1, x), (3, z)])
 
-    def write(self, out: Path) -> Path:
-        """Write the deck and its expected results to `deck_paths`; return the path of the deck."""
-        deck, expected = deck_paths(out)
-        make_folder(deck.parent)
-        record = {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
-        write_text(expected, json.dumps(record) + "\n", encoding="ascii")
-        return write_text(deck, self.text(), encoding="ascii")
+    def expected_record(self) -> dict[str, Any]:
+        """Return the expected results for JSON, with scale and tilt."""
+        return {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
 
     @cached_property
     def expected(self) -> dict[str, Any]:
@@ -214,12 +221,6 @@ class TiltedDeck:
             "max_pressure": float(contact.max_pressure),
         }
 
-    def _title_lines(self) -> Iterator[str]:
-        yield f"** {ascii_text(str(self.joint))}"[:200]
-        yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
-        yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
-        yield "** the forces are those of the whole cup. Units N, mm, MPa."
-
     def _mesh_lines(self) -> Iterator[str]:
         yield "*NODE, NSET=ALL"
         for body in (self.socket, self.ball):
@@ -227,13 +228,6 @@ class TiltedDeck:
         ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
         yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
         yield from _element_lines(self.ball, lambda k: "SKIN")
-
-    @property
-    def _materials(self) -> dict[str, tuple[float, float]]:
-        """Young's modulus in MPa and Poisson's ratio of all layers and of the ball's skin, which is almost rigid."""
-        liner = float(self.joint.liner.young)
-        layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
-        return {**layers, "SKIN": (1e3 * liner, 0.3)}
 
     def _support_lines(self) -> Iterator[str]:
         """Yield the lines of the symmetry plane, of the fixed nodes, and of the ball's skin, which is displaced."""
@@ -248,10 +242,7 @@ class TiltedDeck:
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
-    """Yield the lines of a body's elements, sorted by type and layer.
-
-    `set_name` returns the name of the set of a layer of elements.
-    """
+    """Yield the lines of a body's elements, sorted by type and layer, in the set that `set_name` gives a layer."""
     previous = None
     for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda element: (element[1], element[2][2])):
         header = f"*ELEMENT, TYPE={kind}, ELSET={set_name(k)}"

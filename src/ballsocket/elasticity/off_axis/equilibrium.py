@@ -48,22 +48,11 @@ def solve_force(
 ) -> EquilibriumBatch:
     """Solve the displacements and pressures of balls in equilibrium with their loads.
 
-    Parameters
-    ----------
-    bore : BoreContact
-    load : array (batch, 3)
-        Loads in N, in the cup's frame, none of them zero.
-    start : array (batch, 3)
-        Initial displacements in mm at which the ball touches.
-    held : array of bool (batch,)
-        True for the balls to solve; the others stay at `start` without pressure.
-    pressure : array (batch, rings, meridians), optional
-        Initial pressures in MPa, at least 0. Without them a search in cells twice as wide comes first.
+    Loads (batch, 3) are in N, none of them zero. Initial displacements (batch, 3) in mm touch the bore. Balls that are
+    not `held` (batch,) stay there without pressure. Without initial pressures (batch, rings, meridians) in MPa, at
+    least 0, a search in cells twice as wide comes first.
     """
-    count = len(load)
-    solution = EquilibriumBatch(
-        displacement=start.copy(), pressure=bore.zero_pressure(count), converged=numpy.zeros(count, dtype=bool)
-    )
+    solution = bore.unsolved_batch(start)
     preload = bore.area * bore.compliance.uniform_stiffness * max(-bore.gap.clearance, 0.0)
     force_scale = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
     coarser = coarser_lanes(bore)
@@ -78,20 +67,12 @@ def solve_force(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _SearchResult:
+class _SearchResult(EquilibriumBatch):
     """Displacements and pressures of balls at the end of an equilibrium search."""
 
-    displacement: Numbers  # (batch, 3), displacement of the ball's centre in mm
-    pressure: Numbers  # (batch, rings, meridians), pressure in MPa
-    converged: Numbers  # bool (batch,)
     # (batch, 3, rings, meridians), approximate derivative of the pressure by the displacement, in MPa/mm
     sensitivity: Numbers
     tangent: Numbers  # (batch, 3, 3), approximate stiffness in N/mm
-
-    def store_results(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
-        """Copy the results of the balls in a mask from a search that is in progress."""
-        for name in ("displacement", "pressure", "converged", "sensitivity", "tangent"):
-            getattr(self, name)[indices] = getattr(search, name)[mask]
 
 
 def _solve_block(
@@ -108,7 +89,7 @@ def _solve_coarse(
 ) -> _SearchResult:
     search = _NewtonSearch(coarser, load, force_scale, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
     result = _iterate_search(search, _MAX_COARSE_ITERATIONS)
-    pressure, sensitivity = (bore.refine(field) for field in (result.pressure, result.sensitivity))
+    pressure, sensitivity = (bore.compliance.grid.refine(field) for field in (result.pressure, result.sensitivity))
     displacement = numpy.where(result.converged[:, None], result.displacement, start)
     return replace(result, displacement=displacement, pressure=pressure, sensitivity=sensitivity)
 
@@ -125,7 +106,8 @@ def _iterate_search(search: _NewtonSearch, max_iterations: int) -> _SearchResult
     for number in range(max_iterations):
         search.evaluate_trial()
         finished = search.converged | (number == max_iterations - 1)
-        result.store_results(active[finished], search, finished)
+        for name, values in vars(result).items():
+            values[active[finished]] = getattr(search, name)[finished]
         search.select_balls(~finished)
         active = active[~finished]
         if not len(active):
@@ -230,5 +212,4 @@ class _NewtonSearch:
         trace = numpy.trace(self.tangent, axis1=1, axis2=2)
         diagonal = numpy.where(trace > 0, (_REGULARISATION + self.damping) * trace, 1.0)
         matrices = self.tangent + diagonal[:, None, None] * numpy.eye(3)
-        step: Numbers = numpy.linalg.solve(matrices, (self.load - self.force)[:, :, None])[:, :, 0]
-        return step
+        return numpy.linalg.solve(matrices, (self.load - self.force)[:, :, None])[:, :, 0]

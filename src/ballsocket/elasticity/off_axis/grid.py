@@ -118,8 +118,7 @@ class Grid:
     def _attenuate(self, ring_matrices: Numbers) -> Numbers:
         """Convert matrices between rings to means over the widths of cells."""
         attenuation = numpy.sinc(numpy.arange(self.max_harmonic + 1) / self.meridians) ** 2
-        cells: Numbers = ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
-        return cells
+        return ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
 
     def _missing_compliance(self, cells: Numbers) -> Numbers:
         """Compute the compliance (m, rings) that cells lack from that of waves of two rings; 0 of longer waves."""
@@ -136,10 +135,7 @@ class Grid:
 
     @cached_property
     def coarser_grid(self) -> Grid | None:
-        """Grid of cells twice as wide, or None if this grid has few rings.
-
-        The last ring stays alone if the number of rings is odd.
-        """
+        """Grid of cells twice as wide, an odd last ring alone; None if this grid has few rings."""
         if self.meridians % 4 or self.rings < _MIN_RINGS_TO_COARSEN:
             return None
         return Grid(edges=numpy.unique(numpy.append(self.edges[::2], self.edges[-1])), meridians=self.meridians // 2)
@@ -175,11 +171,7 @@ class Grid:
 
         It is bilinear in polar angle and azimuth, and passes the pole in a straight line. The field is constant between
         the last middle and the end of the grid, and 0 beyond.
-
-        Parameters
-        ----------
-        directions : array (directions, 3)
-            Unit vectors in the frame of the grid.
+        Directions (directions, 3) are unit vectors in the frame of the grid.
         """
         from scipy.sparse import csr_matrix  # slow to import
 

@@ -1,46 +1,32 @@
-"""Search for the equilibrium of many balls in JAX, compiled, with derivatives.
+"""Search for the equilibrium of many balls in JAX, compiled, with derivatives by loads, gaps and the liner.
 
 The search is that of `coupled_search`. Lanes that have converged are masked until a quarter is left, which continues
 in arrays of its own. Derivatives follow from one Newton step at the solution, in its touching cells. The step is zero
-there, and its derivative is that of the solution.
+there, and its derivative is that of the solution. NumPy computes the compliance of a liner and its derivatives; JAX
+calls NumPy for them.
 """
 
 from __future__ import annotations
 
-from functools import cache, partial
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, lru_cache, partial
 from typing import Any, NamedTuple
 
-from ...core.arrays import Array
-from .coupled_search import (
-    COARSE_ITERATIONS,
-    COARSE_ROUNDS,
-    COARSE_TOLERANCE,
-    SENSITIVITY_ITERATIONS,
-    BoreArrays,
-    Lanes,
-    Predictor,
-    advance_lanes,
-    apply_operator,
-    compute_force,
-    make_predictor,
-    measure,
-    newton_step,
-    refine_fields,
-    refine_sensitivity,
-    solve_change,
-    solve_sensitivity,
-    start_coarse,
-    start_lanes,
-)
+import numpy
+
+from ...core.arrays import Array, Numbers
+from ...problem import Joint
+from ...problem.cup import Cup
+from . import coupled_search as search
+from .compliance import cached_compliance
+from .coupled_search import BoreArrays, Lanes, Predictor
+from .ring_matrices import liner_numbers, vary_liner
+from .surfaces import Surface
 
 _MAX_ITERATIONS = 30
-
-_TOLERANCE_FACTOR = 0.8
-"""Fraction of the tolerance to which lanes are iterated, before their residuals are computed anew."""
-
+_TOLERANCE_FACTOR = 0.8  # of the tolerance to which lanes are iterated, before their residuals are computed anew
 _NEWTON_ITERATIONS = 20  # number of conjugate-gradient iterations in the Newton step that carries derivatives
-
-
 _REMAINING_FRACTION = 4  # lanes are iterated together until one in so many has not converged
 
 
@@ -69,7 +55,7 @@ def differentiable_search() -> Any:
         grids, _, gap, *_ = primals
         grids_change, load_change, gap_change, *_ = tangents
         displacement, pressure = solve(*primals)
-        overlap_change = -gap_change - apply_operator(grids.fine, grids_change.fine.softness, pressure)
+        overlap_change = -gap_change - search.apply_operator(grids.fine, grids_change.fine.softness, pressure)
         changes = _differentiate(grids.fine._replace(gap=gap), pressure > 0, load_change, overlap_change)
         return (displacement, pressure), changes
 
@@ -81,22 +67,22 @@ def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overla
     import jax
     import jax.numpy as xp
 
-    sensitivity = solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
+    sensitivity = search.solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
     areas = bore.areas[:, None]
 
     def deform(change: Array) -> Array:
         """Compute the displacements of touching cells; others are copied."""
-        return xp.where(touching, apply_operator(bore, bore.softness, change * touching), change)
+        return xp.where(touching, search.apply_operator(bore, bore.softness, change * touching), change)
 
     def solve(_: Any, overlap: Array) -> Array:
-        change = solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
+        change = search.solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
         return xp.where(touching, change, overlap)
 
     def solve_transposed(_: Any, values: Array) -> Array:
         return areas * solve(_, values / areas)
 
     fixed = jax.lax.custom_linear_solve(deform, overlap_change * touching, solve, solve_transposed)
-    missing = load_change - compute_force(bore, fixed)
+    missing = load_change - search.compute_force(bore, fixed)
     step = xp.sum(xp.linalg.inv(sensitivity.tangent).transpose(1, 2, 0) * missing, axis=1)
     moved = sum(part * step[axis] for axis, part in enumerate(xp.split(sensitivity.pressure, 3, axis=-1)))
     return step, fixed + moved
@@ -108,11 +94,11 @@ def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Arra
     scale = xp.sqrt(xp.sum(load * load, axis=0))
     fine = grids.fine._replace(gap=gap)
     coarse = grids.coarse._replace(gap=_coarsen(fine, gap))
-    rough, predictor = _search_wide_cells(coarse, start_coarse(coarse, load, scale, start))
-    pressure = refine_fields(fine, rough.pressure)
-    predictor = make_predictor(refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
-    measured = measure(fine, load, rough.displacement, pressure)
-    lanes = start_lanes(load, scale, rough.displacement, pressure, measured)
+    rough, predictor = _search_wide_cells(coarse, search.start_coarse(coarse, load, scale, start))
+    pressure = search.refine_fields(fine, rough.pressure)
+    predictor = search.make_predictor(search.refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
+    measured = search.measure(fine, load, rough.displacement, pressure)
+    lanes = search.start_lanes(load, scale, rough.displacement, pressure, measured)
     lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
     return lanes.displacement, lanes.pressure
 
@@ -134,19 +120,21 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
 
     def is_unfinished(state: tuple[Array, Lanes, Predictor]) -> Array:
         number, lanes, _ = state
-        return (number == 0) | ((number < COARSE_ROUNDS) & ~xp.all(lanes.error <= COARSE_TOLERANCE))
+        return (number == 0) | ((number < search.COARSE_ROUNDS) & ~xp.all(lanes.error <= search.COARSE_TOLERANCE))
 
     def run_round(state: tuple[Array, Lanes, Predictor]) -> tuple[Array, Lanes, Predictor]:
         number, lanes, predictor = state
-        kept = (lanes.error <= COARSE_TOLERANCE) & (number > 0)
-        renewed = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
+        kept = (lanes.error <= search.COARSE_TOLERANCE) & (number > 0)
+        renewed = search.make_predictor(
+            search.solve_sensitivity(bore, lanes.pressure > 0, search.SENSITIVITY_ITERATIONS)
+        )
         predictor = Predictor(
             sensitivity=xp.where(xp.tile(kept, 3), predictor.sensitivity, renewed.sensitivity),
             inverse_tangent=xp.where(kept[:, None, None], predictor.inverse_tangent, renewed.inverse_tangent),
         )
-        measured = measure(bore, lanes.load, lanes.displacement, lanes.pressure)
-        fresh = start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
-        lanes, _ = _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
+        measured = search.measure(bore, lanes.load, lanes.displacement, lanes.pressure)
+        fresh = search.start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
+        lanes, _ = _iterate(bore, fresh, predictor, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)
         return number + 1, lanes, predictor
 
     meridians, rings, count = lanes.pressure.shape
@@ -176,10 +164,7 @@ def _iterate_in_stages(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tol
 def _iterate(
     bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: Array, few: int = 0
 ) -> tuple[Lanes, Array]:
-    """Iterate until at most `few` lanes are not within a tolerance; return lanes and number of iterations.
-
-    Converged lanes stay unchanged.
-    """
+    """Iterate until at most `few` lanes are not within a tolerance; return lanes and number of iterations."""
     import jax
     import jax.numpy as xp
 
@@ -190,9 +175,103 @@ def _iterate(
 
     def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
         number, lanes = state
-        advanced = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
+        advanced = search.advance_lanes(bore, search.newton_step(bore, lanes, predictor), lanes)
         converged = lanes.error <= tolerance
         return number + 1, jax.tree.map(partial(xp.where, converged), lanes, advanced)
 
     number, lanes = jax.lax.while_loop(is_unfinished, advance, (0, lanes))
     return lanes, number
+
+
+class Operators(NamedTuple):
+    """Matrices (m, rings, rings) of a bore and of the same in cells twice as wide: see `Compliance`."""
+
+    softness: Array
+    stiffness: Array
+    coarse_softness: Array
+    coarse_stiffness: Array
+
+    def replace_in(self, grids: Grids) -> Grids:
+        """Return the arrays of a bore with these matrices."""
+        return Grids(
+            fine=grids.fine._replace(softness=self.softness, stiffness=self.stiffness),
+            coarse=grids.coarse._replace(softness=self.coarse_softness, stiffness=self.coarse_stiffness),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinerCompliance:
+    """Compliance matrices of one joint for any liner."""
+
+    surface: Any
+    joint: Joint  # a joint without arrays. Its bore stays the same.
+    cup: Cup
+    ring_width: float  # in rad, 3° or less
+
+    def operators(self, liner: Numbers) -> Operators:
+        """Compute the matrices for Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner."""
+        joint = vary_liner(self.joint, tuple(map(float, liner)))
+        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
+        coarser = compliance.coarser_compliance
+        if coarser is None:
+            raise ValueError("the compliance of a liner needs rings of 3 degrees or less")
+        operators: tuple[Any, ...] = (compliance.softness, compliance.stiffness, coarser.softness, coarser.stiffness)
+        return Operators(*(operator.matrices for operator in operators))
+
+    def softness_slopes(self, liner: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the derivatives of both softnesses by the three numbers of the liner: (3, m, rings, rings)."""
+        return _softness_slopes(
+            self.surface, vary_liner(self.joint, tuple(map(float, liner))), self.cup, self.ring_width
+        )
+
+
+@lru_cache(maxsize=2)
+def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> tuple[Numbers, Numbers]:
+    grid = cached_compliance(surface, joint, cup, width).grid
+    slopes = surface.ring_slopes(joint, cup, grid)
+    return slopes, numpy.stack([grid.coarsen_matrices(slope) for slope in slopes])
+
+
+def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Array], Operators]:
+    """Return a function of JAX from the numbers of a liner (3,) to `Operators`, with derivatives of first order.
+
+    The stiffnesses have no derivatives: they only precondition the iteration.
+    """
+    import jax
+
+    def shapes_of(values: Any) -> Any:
+        return jax.tree.map(lambda array: jax.ShapeDtypeStruct(array.shape, dtype), values)
+
+    def convert(compute: Callable[[Numbers], Any], liner: Array) -> Any:
+        return jax.tree.map(partial(numpy.asarray, dtype=dtype), compute(numpy.asarray(liner, dtype=float)))
+
+    nominal = bore.operators(liner_numbers(bore.joint))
+    operator_shapes = shapes_of(nominal)
+    slope_shapes = tuple(
+        jax.ShapeDtypeStruct((3, *matrices.shape), dtype) for matrices in (nominal.softness, nominal.coarse_softness)
+    )
+
+    @jax.custom_jvp
+    def operators(liner: Array) -> Operators:
+        matrices: Operators = jax.pure_callback(
+            partial(convert, bore.operators), operator_shapes, liner, vmap_method="sequential"
+        )
+        return matrices
+
+    @operators.defjvp
+    def differentiate(primals: Any, tangents: Any) -> Any:
+        (liner,), (change,) = primals, tangents
+        slopes = jax.pure_callback(
+            partial(convert, bore.softness_slopes), slope_shapes, liner, vmap_method="sequential"
+        )
+        matrices = operators(liner)
+        softness, coarse_softness = (jax.numpy.tensordot(change, slope, 1) for slope in slopes)
+        changes = Operators(
+            softness=softness,
+            stiffness=0.0 * matrices.stiffness,
+            coarse_softness=coarse_softness,
+            coarse_stiffness=0.0 * matrices.coarse_stiffness,
+        )
+        return matrices, changes
+
+    return operators

@@ -22,45 +22,21 @@ from ...core.validity import check_domain
 from ...models.kinematics import linear_indentation
 from ...problem import Joint, Material
 from ...problem.cup import cup_axes
+from . import coupled_search as search
+from . import patch_measures as measures
 from .bore_contact import BoreContact, make_bore_arrays
-from .coupled_search import (
-    TANGENT_ITERATIONS,
-    BoreArrays,
-    compute_force,
-    measure,
-    solve_sensitivity,
-    start_lanes,
-)
-from .jax_compliance import LinerCompliance, Operators, differentiable_operators
-from .jax_search import Grids, differentiable_search
+from .coupled_search import BoreArrays
+from .jax_search import Grids, LinerCompliance, Operators, differentiable_operators, differentiable_search
 from .lane_solver import coarser_lanes
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
 from .model import Sphere, check_sphere
-from .patch_measures import (
-    CellArrays,
-    Patches,
-    cell_shares,
-    contact_centres,
-    edge_angles,
-    edge_loaded,
-    edge_margins,
-    half_angles,
-    interpolate,
-    largest_pressures,
-    level_table,
-    make_cell_arrays,
-    ray_azimuths,
-    ray_directions,
-    rim_angles,
-)
+from .patch_measures import CellArrays, Patches
 from .ring_matrices import liner_numbers
 
 _MIN_STEP = radians(2.0)
 """Width of the rings from which the number of steps along a ray follows; wider rings take fewer."""
 
 _MEASURED_CONTACTS = 64  # number of contacts whose outlines are computed together
-
-
 _DTYPES = ("float32", "float64")  # precisions of the solver
 
 
@@ -180,7 +156,7 @@ class JaxSphere:
         fine, coarse = (make_bore_arrays(bore, numpy.float64) for bore in (self._bore, coarser))
         bores = _Bores(
             grids=Grids(fine=fine, coarse=coarse),
-            cells=make_cell_arrays(grid, edges.inset),
+            cells=measures.make_cell_arrays(grid, edges.inset),
             edge_compliance=edges.compliance,
             unbounded=numpy.asarray(float(not edges.bounded)),
             frame=numpy.array(self.model.cup.frame),
@@ -191,10 +167,8 @@ class JaxSphere:
     @cached_property
     def _operators(self) -> Callable[[Array], Operators]:
         """Function from the numbers of a liner to the matrices of the bore."""
-        model = self.model
-        compliance = LinerCompliance(
-            surface=model.surface, joint=self.joint, cup=model.cup, ring_width=model.ring_width
-        )
+        surface, cup, width = self.model.surface, self.model.cup, self.model.ring_width
+        compliance = LinerCompliance(surface=surface, joint=self.joint, cup=cup, ring_width=width)
         return differentiable_operators(compliance, self.dtype)
 
     def press(
@@ -244,9 +218,13 @@ class JaxSphere:
             Loads that are not real numbers.
         """
         needs("jax", "jax")
+        import jax
         import jax.numpy as xp
 
-        _check_precision(self.dtype)
+        if jax.dtypes.canonicalize_dtype(self.dtype) != self.dtype:
+            raise ValueError(
+                'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
+            )
         gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
@@ -295,11 +273,7 @@ class JaxSphere:
 
 
 def _check_bore(model: Any, joint: Any) -> None:
-    """Check that model and joint describe one bore that `Sphere` solves.
-
-    Raises TypeError: another type than `Sphere` or `Joint`, or a joint with arrays.
-    Raises OutsideDomainError: a joint outside the domain of the model.
-    """
+    """Check that model and joint describe one bore that `Sphere` solves."""
     check_sphere(model)
     check_joint(joint)
     if any(numpy.shape(number) for number in joint.numbers()):
@@ -307,21 +281,8 @@ def _check_bore(model: Any, joint: Any) -> None:
     check_domain(model.domain, joint, model.name)
 
 
-def _check_precision(dtype: str) -> None:
-    import jax
-
-    if jax.dtypes.canonicalize_dtype(dtype) != dtype:
-        raise ValueError(
-            'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
-        )
-
-
 def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
-    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays.
-
-    Raises TypeError: another type than real numbers.
-    Raises ValueError: another shape.
-    """
+    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays."""
     force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
     shape = numpy.shape(force)
     if len(shape) != 1 or 0 in shape:
@@ -355,7 +316,7 @@ def _press_loads(
     fine = bores.grids.fine._replace(gap=gap)
     start = jax.lax.stop_gradient(_initial_displacement(fine, axes, force, clearance, depth))
     displacement, pressure = differentiable_search()(bores.grids, load, gap, start, tolerance)
-    lanes = start_lanes(load, force, displacement, pressure, measure(fine, load, displacement, pressure))
+    lanes = search.start_lanes(load, force, displacement, pressure, search.measure(fine, load, displacement, pressure))
     fields = pressure.transpose(2, 1, 0)
     half_angle, margin, share = jax.lax.map(
         partial(_measure_outline, bores),
@@ -364,18 +325,20 @@ def _press_loads(
     )
     touching, error, share = jax.lax.stop_gradient((pressure > 0, lanes.error, share.transpose(2, 1, 0)))
     fixed, edge_compliance = jax.lax.stop_gradient((fine, bores.edge_compliance))
-    loaded, largest = edge_loaded(fields), largest_pressures(bores.cells, fields, axes)[0]
+    loaded, largest = measures.edge_loaded(fields), measures.largest_pressures(bores.cells, fields, axes)[0]
+    # the limit of `Sphere` for the displacement of a ball in its bore
+    held = xp.linalg.norm(displacement, axis=0) <= MAX_EQUILIBRIUM_DISPLACEMENT * xp.sqrt(fine.scale)
     contacts = JaxContacts(
-        converged=(error <= tolerance) & touching.any(axis=(0, 1)) & _holds_ball(fine, displacement),
+        converged=(error <= tolerance) & touching.any(axis=(0, 1)) & held,
         error=error,
         displacement=displacement.T,
-        force_vector=compute_force(fine, pressure).T,
+        force_vector=search.compute_force(fine, pressure).T,
         indentation=xp.sqrt(xp.sum(displacement * displacement, axis=0)) - clearance,
         max_pressure=xp.where(loaded & (bores.unbounded > 0), xp.inf, largest),
         half_angle=half_angle,
         edge_margin=margin,
         edge_loaded=loaded,
-        stiffness_matrix=solve_sensitivity(fixed, share, TANGENT_ITERATIONS, edge_compliance).tangent,
+        stiffness_matrix=search.solve_sensitivity(fixed, share, search.TANGENT_ITERATIONS, edge_compliance).tangent,
         pressure=fields,
     )
     return _mask_unconverged(contacts)
@@ -391,14 +354,6 @@ def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance
     return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
 
 
-def _holds_ball(bore: BoreArrays, displacement: Array) -> Array:
-    """Return the mask (loads,) of the balls in their bore, by the limit of `Sphere` for displacements (3, loads)."""
-    import jax.numpy as xp
-
-    limit = MAX_EQUILIBRIUM_DISPLACEMENT * xp.sqrt(bore.scale)
-    return xp.linalg.norm(displacement, axis=0) <= limit
-
-
 def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
     """Set the numbers of loads that did not converge to NaN."""
     import jax.numpy as xp
@@ -407,12 +362,8 @@ def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
         converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
         return xp.where(converged, values, xp.nan)
 
-    numbers = {
-        name: mask(values)
-        for name, values in contacts._asdict().items()
-        if name not in ("converged", "error", "edge_loaded")
-    }
-    return contacts._replace(**numbers)
+    kept = ("converged", "error", "edge_loaded")
+    return contacts._replace(**{name: mask(values) for name, values in contacts._asdict().items() if name not in kept})
 
 
 def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
@@ -423,12 +374,12 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     pressure, remaining, axis = contact
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
-    centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
+    centres, steps = measures.contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
     fixed_level, fixed_centres = jax.lax.stop_gradient((patches.level, centres))
-    edges = edge_angles(bores.cells, fixed_level, fixed_centres, steps)
-    share = cell_shares(bores.cells, patches, fixed_centres, edges)[0]
+    edges = measures.edge_angles(bores.cells, fixed_level, fixed_centres, steps)
+    share = measures.cell_shares(bores.cells, patches, fixed_centres, edges)[0]
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
-    return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0], share
+    return measures.half_angles(bores.cells, patches, edges)[0], measures.edge_margins(bores.cells, patches)[0], share
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
@@ -439,14 +390,14 @@ def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges
     import jax
     import jax.numpy as xp
 
-    table, azimuths = level_table(level), ray_azimuths(level)
+    table, azimuths = measures.level_table(level), measures.ray_azimuths(level)
 
     def level_at(angle: Array) -> Array:
-        return interpolate(cells, table, ray_directions(centres[:, None], angle, azimuths))
+        return measures.interpolate(cells, table, measures.ray_directions(centres[:, None], angle, azimuths))
 
     value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))
     fixed_value, fixed_slope = jax.lax.stop_gradient((value, slope))
-    rim = rim_angles(cells, centres)
+    rim = measures.rim_angles(cells, centres)
     moves = (edges < rim) & (edges > 0) & (fixed_slope < 0)
     moved = edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
     return xp.where(edges < rim, moved, rim)

@@ -8,30 +8,10 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem.gaps import LinearGap
+from . import coupled_search as search
 from .bore_contact import BoreContact, EquilibriumBatch, make_bore_arrays
 from .compliance import AxisymmetricOperator
-from .coupled_search import (
-    COARSE_ITERATIONS,
-    COARSE_ROUNDS,
-    COARSE_TOLERANCE,
-    SENSITIVITY_ITERATIONS,
-    TANGENT_ITERATIONS,
-    BoreArrays,
-    Lanes,
-    Measured,
-    Predictor,
-    advance_lanes,
-    fold_bore,
-    make_predictor,
-    measure,
-    newton_step,
-    refine_fields,
-    refine_sensitivity,
-    solve_sensitivity,
-    start_coarse,
-    start_lanes,
-    unfold_fields,
-)
+from .coupled_search import BoreArrays, Lanes, Measured, Predictor
 
 _BLOCK_CELLS = 142_000  # number of cells that are solved together: more exceed the processor's cache
 
@@ -62,7 +42,7 @@ def solve_tangents(bore: BoreContact, share: Numbers, edge_compliance: Numbers) 
     See `solve_change` for shares and edge compliance.
     """
     bore_arrays = make_bore_arrays(bore)
-    even, odd = (fold_bore(bore_arrays, even=parity) for parity in (True, False))
+    even, odd = (search.fold_bore(bore_arrays, even=parity) for parity in (True, False))
     symmetric = (abs(share - share[..., ::-1]) < _SYMMETRY).all(axis=(1, 2))
     tangents = numpy.tile(bore.tether, (len(share), 1, 1))
     half = share[symmetric][..., : len(even.gap)]
@@ -79,43 +59,35 @@ def _solve_block_tangents(bore: BoreArrays, share: Numbers, edge_compliance: Num
     size = max(_BLOCK_CELLS // (components * share[0].size), 1) if len(share) else 1
     blocks = [share[i : i + size].T.astype(dtype) for i in range(0, len(share), size)]
     compliance = edge_compliance.astype(dtype)
-    tangents = [solve_sensitivity(bore, block, TANGENT_ITERATIONS, compliance).tangent for block in blocks]
+    tangents = [
+        search.solve_sensitivity(bore, block, search.TANGENT_ITERATIONS, compliance).tangent for block in blocks
+    ]
     return numpy.concatenate([numpy.zeros((0, components, components)), *tangents])
 
 
 def solve_lanes(
     bore: BoreContact, coarser: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float
 ) -> EquilibriumBatch:
-    """Solve the displacements and pressures of balls in equilibrium with their loads.
+    """Solve the displacements and pressures of balls in equilibrium with their loads (batch, 3) in N.
 
-    Parameters
-    ----------
-    bore, coarser : BoreContact
-        Bore, and the same in wide cells: see `coarser_lanes`.
-    load : array (batch, 3)
-        Loads in N, in the cup's frame.
-    force_scale : array (batch,)
-        Forces in N to which residual forces are relative.
-    start : array (batch, 3)
-        Initial displacements in mm at which the ball touches.
-    tolerance : float
-        Largest residual of force and overlap, relative to the force scale and the largest overlap.
+    `coarser` is the bore in wide cells, see `coarser_lanes`. Initial displacements (batch, 3) in mm touch the bore. The
+    tolerance limits the residuals of force and overlap, relative to the force scale (batch,) in N and the largest
+    overlap.
     """
-    solution = EquilibriumBatch(
-        displacement=start.copy(), pressure=bore.zero_pressure(len(load)), converged=numpy.zeros(len(load), dtype=bool)
-    )
+    solution = bore.unsolved_batch(start)
     symmetric = _are_symmetric(bore, load) & _are_symmetric(bore, start)
     for components, lanes in ((_PLANE, symmetric), (numpy.arange(3), ~symmetric)):
         if not lanes.any():
             continue
-        bores = _make_bores(bore, coarser, folded=components is _PLANE)
+        unfolded = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
+        bores = _LaneBores(*(search.fold_bore(part, even=True) if components is _PLANE else part for part in unfolded))
         indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores.single.gap.size, 1)
         for block in (indices[i : i + size] for i in range(0, len(indices), size)):
             row = numpy.ix_(block, components)
             with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
                 solved = _solve_block(bores, load[row].T, force_scale[block], start[row].T, tolerance)
             solution.displacement[row] = solved.displacement.T
-            pressure = unfold_fields(solved.pressure) if components is _PLANE else solved.pressure
+            pressure = search.unfold_fields(solved.pressure) if components is _PLANE else solved.pressure
             solution.pressure[block] = pressure.T
             solution.converged[block] = solved.error <= tolerance
     return solution
@@ -132,8 +104,7 @@ def _are_symmetric(bore: BoreContact, vectors: Numbers) -> Numbers:
     depth, tether = bore.gap.depth, bore.tether
     if not numpy.array_equal(depth, depth[:, ::-1]) or tether[1, [0, 2]].any() or tether[[0, 2], 1].any():
         return numpy.zeros(len(vectors), dtype=bool)
-    across: Numbers = abs(vectors[:, 1]) <= _PLANE_TOLERANCE * numpy.linalg.norm(vectors, axis=1)
-    return across
+    return abs(vectors[:, 1]) <= _PLANE_TOLERANCE * numpy.linalg.norm(vectors, axis=1)
 
 
 class _LaneBores(NamedTuple):
@@ -142,11 +113,6 @@ class _LaneBores(NamedTuple):
     double: BoreArrays
     single: BoreArrays
     coarse: BoreArrays
-
-
-def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _LaneBores:
-    bores = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
-    return _LaneBores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
 
 
 class _Solution(NamedTuple):
@@ -162,13 +128,13 @@ def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: 
     double, single, coarse = bores
     single_load, single_scale = load.astype(numpy.float32), force_scale.astype(numpy.float32)
     solved, predictor = _solve_coarse(coarse, single_load, single_scale, start.astype(numpy.float32))
-    pressure = refine_fields(single, solved.pressure)
-    predictor = make_predictor(refine_sensitivity(single, pressure > 0, predictor.sensitivity))
+    pressure = search.refine_fields(single, solved.pressure)
+    predictor = search.make_predictor(search.refine_sensitivity(single, pressure > 0, predictor.sensitivity))
     displacement = solved.displacement.astype(float)
     for number in range(_MAX_CHECKS + 1):
-        measured = measure(double, load, displacement, pressure)
+        measured = search.measure(double, load, displacement, pressure)
         single_measured = Measured(*(array.astype(numpy.float32) for array in measured))
-        lanes = start_lanes(single_load, single_scale, displacement, pressure, single_measured)
+        lanes = search.start_lanes(single_load, single_scale, displacement, pressure, single_measured)
         if (lanes.error <= tolerance).all() or number == _MAX_CHECKS:
             break
         displacement, pressure, _ = _iterate(single, lanes, predictor, _SINGLE_FACTOR * tolerance, _MAX_ITERATIONS)
@@ -176,19 +142,19 @@ def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: 
 
 
 def _solve_coarse(bore: BoreArrays, load: Numbers, force_scale: Numbers, start: Numbers) -> tuple[_Solution, Predictor]:
-    lanes = start_coarse(bore, load, force_scale, start)
-    predictor = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
-    solved = _iterate(bore, lanes, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
-    for _ in range(COARSE_ROUNDS - 1):
-        unsolved = numpy.flatnonzero(~(solved.error <= COARSE_TOLERANCE))
+    lanes = search.start_coarse(bore, load, force_scale, start)
+    predictor = search.make_predictor(search.solve_sensitivity(bore, lanes.pressure > 0, search.SENSITIVITY_ITERATIONS))
+    solved = _iterate(bore, lanes, predictor, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)
+    for _ in range(search.COARSE_ROUNDS - 1):
+        unsolved = numpy.flatnonzero(~(solved.error <= search.COARSE_TOLERANCE))
         if not len(unsolved):
             break
         displacement, pressure = solved.displacement[:, unsolved], solved.pressure[..., unsolved]
-        measured = measure(bore, load[:, unsolved], displacement, pressure)
-        lanes = start_lanes(load[:, unsolved], force_scale[unsolved], displacement, pressure, measured)
-        renewed = make_predictor(solve_sensitivity(bore, pressure > 0, SENSITIVITY_ITERATIONS))
+        measured = search.measure(bore, load[:, unsolved], displacement, pressure)
+        lanes = search.start_lanes(load[:, unsolved], force_scale[unsolved], displacement, pressure, measured)
+        renewed = search.make_predictor(search.solve_sensitivity(bore, pressure > 0, search.SENSITIVITY_ITERATIONS))
         predictor.store(unsolved, renewed)
-        again = _iterate(bore, lanes, renewed, COARSE_TOLERANCE, COARSE_ITERATIONS)
+        again = _iterate(bore, lanes, renewed, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)
         for total, part in zip(solved, again, strict=True):
             total[..., unsolved] = part
     return solved, predictor
@@ -207,5 +173,5 @@ def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: fl
             predictor = predictor.take(numpy.flatnonzero(active))
         if not len(indices):
             break
-        lanes = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
+        lanes = search.advance_lanes(bore, search.newton_step(bore, lanes, predictor), lanes)
     return result

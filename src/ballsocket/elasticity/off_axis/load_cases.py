@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from math import pi
-from types import MappingProxyType
 
 import numpy
 
@@ -130,23 +129,17 @@ def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
 
 
 def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
-    """Limit an estimate to its bracket: return it if it lies inside, else another point inside.
-
-    A guess beyond an upper end that was never computed becomes a point just below the limit.
-    """
+    """Return an estimate inside its bracket, else another point there, just below a limit that was never computed."""
     middle = numpy.where(low > 0, numpy.sqrt(low * high), high / 10)
     inside: Numbers = numpy.where((guess > low) & (guess < high), guess, middle)
     return numpy.where((guess >= limit) & (high >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
 
 
-LOAD_SOLVERS: MappingProxyType[str, LoadSolver] = MappingProxyType(
-    {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
-)
+LOAD_SOLVERS = {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
 """Solver of each kind of load by its name."""
 
 
 _MAX_TILT_STEPS = 30
-
 _POLE_TILT = 1e-6  # rad: tilt of an axial load that still defines a meridian
 
 
@@ -159,9 +152,8 @@ def edge_margins(states: ContactStates | ContactSummaries) -> Numbers:
     margins = states.edge_margin.copy()
     cut_indices = numpy.flatnonzero((states.edge_loaded == 1) & states.converged)
     if len(cut_indices):
-        margins[cut_indices] = numpy.minimum(
-            _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T), 0.0
-        )
+        rotation = _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T)
+        margins[cut_indices] = numpy.minimum(rotation, 0.0)
     return margins
 
 
@@ -206,7 +198,13 @@ def _interpolate_rim_contact(
     See `_solve_rim_contact` for the arguments. Loads that fill the bore along its axis have no such tilt; then all are
     solved.
     """
-    nodes = _spread_nodes(numpy.log(load))
+    positions, nodes = numpy.log(load), sorted({0, len(load) - 1})
+    while len(nodes) < min(_MAX_RIM_NODES, len(load)):  # add the load that is farthest from the nearest node
+        distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
+        if distance.max() < _MIN_NODE_DISTANCE:
+            break
+        nodes.append(int(distance.argmax()))
+    nodes.sort()
     solved = _solve_rim_contact(states, load[nodes], azimuth[nodes], high[nodes], high_level[nodes])
     if len(nodes) == len(load):
         return solved
@@ -214,20 +212,8 @@ def _interpolate_rim_contact(
         return _solve_rim_contact(states, load, azimuth, high, high_level)
     from scipy.interpolate import make_interp_spline  # slow to import
 
-    spline = make_interp_spline(numpy.log(load[nodes]), solved, k=min(3, len(nodes) - 1))
-    tilts: Numbers = spline(numpy.log(load))
-    return tilts
-
-
-def _spread_nodes(positions: Numbers) -> Numbers:
-    """Choose indices of a few ascending positions so that none is far from the nearest chosen one: ascending."""
-    nodes = [0, len(positions) - 1] if len(positions) > 1 else [0]
-    while len(nodes) < min(_MAX_RIM_NODES, len(positions)):
-        distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
-        if distance.max() < _MIN_NODE_DISTANCE:
-            break
-        nodes.append(int(distance.argmax()))
-    return numpy.sort(nodes)
+    spline = make_interp_spline(positions[nodes], solved, k=min(3, len(nodes) - 1))
+    return spline(positions)
 
 
 def _solve_rim_contact(
@@ -235,12 +221,7 @@ def _solve_rim_contact(
 ) -> Numbers:
     """Find the tilts in rad at which the level at the rim is 0, by the Illinois method.
 
-    Parameters
-    ----------
-    states : ContactStates or ContactSummaries
-    load, azimuth : array (n,)
-    high, high_level : array (n,)
-        Tilts in rad at which the rim is loaded, and the levels there in mm.
+    The rim is loaded at the tilts `high` in rad, with the levels `high_level` in mm.
     """
 
     def solve_tilted(indices: Numbers, tilt: Numbers) -> ContactStates:
@@ -278,15 +259,11 @@ def _solve_rim_contact(
         touching = numpy.minimum(tilt + trial_margin, high[active])
         root[active] = numpy.where(free & (trial_margin < TILT_TOLERANCE), touching, interpolated)
         active = active[abs(root[active] - tilt) > TILT_TOLERANCE]
-    return numpy.where(filled, _overhang_angles(axial), root)
-
-
-def _overhang_angles(states: ContactStates) -> Numbers:
-    """Compute the angle in rad by which the undeformed overlap extends beyond the bore, as a negative number."""
-    distance = numpy.linalg.norm(states.equilibrium.displacement, axis=1)
+    # a contact that fills the bore has the angle by which its undeformed overlap extends beyond, as a negative tilt
+    distance = numpy.linalg.norm(axial.equilibrium.displacement, axis=1)
     cosine = states.bore.gap.clearance / numpy.where(distance > 0, distance, 1e-300)
-    angle = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
-    return numpy.minimum(angle, -_POLE_TILT)
+    overhang = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
+    return numpy.where(filled, numpy.minimum(overhang, -_POLE_TILT), root)
 
 
 _BLOCK_LOADS = 512  # number of loads whose fields are in memory at once while summaries are computed
@@ -295,18 +272,10 @@ _SUMMARY_NUMBERS = 100  # number of values per load at the peak of a summary
 
 
 def check_contact_memory(*shapes: tuple[int, ...]) -> None:
-    """Check that the numbers of all contacts fit into the memory, before loads and directions are combined.
-
-    Parameters
-    ----------
-    *shapes : tuple of int
-        Shapes of loads and directions. Shapes that do not broadcast are refused elsewhere.
-
-    Raises ValueError: the memory is too small.
-    """
+    """Raise ValueError unless the numbers of all contacts of these loads and directions fit into the memory."""
     try:
         count = math.prod(numpy.broadcast_shapes(*shapes))
-    except ValueError:
+    except ValueError:  # refused elsewhere
         return
     check_memory(f"{count_text(count)} contacts", 8 * _SUMMARY_NUMBERS * count)
 
@@ -334,12 +303,9 @@ def _keep_summary(
 
 
 def _field_bytes(bore: BoreContact, count: int) -> int:
-    """Compute the bytes of the fields of a number of contacts at the peak."""
     grid = bore.compliance.grid
     return 8 * _FIELD_COPIES * grid.rings * grid.meridians * count
 
 
-KEEP_FUNCTIONS: MappingProxyType[str, KeepFunction] = MappingProxyType(
-    {"fields": _keep_fields, "summary": _keep_summary}
-)
+KEEP_FUNCTIONS: dict[str, KeepFunction] = {"fields": _keep_fields, "summary": _keep_summary}
 """Functions that solve loads, by the value of `keep`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, inf, radians
@@ -44,6 +44,20 @@ class Orientations:
         Contacts of all anteversions, for each inclination. Vectors are in the frame of the rotated cup.
     seconds : float
         Computing time in s.
+    status : array
+        Outcome of each press, as a number of `Status`.
+    valid : array of bool
+        True where the model is valid.
+    tilt : array
+        Angle in rad between the load and the cup's axis.
+    edge_distance : array
+        Arc in mm from the contact to the rim, negative for edge loading; see `OffAxisContact.edge_distance`.
+    edge_loaded : array of bool
+        True where the contact reaches the rim.
+    max_pressure : array
+        Largest pressure in MPa; infinite where the end of the bore indents the ball.
+    half_angle : array
+        Half angle in rad of a round contact of the same area.
     """
 
     model: Sphere
@@ -53,50 +67,18 @@ class Orientations:
     anteversion: Numbers
     contacts: tuple[OffAxisContact, ...]
     seconds: float
-
-    def _collect_quantity(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
-        """Collect a quantity of all contacts by a function: (inclinations, anteversions)."""
-        return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
+    status: Numbers
+    valid: Numbers
+    tilt: Numbers
+    edge_distance: Numbers
+    edge_loaded: Numbers
+    max_pressure: Numbers
+    half_angle: Numbers
 
     def error_bar(self, name: str) -> Bounded:
         """Return a quantity of all contacts with its error bar."""
         bars = [error_bar(contact, name) for contact in self.contacts]
         return Bounded(*(numpy.stack(list(map(arrays.to_numpy, ends))) for ends in zip(*bars, strict=True)))
-
-    @cached_property
-    def status(self) -> Numbers:
-        """Outcome of each press, as a number of `Status`."""
-        return self._collect_quantity(lambda contact: contact.status)
-
-    @cached_property
-    def valid(self) -> Numbers:
-        """True where the model is valid."""
-        return self._collect_quantity(lambda contact: contact.valid)
-
-    @cached_property
-    def tilt(self) -> Numbers:
-        """Angle in rad between the load and the cup's axis."""
-        return self._collect_quantity(lambda contact: contact.tilt)
-
-    @cached_property
-    def edge_distance(self) -> Numbers:
-        """Arc in mm from the contact to the rim, negative for edge loading; see `OffAxisContact.edge_distance`."""
-        return self._collect_quantity(lambda contact: contact.edge_distance)
-
-    @cached_property
-    def edge_loaded(self) -> Numbers:
-        """True where the contact reaches the rim."""
-        return self._collect_quantity(lambda contact: contact.edge_loaded)
-
-    @cached_property
-    def max_pressure(self) -> Numbers:
-        """Largest pressure in MPa; infinite where the end of the bore indents the ball."""
-        return self._collect_quantity(lambda contact: contact.max_pressure)
-
-    @cached_property
-    def half_angle(self) -> Numbers:
-        """Half angle in rad of a round contact of the same area."""
-        return self._collect_quantity(lambda contact: contact.half_angle)
 
     @cached_property
     def held(self) -> Numbers:
@@ -201,8 +183,9 @@ def orient(
     for number, angle in enumerate(axes[0]):
         report_progress(f"inclination {number + 1} of {len(axes[0])}")
         contact: Any = model.press(joint, inclination=float(angle), anteversion=axes[1], **named_load)
-        _ = contact.max_pressure, contact.edge_margin, contact.half_angle  # cached: `seconds` includes them
         contacts.append(contact)
+    names = ("status", "valid", "tilt", "edge_distance", "edge_loaded", "max_pressure", "half_angle")
+    fields = {name: numpy.stack([arrays.to_numpy(getattr(contact, name)) for contact in contacts]) for name in names}
     return Orientations(
         model=model,
         joint=joint,
@@ -211,6 +194,7 @@ def orient(
         anteversion=axes[1],
         contacts=tuple(contacts),
         seconds=perf_counter() - start,
+        **fields,
     )
 
 

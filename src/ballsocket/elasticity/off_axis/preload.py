@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, inf, nan, pi, sin
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from .contact import OffAxisContact
 
 _MAX_BISECTIONS = 40
-
 _RELATIVE_TOLERANCE = 1e-4
-
 _MAX_INTERFERENCES = 4.0  # displacement, as a multiple of the interference, at which a part of every contact is open
 
 
@@ -74,8 +72,7 @@ class Preload:
     @cached_property
     def equilibrium(self) -> OffAxisContact:
         """Contact of the ball in equilibrium without a load."""
-        contact: OffAxisContact = self.model.press(self.joint, force=0.0)  # type: ignore[assignment]
-        return contact
+        return self.model.press(self.joint, force=0.0)  # type: ignore[return-value]
 
     def displace(self, displacement: Array) -> OffAxisContact:
         """Solve the contacts of the ball at displacements from the centre of the bore.
@@ -85,8 +82,7 @@ class Preload:
         displacement : array (..., 3)
             Displacements of the ball's centre in mm, in the body's frame.
         """
-        contact: OffAxisContact = self.model.press(self.joint, displacement=displacement)  # type: ignore[assignment]
-        return contact
+        return self.model.press(self.joint, displacement=displacement)  # type: ignore[return-value]
 
     def separation_displacement(self, direction: Array) -> float:
         """Compute the displacement in mm from equilibrium at which the ball first loses contact in any cell.
@@ -113,7 +109,15 @@ class Preload:
             contact = self.displace(start + distance * vector / numpy.linalg.norm(vector))
             return bool((contact.pressure_map[2] > 0).all())
 
-        return self._bisect_length(is_closed)
+        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
+        if not is_closed(low):
+            return 0.0
+        for _ in range(_MAX_BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if is_closed(middle) else (low, middle)
+            if high - low < _RELATIVE_TOLERANCE * high:
+                break
+        return low
 
     def wear_depth_to_loosen(self) -> float:
         """Compute the uniform wear of the bore in mm at which the ball loses its preload.
@@ -134,18 +138,6 @@ class Preload:
             bounds=[(None, None)] * 3 + [(0.0, None)],
         )
         return float(fitted.x[3])
-
-    def _bisect_length(self, holds: Callable[[float], bool]) -> float:
-        """Find the largest length in mm up to which a condition holds, or 0 if it does not hold at 0."""
-        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
-        if not holds(low):
-            return 0.0
-        for _ in range(_MAX_BISECTIONS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if holds(middle) else (low, middle)
-            if high - low < _RELATIVE_TOLERANCE * high:
-                break
-        return low
 
 
 MAX_RIM_STRAIN = 0.1
@@ -277,8 +269,7 @@ def pull_out(model: Sphere, joint: Joint, friction: float = 0.0) -> PullOut:
 
 def _contact_outwards(model: Sphere, joint: Joint, displacements: Numbers) -> OffAxisContact:
     opening = numpy.array(model.cup.opening)
-    contact: OffAxisContact = model.press(joint, displacement=displacements[:, None] * opening)  # type: ignore[assignment]
-    return contact
+    return model.press(joint, displacement=displacements[:, None] * opening)  # type: ignore[return-value]
 
 
 def _pulling_forces(contact: OffAxisContact, displacements: Numbers, friction: float) -> Numbers:
@@ -289,8 +280,7 @@ def _pulling_forces(contact: OffAxisContact, displacements: Numbers, friction: f
     outward = -radius * grid.centroids[2] - displacements[:, None, None]
     across = radius * numpy.hypot(grid.centroids[0], grid.centroids[1])
     normal = (outward + friction * across) / numpy.hypot(outward, across)
-    forces: Numbers = radius**2 * (pressure * grid.areas * normal).sum(axis=(1, 2))
-    return forces
+    return radius**2 * (pressure * grid.areas * normal).sum(axis=(1, 2))
 
 
 def _utilisation_at(contact: OffAxisContact, step: int) -> float:

@@ -40,15 +40,8 @@ def solve_pressure(
 ) -> PressureSolution:
     """Solve the frictionless contact: pressures that close the gap in the contact, with a gap elsewhere.
 
-    Parameters
-    ----------
-    compliance : Compliance
-    overlap : array (batch, rings, meridians)
-        Overlap of the undeformed surfaces in mm, negative in a gap.
-    start : array (batch, rings, meridians), optional
-        Initial pressures in MPa, at least 0.
-    tolerance : float or array (batch,)
-        Largest relative complementarity residual.
+    Overlaps of the undeformed surfaces (batch, rings, meridians) are in mm, negative in a gap, and initial pressures in
+    MPa, at least 0. The tolerance (batch,) limits the relative complementarity residual.
     """
     if start is None:
         stiff = compliance.pressure(numpy.maximum(overlap, 0.0))
@@ -77,7 +70,7 @@ class _ConjugateGradients:
     def __init__(self, compliance: Compliance, overlap: Numbers, pressure: Numbers) -> None:
         self.compliance, self.overlap, self.pressure = compliance, overlap, pressure
         self.max_overlap = overlap.max(axis=(1, 2), initial=0.0)
-        self.displacement = compliance.displacement_in_single_precision(pressure)
+        self.displacement = compliance.single_precision_softness(pressure)
         self.is_single = numpy.ones(len(overlap), dtype=bool)
         self.direction = self.previous_residual = numpy.zeros_like(overlap, dtype=numpy.float32)
         self.descent = numpy.full(len(overlap), numpy.inf)
@@ -99,17 +92,13 @@ class _ConjugateGradients:
         return self.compliance.grid.integrate_product(self.pressure, self.overlap + self.residual) / 2
 
     def check_convergence(self, tolerance: Numbers) -> Numbers:
-        """Return True for contacts within their tolerances (batch,).
-
-        Strict tolerances are checked in double precision.
-        """
+        """Return True for contacts within their tolerances (batch,); strict ones are checked in double precision."""
         doubtful = self.is_single & (tolerance < _MIN_SINGLE_RESIDUAL) & (self.relative_residual <= tolerance)
         if doubtful.any():
             self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])
             self.is_single &= ~doubtful
             self._update_residual()
-        converged: Numbers = self.relative_residual <= tolerance
-        return converged
+        return self.relative_residual <= tolerance
 
     def select_contacts(self, mask: Numbers) -> None:
         """Continue the iteration with only the contacts in a mask (batch,)."""
@@ -127,7 +116,7 @@ class _ConjugateGradients:
         factor = numpy.maximum(integrate(self.residual - self.previous_residual, gradient) / self.descent, 0.0)
         self.descent = integrate(self.residual, gradient)
         self.direction = numpy.where(self.residual != 0, gradient + factor[:, None, None] * self.direction, 0)
-        response = self.compliance.displacement_in_single_precision(self.direction)
+        response = self.compliance.single_precision_softness(self.direction)
         length = (integrate(self.residual, self.direction) / integrate(self.direction, response))[:, None, None]
         self.previous_residual = self.residual
         pressure = self.pressure + length * self.direction
@@ -135,7 +124,7 @@ class _ConjugateGradients:
         pulling = (pressure < 0).any(axis=(1, 2))
         self.pressure = numpy.maximum(pressure, 0.0)
         if pulling.any():
-            self.displacement[pulling] = self.compliance.displacement_in_single_precision(self.pressure[pulling])
+            self.displacement[pulling] = self.compliance.single_precision_softness(self.pressure[pulling])
         self.is_single[:] = True
         self._update_residual()
 
@@ -148,30 +137,14 @@ def solve_pressure_change(
     tolerance: float = 1e-3,
     edge_compliance: Numbers | float = 1.0,
 ) -> Numbers:
-    """Solve the change of pressure in a fixed set of cells in contact under an additional overlap.
+    """Solve the change of pressure in MPa in a fixed set of cells in contact, under an additional overlap in mm.
 
-    Parameters
-    ----------
-    compliance : Compliance
-    share : array (batch, rings, meridians)
-        Mask of the cells in contact, or the share of each cell in contact: see `coupled_search.solve_change`.
-    overlap : array (batch, rings, meridians)
-        Additional overlap in mm, or its derivative.
-    start : array (batch, rings, meridians), optional
-        Initial change of pressure.
-    tolerance : float
-        Largest relative residual in the norm of the energy.
-    edge_compliance : array (rings, 1)
-        Compliance in mm/MPa of a ring next to the contact.
-
-    Returns
-    -------
-    array (batch, rings, meridians)
-        Change of pressure in MPa per unit of overlap in mm.
+    All fields are (batch, rings, meridians). `coupled_search.solve_change` explains the shares of the cells in contact
+    and the compliance (mm/MPa) of a ring next to it. The tolerance limits the relative residual in the energy norm.
     """
     integrate = compliance.grid.integrate_product
     single = tolerance > _MIN_SINGLE_TOLERANCE
-    displacement = compliance.displacement_in_single_precision if single else compliance.displacement
+    displacement = compliance.single_precision_softness if single else compliance.displacement
     root = numpy.sqrt(share, dtype=numpy.float32 if single else float)
     open_part = 1 - root * root
     open_compliance, open_stiffness = open_part * edge_compliance, open_part / edge_compliance
@@ -197,5 +170,4 @@ def solve_pressure_change(
 
 
 def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
-    quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
-    return quotient
+    return numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)

@@ -18,17 +18,10 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem.gaps import LinearGap
+from . import coupled_search as search
 from .bore_contact import BoreContact, GapField, make_bore_arrays
 from .compliance import Compliance
-from .coupled_search import (
-    BoreArrays,
-    advance_lanes,
-    estimate_pressure,
-    fold_bore,
-    measure,
-    refine_fields,
-    start_lanes,
-)
+from .coupled_search import BoreArrays
 from .grid import Grid
 from .patch_measures import make_cell_arrays
 
@@ -94,8 +87,7 @@ class RimCurve:
         from scipy.interpolate import make_interp_spline  # slow to import
 
         spline = make_interp_spline(self.log_load, self.tilt, k=min(3, len(self.tilt) - 1))
-        tilts: Numbers = spline(numpy.log(load), extrapolate=False)
-        return tilts
+        return spline(numpy.log(load), extrapolate=False)
 
 
 CurveFunction = Callable[[RimPoints, float, float, float], RimCurve]
@@ -118,19 +110,9 @@ def indentation_curve(points: RimPoints, reach: float, clearance: float, radius:
 def cached_rim_points(compliance: Compliance, edge_softness: float, inset: float) -> RimPoints:
     """Solve contacts that just touch the rim, in the order of their loads, from a cache.
 
-    Parameters
-    ----------
-    compliance : Compliance
-        An elastic bore with a coarser grid.
-    edge_softness : float
-        `EdgeRelation.compliance` by a ring's width in rad, in mm/MPa.
-    inset : float
-        See `EdgeRelation`.
-
-    Returns
-    -------
-    RimPoints
-        For a clearance of 1 mm in a bore of radius 1 mm. Loads that fill the bore before they touch are left out.
+    The bore is elastic and has a coarser grid. `edge_softness` is `EdgeRelation.compliance` by a ring's width in rad,
+    in mm/MPa. The points hold for a clearance of 1 mm in a bore of radius 1 mm. Loads that fill the bore before they
+    touch are left out.
     """
     coarser = compliance.coarser_compliance
     if coarser is None:
@@ -140,11 +122,11 @@ def cached_rim_points(compliance: Compliance, edge_softness: float, inset: float
     largest = min(_MAX_BORE_SHARE * grid.reach, _MAX_RIM_ANGLE)
     rim_angle = numpy.linspace(min(_MIN_RINGS * grid.width, largest / 2), largest, _POINTS)
     with numpy.errstate(all="ignore"):  # a contact that diverges is left out
-        search = _RimSearch(wide, rim_angle)
-        search.approach_rim(_COARSE_TARGETS, _COARSE_ITERATIONS)
-        search.continue_in(fine)
-        search.approach_rim(_FINE_TARGETS, _FINE_ITERATIONS)
-        return search.touching_points()
+        rim_search = _RimSearch(wide, rim_angle)
+        rim_search.approach_rim(_COARSE_TARGETS, _COARSE_ITERATIONS)
+        rim_search.cells, rim_search.pressure = fine, search.refine_fields(fine.bore, rim_search.pressure)
+        rim_search.approach_rim(_FINE_TARGETS, _FINE_ITERATIONS)
+        return rim_search.touching_points()
 
 
 def _make_rim_cells(compliance: Compliance, edge_softness: float, inset: float) -> _RimCells:
@@ -152,7 +134,7 @@ def _make_rim_cells(compliance: Compliance, edge_softness: float, inset: float) 
     grid = compliance.grid
     depth = numpy.zeros((grid.rings, grid.meridians))
     gap = GapField(grid=grid, clearance=1.0, socket_radius=1.0, depth=depth, kind=LinearGap)
-    bore = fold_bore(make_bore_arrays(BoreContact(compliance=compliance, gap=gap)), even=True)
+    bore = search.fold_bore(make_bore_arrays(BoreContact(compliance=compliance, gap=gap)), even=True)
     normals = bore.normals.reshape(-1, grid.rings, 2)
     weights = bore.force_weights.reshape(2, -1, grid.rings)
     open_bore = bore._replace(
@@ -176,19 +158,14 @@ class _RimSearch:
         cosine, sine = numpy.cos(rim_angle), numpy.sin(rim_angle)
         self.log_indentation = numpy.log(1 / cosine - 1)
         self.first_ratio = _FIRST_RATIO * sine / (cosine * (1 - cosine))
-        self.pressure = estimate_pressure(cells.bore, self._displacement)
+        self.pressure = search.estimate_pressure(cells.bore, self._displacement)
         self.points = self.previous = RimPoints(*(0.0 * rim_angle for _ in RimPoints._fields))
 
     @property
     def _displacement(self) -> Numbers:
         polar = self.cells.grid.reach - self.rim_angle
         axes = numpy.stack([numpy.sin(polar), numpy.cos(polar)])
-        displacement: Numbers = (axes * (1 + numpy.exp(self.log_indentation))).astype(numpy.float32)
-        return displacement
-
-    def continue_in(self, cells: _RimCells) -> None:
-        """Continue in other cells, half as wide."""
-        self.cells, self.pressure = cells, refine_fields(cells.bore, self.pressure)
+        return (axes * (1 + numpy.exp(self.log_indentation))).astype(numpy.float32)
 
     def approach_rim(self, targets: tuple[float, ...], iterations: int) -> None:
         """Change the indentations towards margins in ring widths, one after the other."""
@@ -216,12 +193,12 @@ class _RimSearch:
         displacement, bore = self._displacement, self.cells.open_bore
         no_load, scale = 0.0 * displacement, numpy.full(len(self.rim_angle), _FORCE_SCALE, dtype=numpy.float32)
         pressure = self.pressure[:, :-1]
-        measured = measure(bore, no_load, displacement, pressure)
-        lanes = start_lanes(no_load, scale, displacement, pressure, measured)
+        measured = search.measure(bore, no_load, displacement, pressure)
+        lanes = search.start_lanes(no_load, scale, displacement, pressure, measured)
         for _ in range(iterations):
-            lanes = advance_lanes(bore, no_load, lanes)
+            lanes = search.advance_lanes(bore, no_load, lanes)
         self.pressure = numpy.concatenate([lanes.pressure, 0.0 * lanes.pressure[:, :1]], axis=1)
-        remaining = measure(self.cells.bore, no_load, displacement, self.pressure).remaining
+        remaining = search.measure(self.cells.bore, no_load, displacement, self.pressure).remaining
         self.error, (x, z) = lanes.error, -lanes.imbalance
         return RimPoints(
             rim_angle=self.rim_angle,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache, lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -21,21 +21,7 @@ from ..finite_elements.mesh import SocketShape, socket_shape
 
 if TYPE_CHECKING:
     from ..finite_elements.harmonics import Harmonics, StiffnessPowers
-
-
-class RingGrid(Protocol):
-    """Rings of a `Grid`: their limits in rad, largest width in rad, number, areas on a unit sphere, and largest m."""
-
-    @property
-    def edges(self) -> Numbers: ...
-    @property
-    def width(self) -> float: ...
-    @property
-    def rings(self) -> int: ...
-    @property
-    def ring_areas(self) -> Numbers: ...
-    @property
-    def max_harmonic(self) -> int: ...
+    from .grid import Grid
 
 
 _MAX_CONSECUTIVE_HARMONIC = 6  # largest m up to which every harmonic is computed
@@ -51,13 +37,8 @@ ModalCompliance = Callable[[Numbers], Numbers]
 def interpolate_harmonics(compute: Callable[[Numbers], Numbers], max_harmonic: int) -> Numbers:
     """Compute the matrices of all harmonics m up to `max_harmonic`, most of them by a spline in ln m.
 
-    The error is within 2e-6 of the diagonal.
-
-    Parameters
-    ----------
-    compute : function
-        From an array of harmonics m to their matrices (m, rings, rings).
-    max_harmonic : int
+    `compute` computes the matrices (m, rings, rings) of an array of harmonics. The error is within 2e-6 of the
+    diagonal.
     """
     from scipy.interpolate import make_interp_spline  # slow to import
 
@@ -79,20 +60,11 @@ def _harmonic_nodes(max_harmonic: int) -> Numbers:
     return numpy.array(nodes)
 
 
-def sphere_rings(compliance: ModalCompliance, grid: RingGrid) -> Numbers:
-    """Compute the compliance matrices between rings on a solid ball or a closed shell.
+def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
+    """Compute the compliance matrices between rings on a solid ball or a closed shell: (m, rings, rings).
 
-    Parameters
-    ----------
-    compliance : function
-        From degrees n to modal compliances in mm/MPa.
-    grid : RingGrid
-
-    Returns
-    -------
-    array (max_harmonic + 1, rings, rings)
-        ∫ u dA in mm/MPa over the ring of the row, on a unit sphere, per unit pressure on the ring of the column. The
-        mean over a cell's width is not applied.
+    They are ∫ u dA in mm/MPa over the ring of the row, on a unit sphere, per unit pressure on the ring of the column.
+    The mean over a cell's width is not applied.
     """
     count = int(_MODES_PER_RING * pi / grid.width)
     modal = compliance(numpy.arange(count + 1))
@@ -105,11 +77,8 @@ def sphere_rings(compliance: ModalCompliance, grid: RingGrid) -> Numbers:
     return interpolate_harmonics(compute_harmonics, grid.max_harmonic)
 
 
-def legendre_ring_integrals(grid: RingGrid, m: Numbers, max_degree: int) -> Numbers:
-    """Integrate the normalised associated Legendre functions P_n^m over each ring: (m, rings, degrees n).
-
-    The integrand is P_n^m sin θ.
-    """
+def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
+    """Integrate the normalised Legendre functions P_n^m times sin θ over each ring: (m, rings, degrees n)."""
     nodes, weights = (numpy.array(rule) for rule in gauss_legendre(_POINTS_PER_RING))
     width = numpy.diff(grid.edges)[:, None]
     angle = (grid.edges[:-1, None] + width * nodes).ravel()
@@ -135,7 +104,7 @@ def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: N
     return rise * x * last - drop / numpy.sqrt(max(2 * n - 3, 1)) * before_last
 
 
-def cup_rings(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
+def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     """Compute the compliance matrices between rings of a cup by finite elements: (m, rings, rings).
 
     They are ∫ u dA in mm/MPa on a unit sphere.
@@ -145,8 +114,7 @@ def cup_rings(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
     from ..finite_elements.solver import check_cup  # slow to import
 
     check_cup(cup, joint)
-    unit = _unit_cup_rings(*_unit_inputs(joint, cup, grid))
-    return unit * _bore_scale(joint)
+    return _unit_cup_rings(*_unit_inputs(joint, cup, grid)) * _bore_scale(joint)
 
 
 def _bore_scale(joint: Joint) -> float:
@@ -154,19 +122,18 @@ def _bore_scale(joint: Joint) -> float:
     return float(joint.socket_radius) / float(joint.liner.young)
 
 
-def are_cup_rings_cached(joint: Joint, cup: Cup, grid: RingGrid) -> bool:
+def are_cup_rings_cached(joint: Joint, cup: Cup, grid: Grid) -> bool:
     """Return True if the compliance matrices of `cup_rings` are cached on disk."""
     return is_array_cached(_unit_inputs(joint, cup, grid))
 
 
-def _unit_inputs(joint: Joint, cup: Cup, grid: RingGrid) -> tuple[SocketShape, tuple[float, ...], int]:
+def _unit_inputs(joint: Joint, cup: Cup, grid: Grid) -> tuple[SocketShape, tuple[float, ...], int]:
     """Return the inputs of the matrices for a bore of radius 1 and a liner of modulus 1."""
     return socket_shape(joint, cup), tuple(grid.edges.tolist()), grid.max_harmonic
 
 
 @lru_cache(maxsize=16)
 def _unit_cup_rings(shape: SocketShape, edges: tuple[float, ...], max_harmonic: int) -> Numbers:
-    """Compute or load the compliance matrices between rings for a bore of radius 1 and a liner of modulus 1."""
     rings = numpy.array(edges)
 
     def compute_matrices() -> Numbers:
@@ -210,7 +177,7 @@ def difference_rings(rings: Callable[[Joint], Numbers], joint: Joint) -> Numbers
     return numpy.stack([(rings(high) - rings(low)) / (2 * step) for step, low, high in liner_steps(joint)])
 
 
-def cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
+def cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     """Compute or load derivatives of `cup_rings` by the numbers of the liner: (3, m, rings, rings).
 
     The mesh moves with the thickness and keeps its elements. Only the element matrices are differences of 1e-5, whose
@@ -220,7 +187,7 @@ def cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
     return cached_array(key, lambda: _compute_cup_ring_slopes(joint, cup, grid))
 
 
-def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
+def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     from ..finite_elements.harmonics import socket_harmonics  # slow to import
 
     @cache
@@ -233,8 +200,7 @@ def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
         stiffness_slopes.append(_difference_stiffness({-step: low, 0.0: middle, step: high}))
     rings = grid.rings
 
-    def compute_slopes(m: Numbers) -> Numbers:
-        """Compute the derivatives of the matrices for harmonics m, one below the other: (m, 3 rings, rings)."""
+    def compute_slopes(m: Numbers) -> Numbers:  # one below the other: (m, 3 rings, rings)
         slopes = middle.ring_compliance_slopes(grid.edges, m, stiffness_slopes)
         return slopes.swapaxes(0, 1).reshape(len(m), 3 * rings, rings)
 

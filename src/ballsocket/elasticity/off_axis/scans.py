@@ -72,8 +72,7 @@ class Scan(InterpolatedDeviation):
         matrices = weighted.swapaxes(-1, -2) @ terms + numpy.diag([0.0, *3 * [_SLOPE_PENALTY]])
         values = self.deviation[index]
         planes = numpy.linalg.solve(matrices, weighted.swapaxes(-1, -2) @ values[..., None])
-        depth: Numbers = numpy.clip(planes[..., 0, 0], values.min(axis=-1), values.max(axis=-1))
-        return depth
+        return numpy.clip(planes[..., 0, 0], values.min(axis=-1), values.max(axis=-1))
 
     @cached_property
     def _search_tree(self) -> Any:
@@ -174,8 +173,7 @@ def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
     start = numpy.append(linear[:3], numpy.sqrt(max(linear[3] + linear[:3] @ linear[:3], 1e-12)))
 
     def distance_residuals(x: Numbers) -> Numbers:
-        residuals: Numbers = numpy.linalg.norm(points - x[:3], axis=1) - x[3]
-        return residuals
+        return numpy.linalg.norm(points - x[:3], axis=1) - x[3]
 
     solution = least_squares(distance_residuals, start).x
     return solution[:3], float(solution[3])

@@ -5,8 +5,9 @@ The edge of a contact is the line of zero pressure and zero gap. It runs between
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy
 
@@ -41,10 +42,7 @@ class EdgeRelation:
     bounded: bool  # True if the pressure stays finite in a contact that reaches the end of the bore
 
     def levels(self, pressure: Numbers, gap: Numbers) -> Numbers:
-        """Compute levels in mm (..., rings, meridians) from pressures in MPa and gaps in mm.
-
-        A level is positive in loaded cells and minus the gap in open ones.
-        """
+        """Compute levels in mm: positive by the pressure in loaded cells, minus the gap in open ones."""
         return numpy.where(pressure > 0, pressure * self.compliance, -numpy.maximum(gap, 0.0))
 
 
@@ -64,77 +62,22 @@ def spring_edges(modulus: float, grid: Grid) -> EdgeRelation:
     return EdgeRelation(compliance=numpy.full((grid.rings, 1), 1 / modulus), inset=0.0, bounded=True)
 
 
-class Surface(Protocol):
-    """Interface of compliance models of the bore."""
+class Surface(ABC):
+    """Compliance of a bore, and the edge of a contact on it."""
 
-    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
-        ...
-
-    def ring_slopes(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the derivatives of `rings` by Young's modulus, Poisson's ratio and thickness of the liner."""
-        ...
-
-    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
-        ...
-
-    @property
-    def edge_exponent(self) -> float:
-        """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
-        ...
+    edge_exponent: ClassVar[float] = 0.5  # n of the pressure p ~ s^n at a distance s from the edge of a contact
 
     @property
     def isotropic(self) -> Surface:
         """Surface with the same compliance about every axis, which differs from this one by smooth displacements."""
-        ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class RealCup:
-    """Real cup with rim, arc of cover, chamfer and backing layers, by finite elements of its meridian.
-
-    Each harmonic about the cup's axis has one stiffness for all directions of the load. Setting it up takes a second.
-    It is cached on disk for each R2/L, ν, arc of cover, chamfer and backing, and scales with Young's modulus.
-    """
-
-    edge_exponent: ClassVar[float] = 0.5
-
-    @property
-    def isotropic(self) -> ClosedShell:
-        """Closed shell of the same layers."""
-        return ClosedShell()
-
-    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
-        return grid.average_over_cells(cup_rings(joint, cup, grid))
-
-    def ring_slopes(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the derivatives of `rings` by the numbers of the liner: (3, m, rings, rings)."""
-        return grid.average_slopes(cup_rings(joint, cup, grid), cup_ring_slopes(joint, cup, grid))
-
-    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
-        return elastic_edges(joint, grid, bounded=cup.chamfer == 0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ClosedShell:
-    """Closed shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
-
-    edge_exponent: ClassVar[float] = 0.5
-
-    @property
-    def isotropic(self) -> ClosedShell:
-        """The surface itself."""
         return self
 
+    @abstractmethod
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
-        return grid.average_over_cells(sphere_rings(socket_of(joint).compliance, grid))
 
     def ring_slopes(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the derivatives of `rings` by the numbers of the liner: (3, m, rings, rings)."""
+        """Compute the derivatives (3, m, rings, rings) of `rings` by E, ν and thickness of the liner."""
         return difference_rings(lambda varied: self.rings(varied, cup, grid), joint)
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
@@ -143,7 +86,37 @@ class ClosedShell:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Springs:
+class RealCup(Surface):
+    """Real cup with rim, arc of cover, chamfer and backing layers, by finite elements of its meridian.
+
+    Each harmonic about the cup's axis has one stiffness for all directions of the load. Setting it up takes a second.
+    It is cached on disk for each R2/L, ν, arc of cover, chamfer and backing, and scales with Young's modulus.
+    """
+
+    @property
+    def isotropic(self) -> ClosedShell:
+        return ClosedShell()
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        return grid.average_over_cells(cup_rings(joint, cup, grid))
+
+    def ring_slopes(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        return grid.average_slopes(cup_rings(joint, cup, grid), cup_ring_slopes(joint, cup, grid))
+
+    def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
+        return elastic_edges(joint, grid, bounded=cup.chamfer == 0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedShell(Surface):
+    """Closed shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
+
+    def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+        return grid.average_over_cells(sphere_rings(socket_of(joint).compliance, grid))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Springs(Surface):
     """Independent radial springs, the foundation of the paper.
 
     Parameters
@@ -159,20 +132,9 @@ class Springs:
     def __post_init__(self) -> None:
         object.__setattr__(self, "modulus", as_modulus(self.modulus))
 
-    @property
-    def isotropic(self) -> Springs:
-        """The surface itself."""
-        return self
-
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
         diagonal = numpy.eye(grid.rings) / float(self.modulus(joint))
         return numpy.broadcast_to(diagonal, (grid.max_harmonic + 1, *diagonal.shape))
 
-    def ring_slopes(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the derivatives of `rings` by the numbers of the liner: (3, m, rings, rings)."""
-        return difference_rings(lambda varied: self.rings(varied, cup, grid), joint)
-
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         return spring_edges(float(self.modulus(joint)), grid)

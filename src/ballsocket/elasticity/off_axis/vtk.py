@@ -55,20 +55,16 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     points = [radius * bore, contact.displacement + float(joint.ball_radius) * ball, radius * edge]
     blocks = [("quad", cells), ("quad", faces + len(bore)), ("line", links + len(bore) + len(ball))]
     sizes = [len(block) for _, block in blocks]
-    fields = {"pressure": contact.pressure_map[2], "gap": _surface_gap(contact)}
+    equilibrium, bore_contact = contact.single_state.equilibrium, contact.single_state.bore
+    pressure = contact.pressure_map[2]
+    deformation = bore_contact.compliance.displacement(equilibrium.pressure)
+    gap = (deformation - bore_contact.gap.overlap(equilibrium.displacement))[0]
+    fields = {"pressure": pressure, "gap": numpy.where(pressure > 0, 0.0, gap)}
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}
     bodies = [numpy.full(size, body) for size, body in zip(sizes, (BORE, BALL, EDGE), strict=True)]
     mesh = meshio.Mesh(numpy.concatenate(points), blocks, cell_data={"part": bodies, **data})
     with write_atomically(path) as draft:
         mesh.write(draft)
-
-
-def _surface_gap(contact: OffAxisContact) -> Numbers:
-    state = contact.single_state
-    pressure = state.equilibrium.pressure
-    deformation = state.bore.compliance.displacement(pressure)
-    gap: Numbers = (deformation - state.bore.gap.overlap(state.equilibrium.displacement))[0]
-    return numpy.where(pressure[0] > 0, 0.0, gap)
 
 
 def _mesh_sphere(polar: Numbers, meridians: int) -> tuple[Numbers, Numbers]:

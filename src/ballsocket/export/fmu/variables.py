@@ -131,10 +131,7 @@ def write_cross_check(element: ForceElement | PreloadedElement, path: Path) -> t
 
 
 def trajectory(element: ForceElement | PreloadedElement, time: Numbers) -> Numbers:
-    """Compute the states (times, 9) of a test motion in which the ball touches, slides, spins and separates.
-
-    The units are mm, mm/s and rad/s.
-    """
+    """Compute the states (times, 9) in mm, mm/s and rad/s of a ball that touches, slides, spins and separates."""
     constants = element.constants
     clearance = constants.clearance
     depth = 0.01 * min(clearance, constants.wall) or 0.001 * constants.socket_radius

@@ -9,7 +9,8 @@
    the ball's centre and the opposite moment act on the socket.
 
    No function allocates memory, prints, stops the program or stores data between calls. Where the status is
-   ${NAME}_THROUGH_WALL or more there is no load: the numbers are NaN. */
+   ${NAME}_FAILED or more there is no load: the numbers are NaN. ${NAME}_THROUGH_WALL is
+   $through_wall. */
 #ifndef ${NAME}_H
 #define ${NAME}_H
 
@@ -24,7 +25,8 @@ $fields
 
 enum {
 $codes
-    ${NAME}_BAD_PARAMETER = 6
+    ${NAME}_BAD_PARAMETER = 6,
+    ${NAME}_FAILED = $failed
 };
 
 /* The parameters of the element that was exported. */

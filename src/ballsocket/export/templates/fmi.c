@@ -152,8 +152,10 @@ static void convert_units(const instance *i, double state[INPUTS], ${name}_param
 static result report_status(instance *i, int status, const double r[3])
 {
     char text[300];
-    if (status < ${NAME}_THROUGH_WALL) {
-        if (sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) > $valid)
+    if (status < ${NAME}_FAILED) {
+        if (status == ${NAME}_THROUGH_WALL)
+            report(i, WARNING, ${name}_sentence(status));
+        else if (sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) > $valid)
             report(i, WARNING, "$beyond");
         return (result)OK;
     }

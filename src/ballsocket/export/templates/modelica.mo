@@ -6,7 +6,7 @@ package $name "A ball in its socket as a force element. Written by ballsocket $v
     input Real velocity[3](each unit="m/s");
     input Real spin[3](each unit="rad/s");
     input Real parameters[$parameters] "$tunables, in SI units";
-    output Real load[9] "force (N), moment (N.m), energy (J), half angle (rad), largest pressure (Pa)";
+    output Real load[10] "force (N), moment (N.m), energy (J), half angle (rad), largest pressure (Pa), status";
   external "C" ${name}_modelica(position, velocity, spin, parameters, load)
     annotation(Include="#include \"${name}_modelica.c\"");
   annotation(smoothOrder=1);
@@ -24,8 +24,9 @@ $declared
     Modelica.Units.SI.Energy energy;
     Modelica.Units.SI.Angle half_angle;
     Modelica.Units.SI.Pressure max_pressure;
+    Real status "$through_wall";
   protected
-    Real answer[9];
+    Real answer[10];
     Frames.Orientation turn = Frames.relativeRotation(frame_a.R, frame_b.R);
   equation
     position = Frames.resolve2(frame_a.R, frame_b.r_0 - frame_a.r_0);
@@ -37,6 +38,7 @@ $declared
     energy = answer[7];
     half_angle = answer[8];
     max_pressure = answer[9];
+    status = answer[10];
     frame_b.f = -Frames.resolve2(turn, force);
     frame_b.t = -Frames.resolve2(turn, moment);
     frame_a.f = force;

@@ -5,6 +5,9 @@
 
 #include "$name.h"
 
+#define STIFFNESS $stiffness /* N/m: the largest one up to the indentation of the export */
+enum { WALL = 1, LONG_STEP = 2 }; /* warnings that were given */
+
 static int site(const mjModel *m, int instance, const char *word)
 {
     const char *name = mj_getPluginConfig(m, instance, word);
@@ -21,6 +24,16 @@ static int begin(const mjModel *m, mjData *d, int instance)
     }
     d->plugin_data[instance] = 0;
     return 0;
+}
+
+/* Warn once of a time step above 2 sqrt(mass/k): an integration with it gains energy in contact. */
+static void warn_of_a_long_step(const mjModel *m, mjData *d, int instance, mjtNum mass)
+{
+    if (m->opt.timestep * m->opt.timestep * STIFFNESS <= 4.0 * mass || d->plugin_data[instance] & LONG_STEP)
+        return;
+    d->plugin_data[instance] |= LONG_STEP;
+    mju_warning("ballsocket.$name: the time step %g s is above the largest stable one, %.2g s: reduce it",
+                m->opt.timestep, 2.0 * mju_sqrt(mass / STIFFNESS));
 }
 
 static void reset(const mjModel *m, mjtNum *state, void *data, int instance)
@@ -50,11 +63,13 @@ static void compute(const mjModel *m, mjData *d, int instance, int capability)
     mju_scl3(r, r, 1e3);
     mju_scl3(v, v, 1e3);
     status = ${name}_load(&${name}_defaults, r, v, w, f, t, &energy);
-    if (status >= ${NAME}_THROUGH_WALL) {
-        if (!d->plugin_data[instance]++)
-            mju_warning("ballsocket.$name: %s, at %g s; no force", ${name}_sentence(status), d->time);
-        return;
+    if (status >= ${NAME}_THROUGH_WALL && !(d->plugin_data[instance] & WALL)) {
+        d->plugin_data[instance] |= WALL;
+        mju_warning("ballsocket.$name: %s, at %g s", ${name}_sentence(status), d->time);
     }
+    warn_of_a_long_step(m, d, instance, m->body_mass[m->site_bodyid[ball]]);
+    if (status >= ${NAME}_FAILED)
+        return;
     mju_mulMatVec3(force, turn, f);
     mju_mulMatVec3(moment, turn, t);
     mju_scl3(moment, moment, 1e-3);

@@ -113,10 +113,7 @@ def stiffening_by_confinement(reference: Model) -> Evaluation:
 
 
 def errors_of_table_3(reference: Model, thin: bool) -> Computed:
-    """Compute the errors of the foundation modulus of Table 3, for thick (R2/L up to 4.1) or thin liners.
-
-    The head is steel, then rigid.
-    """
+    """Compute the errors of K of Table 3 for thick (R2/L up to 4.1) or thin liners, with a steel, then a rigid head."""
     ratios = RATIOS[RATIOS > 4.1] if thin else RATIOS[RATIOS <= 4.1]
     worst = {}
     for (head, ball), poisson in product({"steel": STEEL, "rigid": None}.items(), cases.POISSON):

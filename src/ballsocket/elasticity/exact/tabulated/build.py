@@ -94,10 +94,8 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "a file is needed, but this is a folder", str(path))
     with write_atomically(path) as draft:  # raises an error at once if the file cannot be written
-        stored: dict[str, Numbers] = {}
         with _process_pool(workers) as pool:
-            for name, spec in _TABLE_SPECS.items():
-                stored[name] = spec.fit(pool.map)
+            stored = {name: spec.fit(pool.map) for name, spec in _TABLE_SPECS.items()}
         with draft.open("wb") as stream:
             numpy.savez_compressed(stream, allow_pickle=False, **stored)
     return check_tables(path, points=points, workers=workers)
@@ -120,16 +118,6 @@ def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 # Sampled functions: each takes ν, R2/L and returns an array (points of the ball ..., functions, angles)
-
-
-def _poisson_at(coordinate: Numbers) -> Numbers:
-    low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
-    return (1 - numpy.exp((high + low - coordinate * (high - low)) / 2)) / 2
-
-
-def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
-    scale = chebyshev.ball_scale(poisson, ratio)
-    return float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
 
 
 def _solve_state(
@@ -177,16 +165,15 @@ def _sample_ball_change(
 ) -> Numbers:
     """Sample the change of a function by balls of several shares and ν, divided by the coordinate of the share."""
     angle = half_angle_at(chebyshev_points(angles), liner[1])
-    rigid = function(_solve_state(liner, angle, points))
+    rigid, scale = function(_solve_state(liner, angle, points)), chebyshev.ball_scale(*liner)
 
     def function_change(coordinate: float, ball_poisson: float) -> Numbers:
-        """Compute the change of the function by an elastic ball, divided by (1 + coordinate)/2."""
-        state = _solve_state(liner, angle, points, _ball_share_at(coordinate, *liner), ball_poisson)
+        share = float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
+        state = _solve_state(liner, angle, points, share, ball_poisson)
         return (function(state) - rigid) * (2 / (1 + coordinate))
 
-    return numpy.array(
-        [[function_change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev_points(shares)]
-    )
+    coordinates = [float(coordinate) for coordinate in chebyshev_points(shares)]
+    return numpy.array([[function_change(coordinate, nu) for nu in balls] for coordinate in coordinates])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,11 +187,9 @@ class _TableSpec:
     balls: tuple[float, ...] = ()
 
     def fit(self, map_function: Callable[..., Any]) -> Numbers:
-        """Compute the coefficients of this table: (ν, R2/L, ball share, ball ν, function, angle).
-
-        `map_function` applies a function to all liners.
-        """
-        poisson = _poisson_at(chebyshev_points(self.counts[0]))
+        """Compute the coefficients of this table: (ν, R2/L, ball share, ball ν, function, angle)."""
+        low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
+        poisson = (1 - numpy.exp((high + low - chebyshev_points(self.counts[0]) * (high - low)) / 2)) / 2
         ratio = chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1]))
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))
@@ -264,20 +249,14 @@ def check_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
     chebyshev.load_tables(str(path))  # raises an error at once for a file without tables
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
     with _process_pool(workers) as pool:
-        known = [
-            numpy.array(list(pool.map(_solve_exact, zip(*numbers, strict=True), chunksize=50))).T
-            for numbers in (rigid, elastic)
-        ]
+        known = [list(pool.map(_solve_exact, zip(*of, strict=True), chunksize=50)) for of in (rigid, elastic)]
     model = table.Tabulated(file=str(path))
-    errors = [_largest_errors(model, numbers, exact) for numbers, exact in zip((rigid, elastic), known, strict=True)]
+    errors = [_largest_errors(model, of, numpy.array(k).T) for of, k in zip((rigid, elastic), known, strict=True)]
     return TableAccuracy(points=points, size=Path(path).stat().st_size, rigid=errors[0], elastic=errors[1])
 
 
 def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Numbers, ...]:
-    """Draw random contacts: ε, ν, R2/L, E/E_ball and ν of the ball, an array of each.
-
-    The distributions are uniform, for R2/L in its logarithm.
-    """
+    """Draw uniform random ε, ν, ln(R2/L), E/E_ball and ν of the ball; return an array of each, of R2/L itself."""
     random = numpy.random.default_rng(seed)
     angle, poisson = numpy.radians(random.uniform(2, 80, count)), random.uniform(0, 0.499, count)
     ratio = numpy.exp(random.uniform(numpy.log(0.2), numpy.log(20), count))
@@ -309,9 +288,8 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
     by_angle, by_force = model.press(joint, half_angle=numbers[0]), model.press(joint, force=known["force"])
     results = [(name, getattr(by_angle, name), known[name], "") for name in BY_ANGLE]
     results += [(name, getattr(by_force, name), known[name], " by force") for name in BY_FORCE]
-    return tuple(
-        _largest_error(name + suffix, abs(value / expected - 1), numbers) for name, value, expected, suffix in results
-    )
+    errors = ((name + suffix, abs(value / expected - 1)) for name, value, expected, suffix in results)
+    return tuple(_largest_error(name, error, numbers) for name, error in errors)
 
 
 def _largest_error(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> LargestError:

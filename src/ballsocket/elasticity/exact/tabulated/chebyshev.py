@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.resources import files
 from math import log, prod
 from pathlib import Path
@@ -105,10 +105,7 @@ class ChebyshevTable:
         return self.coefficients_of_polynomials(polynomials)
 
     def coefficients_of_polynomials(self, polynomials: list[Array]) -> Array:
-        """Compute the coefficients from the Chebyshev polynomials (orders, joints or 1) of the coordinates.
-
-        There may be more orders than this table has.
-        """
+        """Compute the coefficients from Chebyshev polynomials (orders or more, joints or 1) of the coordinates."""
         first, second, *ball = (values[:count, ...] for values, count in zip(polynomials, self.counts, strict=False))
         matrix, products = contract_factors(convert_like(self.liner, first), first, second)
         if ball:
@@ -132,9 +129,7 @@ def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
     return numpy.cos(_polynomial_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
 
 
-@cache
-def _polynomial_orders(count: int) -> numpy.ndarray:
-    return numpy.arange(count, dtype=float)
+_polynomial_orders = cache(partial(numpy.arange, dtype=float))
 
 
 @cache
@@ -171,10 +166,9 @@ def compress_coefficients(coefficients: numpy.ndarray, angles: int = 0) -> Cheby
     liner, remainder = _truncated_svd(padded.reshape(counts[0] * counts[1], -1), threshold)
     remainder = numpy.moveaxis(remainder.reshape(len(remainder), balls, prod(shape)), 0, 1).reshape(-1, prod(shape))
     ball, curves = _truncated_svd(remainder, threshold) if balls > 1 else (numpy.empty((0, 0)), remainder)
-    factors = (numpy.ascontiguousarray(factor.T) for factor in (liner, ball, curves))
-    return ChebyshevTable(
-        counts=tuple(counts), shape=shape, **dict(zip(("liner", "ball", "curves"), factors, strict=True))
-    )
+    factors = {"liner": liner, "ball": ball, "curves": curves}
+    contiguous = {name: numpy.ascontiguousarray(factor.T) for name, factor in factors.items()}
+    return ChebyshevTable(counts=tuple(counts), shape=shape, **contiguous)
 
 
 def _truncated_svd(matrix: numpy.ndarray, threshold: float) -> tuple[numpy.ndarray, numpy.ndarray]:

@@ -44,8 +44,7 @@ class CurveCoefficients(NamedTuple):
     joint of Python numbers has one matrix for both: functions and then derivatives by angles.
     """
 
-    ratio: Array
-    """R2/L"""
+    ratio: Array  # R2/L
     functions: Array
     slopes: Array
 
@@ -53,21 +52,16 @@ class CurveCoefficients(NamedTuple):
 class Scale(NamedTuple):
     """Scales that turn the functions into lengths, forces and pressures."""
 
-    clearance: Array
-    """c in mm."""
-    area: Array
-    """R2² in mm²."""
-    compliance: Array
-    """C in mm/MPa."""
+    clearance: Array  # c in mm
+    area: Array  # R2² in mm²
+    compliance: Array  # C in mm/MPa
 
 
 class Widest(NamedTuple):
     """Contact at the largest half angle of the tables."""
 
-    opening: Array
-    """Relative indentation d/(c + d)."""
-    force: Array
-    """Dimensionless force F C/(R2² (c + d))."""
+    opening: Array  # relative indentation d/(c + d)
+    force: Array  # dimensionless force F C/(R2² (c + d))
 
     @classmethod
     def of(cls, functions: Array) -> Widest:
@@ -101,14 +95,10 @@ def opening(angle: Array, share: Pair) -> Pair:
 class TabulatedState(NamedTuple):
     """Dimensionless contact at a half angle, with the derivatives of the logarithms by ln ε (rates)."""
 
-    angle: Array
-    """ε in rad."""
-    opening: Array
-    """σ = d/(c + d)."""
-    force: Array
-    """h = F C/(R2² (c + d))."""
-    pole: Array
-    """p0 C/(c + d)."""
+    angle: Array  # ε in rad
+    opening: Array  # σ = d/(c + d)
+    force: Array  # h = F C/(R2² (c + d))
+    pole: Array  # p0 C/(c + d)
     opening_rate: Array
     force_rate: Array
     pole_rate: Array
@@ -143,10 +133,7 @@ def shift_state(state: TabulatedState, shift: Array) -> TabulatedState:
 
 
 def contact_quantities(state: TabulatedState, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε).
-
-    The units are mm, N, MPa, N/mm and mm.
-    """
+    """Compute d in mm, F in N, p0 in MPa, dF/dd in N/mm and the slope dd/d(ln ε) in mm."""
     growth = 1 / (1 - state.opening)
     reach, outer = scale.clearance * growth, state.opening * state.opening_rate * growth
     modulus = reach / scale.compliance
@@ -201,34 +188,19 @@ class JointCurves:
         """Compute coefficients (functions, angles, joints) of the table `name`, with the change by an elastic ball."""
         if self.shared is not None:
             return self.take_shared(self.shared.table_series(name))
-        table = load_tables(self.file)[name]
-        coefficients = (
-            table.coefficients_of_one(self.coordinates)
-            if self.has_plain_joint
-            else table.coefficients_of_polynomials(self.liner_polynomials)
-        )
-        ball = self._ball_coordinates
-        if ball is not None:
-            coefficients = coefficients + (1 + ball[0]) / 2 * self._ball_series(WITH_BALL[name], ball)
-        return coefficients
+        coefficients = self._evaluate_table(name, [])
+        if self.joint.ball is None:
+            return coefficients
+        share = ball_coordinate(self._softness / (1 + self._softness), self.joint.liner.poisson, self.ratio)
+        ball = [share, ball_shrinkage(self.joint.ball.poisson)]
+        return coefficients + (1 + share) / 2 * self._evaluate_table(WITH_BALL[name], ball)
 
-    def _ball_series(self, name: str, coordinates: list[Array]) -> Array:
+    def _evaluate_table(self, name: str, ball_coordinates: list[Array]) -> Array:
         table = load_tables(self.file)[name]
         if self.has_plain_joint:
-            return table.coefficients_of_one([*self.coordinates, *coordinates])
-        ball = [chebyshev_polynomials(*pair) for pair in zip(coordinates, table.counts[2:], strict=True)]
+            return table.coefficients_of_one([*self.coordinates, *ball_coordinates])
+        ball = [chebyshev_polynomials(*pair) for pair in zip(ball_coordinates, table.counts[2:], strict=False)]
         return table.coefficients_of_polynomials([*self.liner_polynomials, *ball])
-
-    @cached_property
-    def _ball_coordinates(self) -> list[Array] | None:
-        """Table coordinates of the elastic ball: its share of the compliance and its ν; None for a rigid ball."""
-        if self.joint.ball is None:
-            return None
-        share = self._softness / (1 + self._softness)
-        return [
-            ball_coordinate(share, self.joint.liner.poisson, self.ratio),
-            ball_shrinkage(self.joint.ball.poisson),
-        ]
 
     @cached_property
     def functions(self) -> Array:
@@ -238,9 +210,7 @@ class JointCurves:
     @cached_property
     def slopes(self) -> Array:
         """Chebyshev coefficients of the derivatives of the three tabulated functions."""
-        if self.shared is not None:
-            return self.take_shared(self.shared.slopes)
-        return derivative_series(self.functions)
+        return derivative_series(self.functions) if self.shared is None else self.take_shared(self.shared.slopes)
 
     @cached_property
     def curve(self) -> CurveCoefficients:

@@ -67,7 +67,10 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
         start = min(inverse.log_share(scaled, Widest(*map(float, curves.widest))) + _LOG_OFFSET, _END)
         root = scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
     else:
-        root = implicit_root(residual, solve, _start_from_series(curves, kind, scaled))
+        log_share = arrays.stop_gradient(inverse.log_share(scaled, curves.widest))
+        series = arrays.stop_gradient(start_series(curves, kind))  # the fitted series of each joint
+        start = start_root(log_share, series_values(series, start_coordinate(log_share, curves.ratio)))
+        root = implicit_root(residual, solve, start)
     state = tabulated_state(half_angle_of_root(root), curves.curve)
     shift = inverse.shift(state, scaled)
     return shift_state(state, shift), shift
@@ -80,14 +83,6 @@ _SCALAR_TOLERANCE = 1e-4  # Newton step of a single press after which its error 
 def half_angle_of_root(root: Array) -> Array:
     """Compute the half angle in rad from the solved unknown; NaN beyond the tables."""
     return where(root < _END, exp(root - _LOG_OFFSET) * LIMIT, math.nan)
-
-
-def _start_from_series(curves: JointCurves, kind: str, load: Array) -> Array:
-    """Compute the first value of the unknown under a dimensionless load, from the fitted series of each joint."""
-    log_share = arrays.stop_gradient(INVERSES[kind].log_share(load, curves.widest))
-    coordinate = start_coordinate(log_share, curves.ratio)
-    correction = series_values(arrays.stop_gradient(start_series(curves, kind)), coordinate)
-    return start_root(log_share, correction)
 
 
 def start_coordinate(log_share: Array, ratio: Array) -> Array:
@@ -111,9 +106,8 @@ def start_series(curves: JointCurves, kind: str) -> Array:
     """Compute the Chebyshev coefficients (angles, joints) of the correction of the start, for each joint."""
     if curves.shared is not None:
         return curves.take_shared(start_series(curves.shared, kind))
-    first, second = (
-        polynomials[:count, ...] for polynomials, count in zip(curves.liner_polynomials, _START_COUNTS[:2], strict=True)
-    )
+    pairs = zip(curves.liner_polynomials, _START_COUNTS[:2], strict=True)
+    first, second = (polynomials[:count, ...] for polynomials, count in pairs)
     return multiply_factors(convert_like(_start_table(curves.file, kind), first), first, second)
 
 
@@ -185,14 +179,11 @@ def indentation_log_share(load: Array, widest: Widest) -> Array:
 class _Inverse(NamedTuple):
     """Functions that invert one kind of load."""
 
-    residual: Increasing
-    """Residual and its slope by ln ε at a trial value of the unknown."""
-    shift: Callable[[TabulatedState, Array], Array]
-    """Change of ln ε from a state near the root to the root."""
-    log_share: Callable[[Array, Widest], Array]
-    """Estimate of ln(ε/LIMIT) from a dimensionless load."""
+    residual: Increasing  # residual and its slope by ln ε at a trial value of the unknown
+    shift: Callable[[TabulatedState, Array], Array]  # change of ln ε from a state near the root to the root
+    log_share: Callable[[Array, Widest], Array]  # estimate of ln(ε/LIMIT) from a dimensionless load
+    # dimensionless load of an estimated ε/LIMIT; negative beyond the perfect fit
     load_at: Callable[[Array, Widest], Array]
-    """Dimensionless load of an estimated ε/LIMIT; negative beyond the perfect fit."""
 
 
 INVERSES = {

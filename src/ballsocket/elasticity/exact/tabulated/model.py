@@ -33,51 +33,36 @@ _BLOCK_OF_ONE_JOINT = 2 * _BLOCK
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TableSolution:
-    """Contacts interpolated from the tables, with the quantities that a `Contact` delegates to.
-
-    `values` are d, F, p0 and dF/dd.
-    """
+    """Contacts interpolated from the tables, with the quantities that a `Contact` delegates to."""
 
     file: str
     joint: Joint
-    angle: Array
-    values: tuple[Array, Array, Array, Array]
-
-    @property
-    def half_angle(self) -> Array:
-        """Half angle ε in rad."""
-        return self.angle
-
-    @property
-    def pole_pressure(self) -> Array:
-        """Pressure p0 at the pole in MPa."""
-        return self.values[2]
+    half_angle: Array  # ε in rad
+    indentation: Array  # d in mm
+    force: Array  # F in N
+    pole_pressure: Array  # p0 in MPa
+    stiffness: Array  # dF/dd in N/mm
 
     @property
     def max_pressure(self) -> Array:
         """Largest pressure in MPa, which lies at the pole for all joints in the tables."""
-        return self.values[2]
+        return self.pole_pressure
 
     @property
     def max_pressure_angle(self) -> Array:
         """Polar angle of the largest pressure in rad: 0."""
-        return 0.0 * self.angle
-
-    @property
-    def stiffness(self) -> Array:
-        """Tangent stiffness dF/dd in N/mm."""
-        return self.values[3]
+        return 0.0 * self.half_angle
 
     @property
     def foundation_modulus(self) -> Array:
         """Foundation modulus p0/d in MPa/mm."""
-        return where(self.values[0] == 0, inf, self.values[2] / safe_divisor(self.values[0]))
+        return where(self.indentation == 0, inf, self.pole_pressure / safe_divisor(self.indentation))
 
     @cached_property
     def energy(self) -> Array:
         """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
-        (energy,) = _compute_in_blocks(self.file, self.joint, self.angle, _integrate_work)
-        return where(self.angle > 0, energy, 0.0 * self.angle)
+        (energy,) = _compute_in_blocks(self.file, self.joint, self.half_angle, _integrate_work)
+        return where(self.half_angle > 0, energy, 0.0 * self.half_angle)
 
     @property
     def pressure_integral(self) -> Array:
@@ -85,7 +70,7 @@ class TableSolution:
 
         It follows from U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA.
         """
-        d, F, _, _ = self.values
+        d, F = self.indentation, self.force
         return F + (d * F - 2 * self.energy) / self.joint.clearance
 
     @cached_property
@@ -94,7 +79,7 @@ class TableSolution:
 
         The argument is 2v - 1 with v = sin²(φ/2)/sin²(ε/2).
         """
-        (series,) = _compute_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
+        (series,) = _compute_in_blocks(self.file, self.joint, self.half_angle, _profile_coefficients)
         return series
 
     @cached_property
@@ -104,8 +89,8 @@ class TableSolution:
         The corrected pressure is p = p0 sqrt(1 - v) [q(v) + a + b v].
         """
         q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
-        _, F, p0, _ = self.values
-        height = sin(safe_divisor(self.angle) / 2) ** 2
+        F, p0 = self.force, self.pole_pressure
+        height = sin(safe_divisor(self.half_angle) / 2) ** 2
         plain, tilted = _profile_moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
         pole_correction = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
@@ -119,11 +104,11 @@ class TableSolution:
     def pressure(self, angle: Array) -> Array:
         """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 outside the contact."""
         pole_correction, tilt = self._profile_correction
-        half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
+        half, height = sin(angle / 2), sin(safe_divisor(self.half_angle) / 2) ** 2
         v = half * half / height
         total = _evaluate_series(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + pole_correction + tilt * v
-        inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
-        return where(inside, self.values[2] * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
+        inside = (v < 1) & (abs(angle) < pi) & (self.half_angle > 0)
+        return where(inside, self.pole_pressure * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
 
 
 def _evaluate_series(series: Array, x: Array) -> Array:
@@ -191,8 +176,8 @@ def solve_with_tables(
     if arrays.all_true(fits & is_loaded) is not True:
         rest = where(loads == 0, 0.0 * loads, math.nan)  # no solution for a traced load below 0
         values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
-    angle, d, F, p0, stiffness = values
-    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness)), shift
+    names = "half_angle", "indentation", "force", "pole_pressure", "stiffness"
+    return TableSolution(file=file, joint=joint, **dict(zip(names, values, strict=True))), shift
 
 
 def curve_reader(kind: str) -> CurveReader:
@@ -252,11 +237,7 @@ _SERIES_NUMBERS = 128
 def _map_blocks_in_jax(
     file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
 ) -> tuple[Array, ...]:
-    """Compute quantities of contacts inside `jax.jit`, block by block.
-
-    `rows` are the numbers of the joint and the loads: arrays (1,) or (contacts,). Contacts of one joint store no
-    series and need no blocks.
-    """
+    """Compute quantities block by block inside `jax.jit`; rows of joint and loads are (1,) or (contacts,)."""
 
     def compute_block(*parts: Array) -> tuple[Array, ...]:
         return compute_quantities(JointCurves(file, joint.with_numbers(list(parts[:-1]))), parts[-1])
@@ -270,11 +251,8 @@ def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[Joi
     """Return the curves of the joints of a grid and the joint of each contact, or None if sharing saves no time."""
     numbers = joint.numbers()
     inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
-    if (
-        arrays.namespace(*numbers) is not numpy
-        or prod(inner) * _MIN_CONTACTS_PER_JOINT > prod(shape)
-        or prod(inner) > _BLOCK
-    ):
+    shares = prod(inner) * _MIN_CONTACTS_PER_JOINT <= prod(shape) and prod(inner) <= _BLOCK
+    if not shares or arrays.namespace(*numbers) is not numpy:
         return None, None
     flat = [numpy.broadcast_to(part, inner).ravel() for part in numbers]
     indices = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
@@ -325,6 +303,7 @@ class Tabulated(Model):
     file: str = ""
 
     seconds_a_press: ClassVar[float] = 4e-6
+    is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
@@ -370,12 +349,11 @@ class Tabulated(Model):
         `read` is such a function, see `curve_reader`. It gets up to `single_joint_block` loads of one joint at once.
         """
         solution, shift = solve_with_tables(self.file, joint, load, read, single_joint_block)
-        d, F, _, _ = solution.values
         tolerance = _ROUNDING_ERRORS * arrays.machine_epsilon(load)
         return SolverResult(
             laws=solution,
-            force=F,
-            indentation=d,
+            force=solution.force,
+            indentation=solution.indentation,
             failures={Status.NOT_CONVERGED: arrays.logical_not(shift * shift <= tolerance)},
         )
 

@@ -1,0 +1,270 @@
+"""Contact: one joint under one load, along the axis of the cup by any model, otherwise in the real cup."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import replace
+from functools import partial
+from html import escape
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from ...comparison import Comparison, successful_contacts
+from ...contact import Contact
+from ...core.quantities import BEARING, FIELD
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue, reference
+from ...question import complete, real_cup_reason
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.press_plots import press_figure
+from ...reports.press_report import press_lede, press_sections
+from ...reports.style import line_of
+from ...studies.derivatives import LocalUncertainty, local_uncertainty
+from ..long_view import LongView
+from ..pictures.chart import swatch
+from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
+from ..pressing import fine_curves, is_waiting, press_charts, pressed
+from ..running import Work
+from ..state.screen import PAINTED, Screen
+from ..view import STRESS_PAUSE, Document, Host
+from ..widgets.fields import choice, segments, several
+from ..widgets.words import alert, headline, models_table, number_rows
+from .contact_drawing import first_view, frame_of, key
+from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
+
+_STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
+"""Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
+
+_EVERY = tuple(catalogue)
+_PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
+_PAUSE = 0.1  # s without a change until curves and table follow
+_NO_STRESSES = "this model has no stresses inside the liner"
+_AXIAL_CURVES = "<p class='quiet'>Curves: for loads along the axis of a full sphere.</p>"
+_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
+
+
+class Press(LongView):
+    """View of a press: numbers and drawing at once, then the curves and the table of all models."""
+
+    name, title, run_label = "press", "Contact", "Compute the real cup"
+    automatic, result_kind = True, "cup"
+    body = """
+<div class="first-view">
+  <div class="drawing">
+    <div id="press-section"></div>
+    <div data-field="painted"></div>
+    <p class="quiet">Drag the arrow, the ball or the liner's border; or move to one with Tab, and use the arrow
+    keys.</p>
+    <div data-field="shown"></div>
+    <div id="press-charts"></div>
+  </div>
+  <div>
+    <div data-field="answered_by"></div>
+    <div id="press-trouble" role="alert"></div>
+    <div id="press-offer"></div><div data-field="press.run"></div>
+    <div id="press-numbers"></div>
+  </div>
+</div>
+<div id="press-table"></div>
+"""
+
+    def __init__(self, page: Host) -> None:
+        super().__init__(page)
+        self._cancel_further: Callable[[], None] = lambda: None
+        self._real: OffAxisContact | None = None
+        self._requested: Hashable = None  # bore for which the real cup was requested
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return bore_of(screen.file)
+
+    def work(self, screen: Screen) -> Work:
+        return partial(set_up, *bore_of(screen.file))
+
+    def show(self, screen: Screen) -> None:
+        self._real = None
+        self._cancel_further()
+        self.expect("charts", "table")
+        comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
+        if self._needs_cup(screen, comparison):
+            self.long.show(screen)
+        else:
+            self._show_axial(screen, comparison)
+        self._cancel_further = self.page.later(_PAUSE, partial(self._fill, screen))
+
+    def _needs_cup(self, screen: Screen, comparison: Comparison) -> str:
+        """Return the reason for the real cup; it solves an axial load near the rim on request."""
+        reason, file = _reason(comparison, screen), screen.file
+        if not reason or not (real_cup_reason(file) or self._requested == bore_of(file)):
+            return ""
+        is_prepared(file)  # notes a bore whose rings are on disk, which needs no work
+        return reason
+
+    def _edited(self, key: str, value: Any) -> None:
+        self._requested = bore_of(self.page.screen.file) if value else None
+        super()._edited(key, value)
+        if value and is_prepared(self.page.screen.file):
+            self.show(self.page.screen)
+
+    def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
+        """Show the numbers of a model of a load along the axis of the cup."""
+        self.long.leave()
+        near_rim = bool(_reason(comparison, screen))
+        self.long.put_button(hidden=not near_rim)
+        self.channel.put_fields(_fields(screen))
+        by = comparison.contacts.get(screen.answered_by)
+        if by is not None:
+            exact = comparison.contacts.get(reference.name)
+            numbers = headline(by, exact, screen.file.cup, screen.reading, _STRESSES.get(by))
+        elif is_waiting(screen.file, screen.answered_by):
+            numbers = f"<p class='quiet'>{escape(comparison.missing[screen.answered_by])}</p>"
+        else:
+            numbers = alert(comparison.missing[screen.answered_by])
+        self.put(trouble="", offer=_OFFER if near_rim else "", numbers=numbers)
+        self._draw(screen, None if by is None or by.status.failed else by)
+
+    def show_result(self, screen: Screen, result: bool | None) -> None:
+        """Show the numbers of the real cup; its bore is set up first if it is new."""
+        fields = _fields(screen)
+        self.channel.put_fields({**fields, "answered_by": {**fields["answered_by"], "hidden": True}})  # one model alone
+        self.put(offer="")
+        if self.long.result(screen) is None:
+            self.put(numbers=self._reason(screen))
+            self._draw(screen, None)
+        else:
+            self.expect("numbers", "section")
+            self.compute(lambda: pressed_in_cup(screen.file), partial(self._show_real, screen))
+
+    def _show_real(self, screen: Screen, contact: OffAxisContact) -> None:
+        self._real = contact
+        self.put(numbers=headline(contact, None, screen.file.cup, screen.reading) + self._reason(screen))
+        self._draw(screen, contact)
+        self._fill(screen)
+
+    def fail(self, sentence: str) -> None:
+        screen = self.page.screen
+        self.put(numbers=f"{alert(sentence)}{self._reason(screen)}")
+        self._draw(screen, None)
+
+    def _reason(self, screen: Screen) -> str:
+        """State why the real cup is needed; empty where it is not."""
+        reason = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
+        if not reason:
+            return ""
+        words = f"Computed by the elastic model of the real cup (<code>sphere</code>), because {escape(reason)}."
+        assumptions = complete(screen.file)[1].values()
+        return "".join(f"<p class='quiet'>{text}</p>" for text in (words, *map(escape, assumptions)))
+
+    def _draw(self, screen: Screen, contact: Contact | None) -> None:
+        """Draw the joint with its pressure; stresses follow from a thread."""
+        if screen.painted == "pressure" or contact is None:
+            self._put_drawing(screen, contact, None)
+        else:
+            self.compute(partial(liner_stresses, contact), partial(self._put_drawing, screen, contact))
+
+    def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
+        file, tilt = complete(screen.file)[0], screen.file.tilt
+        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
+        drawing = first_view(file, contact, self.page.inputs, (tilt, screen.reading.length), painted)
+        if contact is None:
+            legend = ""
+        elif inside is None:
+            top = screen.reading.with_unit(FIELD["pressure"], float(contact.max_pressure))
+            legend = key(top, FIELD["pressure"], _NO_STRESSES if screen.painted == "stress" else "")
+        else:
+            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"])
+        self.put(section=drawing + legend)
+
+    def _fill(self, screen: Screen) -> None:
+        """Show the curves and the table of all models, then the numbers with the stress of the model itself."""
+        comparison, reading = pressed(screen.file, _EVERY), screen.reading
+        drawn = _drawn(comparison, screen)
+        charts = press_charts(drawn, {name: line_of(name) for name in drawn}, reading)
+        if self._needs_cup(screen, comparison):
+            self.put(charts=_AXIAL_CURVES + charts, table=models_table(_with_real(self._real, comparison), reading))
+        else:
+            self.put(charts=charts, table=models_table(comparison, reading))
+            self._cancel_further = self.page.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
+
+    def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
+        by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))
+        if by is None or by.status.failed or by in _STRESSES:
+            return
+
+        def numbers() -> str:
+            _STRESSES[by] = float(by.von_mises)
+            return headline(by, exact, screen.file.cup, screen.reading, _STRESSES[by])
+
+        self.compute(numbers, lambda html: self.put(numbers=html))
+
+    def document(self, screen: Screen) -> Document:
+        comparison, units = pressed(screen.file, _EVERY), screen.reading.units
+        if self._needs_cup(screen, comparison):
+            return self._real_document(screen, comparison)
+        by, file = comparison.contacts.get(screen.answered_by), screen.file
+        drawn = _drawn(comparison, screen)
+
+        def effects() -> LocalUncertainty | None:
+            """Compute the effect of one percent of each number; None without a load."""
+            pressing = any(float(load) > 0 for load in file.load.values())
+            return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
+
+        return Document(
+            picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
+            if drawn
+            else None,
+            rows=lambda: _rows(comparison, screen),
+            sections=lambda: press_sections(comparison, units, surroundings=effects()),
+            lede=lambda: "" if by is None else press_lede(by, file.cup, units),
+            contact=by,
+        )
+
+    def _real_document(self, screen: Screen, comparison: Comparison) -> Document:
+        if not is_prepared(screen.file):
+            raise ValueError("the real cup is still being prepared: wait until its pressure is there")
+        contact, units = pressed_in_cup(screen.file), screen.reading.units
+        real = Comparison(screen.file.joint, {contact.model.name: contact}, {})
+        return Document(
+            picture=lambda form: figure_bytes(cup_figure(contact), form),
+            rows=lambda: _rows(_with_real(contact, comparison), screen),
+            sections=lambda: press_sections(real, units),
+            lede=lambda: press_lede(contact, screen.file.cup, units),
+            contact=contact,
+        )
+
+    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
+        first = (screen.answered_by, *screen.shown)
+        return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
+
+
+def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
+    """Return the contacts of the models whose curves are shown."""
+    contacts = successful_contacts(comparison)
+    return {name: contacts[name] for name in screen.shown if name in contacts}
+
+
+def _with_real(real: Contact | None, comparison: Comparison) -> Comparison:
+    """Return a comparison with the contact in the real cup first."""
+    first = {} if real is None else {real.model.name: real}
+    return replace(comparison, contacts={**first, **comparison.contacts})
+
+
+def _reason(comparison: Comparison, screen: Screen) -> str:
+    """Return the reason why the screen needs the real cup, judged by the chosen model or the first with a result."""
+    contacts = successful_contacts(comparison)
+    return real_cup_reason(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
+
+
+def _fields(screen: Screen) -> dict[str, Any]:
+    pieces = {name: swatch(line_of(name)) for name in _EVERY}
+    return {
+        "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
+        "painted": segments("painted", "Colours show", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
+        "shown": several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
+    }
+
+
+def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
+    heads, *rows = number_rows("model", comparison, screen.reading)
+    return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]

@@ -1,0 +1,288 @@
+"""Cup: the load in the cup as it stands, how near it comes to the rim, and cups that stand otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from dataclasses import replace
+from functools import partial
+from html import escape
+from math import degrees, radians
+from typing import Any
+
+import numpy
+from scipy.interpolate import RectBivariateSpline
+
+from ...contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
+from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES
+from ...core.validity import Status
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...problem.cup import Cup
+from ...reports.check_table import checks_of
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import picture, table
+from ...reports.press_report import press_lede
+from ..long_view import LongView, LongWork, long_body
+from ..pictures import svg
+from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
+from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
+from ..running import Work
+from ..state.screen import STANDINGS, Screen
+from ..view import Document, Host, field_places
+from ..widgets.fields import segments
+from ..widgets.joint_fields import cup_edited, cup_fields
+from ..widgets.reading import Reading
+from ..widgets.settings import chosen
+from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, unit_of_files, value_text
+from .real_cup import (
+    LEWINNEK,
+    OrientationMap,
+    bore_of,
+    is_prepared,
+    map_orientations,
+    orientation_key,
+    pressed_in_cup,
+    set_up,
+)
+
+_FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
+_TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
+_SHOWN = """<div id="cup-numbers"></div><div class="beside">
+<figure><figcaption>Pressure on the cup, seen from its opening</figcaption><div id="cup-map"></div></figure>
+<figure><figcaption>In three dimensions</figcaption><div id="cup-viewer"></div></figure></div>"""
+
+_NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
+_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
+_MIN_POINTS, _FINE_POINTS = 4, 61  # values an axis: least for a cubic spline, and of a smooth contour
+
+
+class CupView(LongView):
+    """View of the load in the present cup, followed by a map over orientations."""
+
+    name, title, run_label, automatic = "cup", "Cup", "Prepare the cup", True
+    settings = (chosen("standing", "Map of", STANDINGS, segments, lambda name: QUANTITIES[name].title, key="show"),)
+    body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
+<figure>
+  <figcaption>Cup orientation map</figcaption>
+  <div data-field="cup.show"></div>{long_body("cup-stood", "", '<div id="cup-stood"></div>')}
+</figure>
+"""
+
+    def __init__(self, page: Host) -> None:
+        super().__init__(page)
+        self.orientations = LongWork(
+            page,
+            "cup-stood",
+            "Compute the map",
+            lambda screen: orientation_key(screen.file),
+            lambda screen: partial(map_orientations, screen.file),
+            self._show_map,
+            automatic=True,
+        )
+        self.further = [self.orientations]
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return bore_of(screen.file)
+
+    def work(self, screen: Screen) -> Work:
+        return partial(set_up, *bore_of(screen.file))
+
+    def show_inputs(self, screen: Screen) -> None:
+        self.channel.put_fields({**cup_fields(screen), **self.fields(screen)})
+        is_prepared(screen.file)
+
+    def show_result(self, screen: Screen, result: bool | None) -> None:
+        if self.long.result(screen) is None:
+            if result is None:
+                self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
+            return
+        self.expect("numbers", "map", "viewer")
+        self.compute(lambda: _drawn(screen), lambda parts: self.put(**parts))
+        if "tilt" in screen.file.aim:
+            self.orientations.leave()
+            self.orientations.put_button(hidden=True)
+            self.put(**{"stood-earlier": "", "stood": _NO_MAP})
+        else:
+            self.orientations.show(screen)
+
+    def edit(self, key: str, value: Any) -> None:
+        if key == "show":
+            super().edit(key, value)
+        elif key == "usual":
+            self._set_angles(**_TYPICAL)
+        elif key == "pick":
+            inclination, anteversion = (round(angle, 1) for angle in read_point(value, 2))
+            self._set_angles(inclination=inclination, anteversion=anteversion)
+        else:
+            self.page.ask(file=cup_edited(self.page.screen, key, value))
+
+    def _set_angles(self, **angles: float) -> None:
+        """Change angles of the cup, in degrees."""
+        screen = self.page.screen
+        factor = 1.0 if screen.angle == "degrees" else radians(1.0)
+        for name, angle in angles.items():
+            screen = replace(screen, file=cup_edited(screen, name, angle * factor))
+        self.page.ask(file=screen.file)
+
+    def _show_map(self, screen: Screen, orientations: OrientationMap | None) -> None:
+        if orientations is None:
+            self.put(stood="")
+        else:
+            self.put(stood=angle_map(orientations, screen.file.cup, screen.standing, screen.reading) + _KEY)
+
+    def document(self, screen: Screen) -> Document:
+        if not is_prepared(screen.file):
+            raise ValueError("this bore is still being prepared: wait until its pressure is there")
+        contact, units = pressed_in_cup(screen.file), screen.reading.units
+        orientations: OrientationMap | None = self.orientations.result(screen)
+        checks = checked(checks_of(contact, contact.model.cup), screen.reading)
+        sections = {
+            "checks": ("Checks", checks),
+            "cup": ("Contact in the cup", table(["quantity", "value"], list(_report_rows(contact, screen.reading)))),
+        }
+        if orientations is not None:
+            sections["orientations"] = ("Cup orientation map", picture(orientations.figure, "map"))
+        return Document(
+            picture=lambda form: figure_bytes(cup_figure(contact, units), form),
+            rows=lambda: [["quantity", "value"], *_file_rows(contact, screen.reading)],
+            sections=lambda: sections,
+            lede=lambda: press_lede(contact, contact.model.cup, units),
+            contact=contact,
+        )
+
+
+_NO_MAP = (
+    "<p class='quiet'>A load that is given from the cup's axis turns with the cup: there is no map of orientations.</p>"
+)
+_KEY = (
+    "<p class='quiet'>Dotted: where the contact reaches the rim. Dashed: Lewinnek's zone (1978). Ring: this cup. "
+    "Blank: the load points out of the bore, or the rim presses into the ball. "
+    "Click, or move the cross by arrow keys and press Enter, to select an orientation.</p>"
+)
+
+
+def _drawn(screen: Screen) -> dict[str, str]:
+    contact, reading = pressed_in_cup(screen.file), screen.reading
+    if not float(contact.half_angle) > 0:
+        return {"numbers": _verdict(contact, reading), "map": "", "viewer": ""}
+    return {
+        "numbers": _numbers(contact, screen),
+        "map": pressed_bore(contact, reading),
+        "viewer": pressed_viewer(contact, reading),
+    }
+
+
+def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
+    """Yield the numbers of a file by their names in JSON, each with its unit."""
+    for name, value in contact.summary().items():
+        quantity = _NAMED.get(name.removesuffix("_deg"))
+        if quantity is not None and isinstance(value, float | int):
+            unit = unit_of_files(quantity, reading)
+            yield [column_of(quantity, unit), value / quantity.written.factor * unit.factor]
+        elif isinstance(value, float | int | str | bool):
+            yield [name, value]
+
+
+def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
+    for name, value in contact.summary().items():
+        quantity = _NAMED.get(name.removesuffix("_deg"))
+        if quantity is not None and isinstance(value, float | int):
+            internal = value / quantity.written.factor
+            yield [_TITLES.get(name, quantity.title), reading.with_unit(quantity, internal)]
+    yield ["contact at the rim", value_text(bool(contact.edge_loaded))]
+
+
+def _numbers(contact: OffAxisContact, screen: Screen) -> str:
+    reading = screen.reading
+    margin = f"{_edge_margin_text(contact, reading)} of arc"
+    cells = [
+        quantity_cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, more=margin),
+        quantity_cell(CONTACT["max_pressure"], contact.max_pressure, reading),
+        quantity_cell(CUP["inclination"], contact.tilt, reading, "tilt of the load"),
+        quantity_cell(CONTACT["half_angle"], contact.half_angle, reading),
+        quantity_cell(CONTACT["force"], contact.force, reading),
+    ]
+    checks = checked(checks_of(contact, contact.model.cup), reading)
+    notes = f"{trust(contact, contact.notes)}{_hint(contact)}"
+    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes}"
+
+
+def _verdict(contact: OffAxisContact, reading: Reading) -> str:
+    bar, verdict = error_bar(contact, EDGE_DISTANCE), rim_verdict(contact)
+    apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
+    apart += f" ({_edge_margin_text(contact, reading)})"
+    if contact.status.failed:
+        verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
+        sentence = f"No contact on the bore: {contact.status.sentence}"
+    elif float(contact.half_angle) == 0:
+        verdict, sentence = Verdict.UNDECIDED, "No contact: the ball is not loaded"
+    elif contact.edge_loaded and contact.joint.clearance < 0:
+        verdict, sentence = Verdict.UNDECIDED, "The contact reaches the rim, as is normal in a preloaded joint"
+    elif verdict is Verdict.EXCEEDED:
+        sentence = "Rim contact (edge loading): the contact reaches the rim of the cup"
+    elif verdict is Verdict.UNDECIDED:
+        sentence = f"The contact may reach the rim: it ends {apart} before it"
+    else:
+        sentence = f"The contact ends {apart} before the rim"
+    return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(sentence)}</p>"
+
+
+def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:
+    """Write the angle from the contact to the rim with the digits that are known."""
+    margin, error = float(contact.edge_margin), float(contact.error["edge_margin"])
+    return reading.with_known_digits(CUP["inclination"], margin, error)
+
+
+def _hint(contact: OffAxisContact) -> str:
+    """Offer the usual orientation for a cup without one."""
+    if contact.model.cup.oriented:
+        return ""
+    angles = escape(" and ".join(f"{name} {angle:g}°" for name, angle in _TYPICAL.items()))
+    words = f"This cup opens straight down. Set {angles}"
+    return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"
+
+
+def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
+    """Draw a field over inclination and anteversion, with the present cup and Lewinnek's zone.
+
+    Complete fields are interpolated by cubic splines, for smooth contours.
+    """
+    held = orientations.held
+    fields = [numpy.where(held, getattr(orientations, name), numpy.nan).T for name in (quantity, "edge_distance")]
+    x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
+    if min(len(x), len(y)) >= _MIN_POINTS and all(numpy.isfinite(field).all() for field in fields):
+        splines = [RectBivariateSpline(y, x, field) for field in fields]
+        x, y = (numpy.linspace(axis[0], axis[-1], _FINE_POINTS) for axis in (x, y))
+        fields = [spline(y, x) for spline in splines]
+    values, edge_distance = fields
+    plane = MapPlane(x=x, y=y, x_label=CUP["inclination"].label(), y_label=CUP["anteversion"].label())
+    values = numpy.where(numpy.isfinite(values), values, numpy.nan) * reading.unit(QUANTITIES[quantity]).factor
+    rim = plane.contours(edge_distance)
+    label = reading.label(QUANTITIES[quantity])
+    high = float(numpy.nanmax(values, initial=0.0))
+    low = float(numpy.nanmin(values, initial=high if quantity == "max_pressure" else 0.0))  # 0 is the rim
+    left, right, bottom, top = LEWINNEK
+    corner = f'x="{plane.across(left):.1f}" y="{plane.up(top):.1f}"'
+    size = f'width="{plane.across(right) - plane.across(left):.1f}" height="{plane.up(bottom) - plane.up(top):.1f}"'
+    marks = [
+        *(outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in rim.lines(0.0)),
+        outlined("rect", "zone", f"{corner} {size}"),
+        *plane.ring(degrees(cup.inclination), degrees(cup.anteversion), "here"),
+    ]
+    labels = label, _map_description(orientations, label, reading)
+    return contour_map(plane, values, svg.levels_between(low, high, 7), labels, marks, "cup.pick")
+
+
+def _map_description(orientations: OrientationMap, label: str, reading: Reading) -> str:
+    free = orientations.held & (orientations.edge_distance > 0)
+    if not free.any():
+        return f"{label}: in every orientation of the map the contact reaches the rim"
+    best = numpy.where(free, orientations.edge_distance, -numpy.inf)
+    row, column = numpy.unravel_index(int(best.argmax()), best.shape)
+    inclination, anteversion = degrees(orientations.inclination[row]), degrees(orientations.anteversion[column])
+    share = f"{100 * free.mean():.0f} % of the orientations keep the contact off the rim"
+    apart = reading.with_unit(QUANTITIES["edge_distance"], float(best.max()))
+    return (
+        f"{label} over inclination and anteversion: {share}; furthest, {apart}, at "
+        f"inclination {inclination:.3g}°, anteversion {anteversion:.3g}°"
+    )

@@ -1,0 +1,298 @@
+"""Design map: one quantity over two numbers of the joint, with limits; a click shows the design that is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from html import escape
+from typing import Any
+
+import numpy
+
+from ...core.checks import check_names
+from ...core.quantities import JOINT, QUANTITIES, SHELL
+from ...files.joint_file import JointFile
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import answer_table
+from ...reports.study_plots import design_map
+from ...studies.limits import Limit, margin_on_plane, relative_margins
+from ...studies.study_answer import map_table
+from ...studies.task import BOUNDS, EDGE_DISTANCE
+from ..pictures import svg
+from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
+from ..state.screen import AXES, MAPPED, MapAxis, Screen
+from ..view import Document, Host, View, field_places
+from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
+from ..widgets.fields import Field, choice, empty_number, segments
+from ..widgets.limit_rows import LimitRows, limit_text, present_value
+from ..widgets.numbers import of_parameter
+from ..widgets.reading import Reading, box_text
+from ..widgets.settings import Setting, chosen
+from ..widgets.words import alert, column_of, unit_of_files
+from .compare import with_compared
+from .map_study import (
+    allowed_points,
+    axis_label,
+    best_point,
+    catalogue_sizes,
+    check_map,
+    default_axis,
+    joint_at,
+    limits_of,
+    map_summary,
+    mapped,
+    models_of,
+    move_limit,
+    picked_point,
+)
+
+_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
+_FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
+_ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
+_AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
+_SIZES = {"any": "any", "catalogue": "catalogue"}
+_PRESENT, _PICKED = "this design", "selected point"
+_HINT = (
+    "<p class='quiet'>Click the map, or move its cross with the arrow keys and press Enter: the design at that point "
+    "is shown here beside the present one, which is the white ring.</p>"
+)
+_BUTTONS = "".join(
+    f"<button type='button' class='plain' data-tell='map.{event}'>{words}</button> "
+    for event, words in (("use", "Use this design"), ("compare", "Add to the comparison"), ("drop", "Close"))
+)
+_BELOW_ZERO = -1e300
+_MAX_LEVELS = 12
+
+
+def _axis_setting(which: str) -> Setting:
+    """Return the parameter of an axis; another one runs over half to twice its present value."""
+
+    def field(screen: Screen) -> Field:
+        present = getattr(screen, which).name
+        names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
+        axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
+        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present)
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        check_names([value], AXES, "among the axes of a map")
+        return {"picked": None, which: default_axis(value, present_value(screen.file, value))}
+
+    return Setting(which, field, read)
+
+
+def _end_setting(key: str) -> Setting:
+    which, end = _ENDS[key]
+    label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
+
+    def field(screen: Screen) -> Field:
+        axis: MapAxis = getattr(screen, which)
+        unit = screen.reading.unit(QUANTITIES[axis.name])
+        text = box_text(getattr(axis, end) * unit.factor, unit.text)
+        return empty_number(key, label, unit, text)
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        axis: MapAxis = getattr(screen, which)
+        quantity = QUANTITIES[axis.name]
+        spec = replace(of_parameter(axis.name), label=label)
+        number = spec.meant(value, screen.reading) / quantity.written.factor
+        ends = {**vars(axis), end: number}
+        low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
+        if not ends["low"] < ends["high"]:
+            raise ValueError(f"{quantity.title} from {low} to {high} is not a range: it must end above its start")
+        return {which: MapAxis(**ends)}
+
+    return Setting(key, field, read)
+
+
+class DesignMap(View):
+    """View of one quantity over two parameters, computed as one study by a quick model."""
+
+    name, title = "map", "Design map"
+    settings = (
+        *map(_axis_setting, ("across", "up")),
+        *map(_end_setting, _ENDS),
+        chosen("quantity", "Map of", MAPPED, titles=lambda name: QUANTITIES[name].title),
+        chosen("map_model", "Model", models_of, key="model"),
+        chosen("sizes", "Sizes at a selected point", _SIZES, segments, _SIZES.__getitem__),
+    )
+    body = f"""
+<div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>
+<div data-field="map.limits"></div>
+<div id="map-trouble" role="alert"></div>
+<div class="map-layout">
+  <div><div id="map-picture"></div><div id="map-note"></div></div>
+  <div>
+    <div data-field="map.sizes"></div>
+    <p><button type="button" class="plain" data-tell="map.best">Show the design with the smallest value</button></p>
+    <div id="map-point" role="status"></div>
+  </div>
+</div>
+"""
+
+    def __init__(self, page: Host) -> None:
+        super().__init__(page)
+        self._rows = LimitRows("map.limits", _LIMITED)
+
+    def show(self, screen: Screen) -> None:
+        self._put_fields()
+        if not self.channel.shown_value("#map-picture"):
+            self.put(picture="<p class='quiet'>Preparing the map …</p>", point=_HINT)
+        self.expect("picture", "note", "point")
+        self.compute(lambda: _drawn(screen), lambda parts: self.put(trouble="", **parts))
+
+    def _put_fields(self) -> None:
+        limits = self._rows.field(self.page.screen.limits, self.page.screen.reading)
+        self.channel.put_fields({**self.fields(self.page.screen), "map.limits": limits})
+
+    def edit(self, key: str, value: Any) -> None:
+        screen = self.page.screen
+        if key == "limits":
+            self._edit_limits(value)
+        elif key == "drag":
+            number, *point = read_point(value, 3)
+            self.page.ask(limits=move_limit(mapped(screen), screen, int(number), self._in_study(*point)))
+        elif key == "pick":
+            x, y = self._in_study(*read_point(value, 2))
+            self._show_point({screen.across.name: x, screen.up.name: y})
+        elif key == "best":
+            best = best_point(mapped(screen), screen)
+            if best is None:
+                raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
+            self._show_point(best)
+        elif key == "use":
+            self.page.ask(file=self._picked_file(), picked=None)
+        elif key == "compare":
+            self.page.ask(beside=with_compared(screen, self._picked_file()))
+        elif key == "drop":
+            self.page.ask(picked=None)
+        else:
+            changes = self.read(key, value)
+            check_map(replace(screen, **changes))
+            self.page.ask(**changes)
+
+    def _edit_limits(self, value: Any) -> None:
+        """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""
+        screen = self.page.screen
+
+        def present(name: str) -> float:
+            designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+            return present_value(screen.file, name, designs[_PRESENT].contact)
+
+        def check(limits: tuple[Limit, ...]) -> None:
+            allowed_points(mapped(screen), replace(screen, limits=limits))
+
+        limits = self._rows.read(value, screen.limits, screen.reading, present, check)
+        self._put_fields()
+        if limits is not None:
+            self.page.ask(limits=limits)
+
+    def _in_study(self, x: float, y: float) -> tuple[float, float]:
+        """Convert a point in the units of the axes to those of a study."""
+        screen = self.page.screen
+        across, up = (screen.reading.unit(QUANTITIES[axis.name]).factor for axis in (screen.across, screen.up))
+        return x / across, y / up
+
+    def _show_point(self, point: dict[str, float]) -> None:
+        picked = catalogue_sizes(point) if self.page.screen.sizes == "catalogue" else point
+        joint_at(self.page.screen.file, picked)  # or it is refused here
+        self.page.ask(picked=tuple(picked.values()))
+
+    def _picked_file(self) -> JointFile:
+        picked = picked_point(self.page.screen)
+        if picked is None:
+            raise ValueError("no point of the map is chosen: click the map first")
+        return joint_at(self.page.screen.file, picked)
+
+    def document(self, screen: Screen) -> Document:
+        results = mapped(screen)
+        limits = list(limits_of(screen))
+        return Document(
+            picture=lambda form: figure_bytes(design_map(results, limits, units=screen.reading.units), form),
+            rows=lambda: _rows(results, screen.reading),
+            sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
+        )
+
+
+def _drawn(screen: Screen) -> dict[str, str]:
+    results = mapped(screen)
+    return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point_html(screen)}
+
+
+def _point_html(screen: Screen) -> str:
+    picked = picked_point(screen)
+    if picked is None:
+        return _HINT
+    try:
+        file = joint_at(screen.file, picked)
+    except ValueError as error:
+        return alert(f"the point of the map: {error}")
+    files = {_PRESENT: screen.file, _PICKED: file}
+    designs = with_drawings(with_stresses(press_designs(files, mapped(screen).attrs["model"], {})))
+    return f"<p>{_BUTTONS}</p>{design_table(designs, _PRESENT, screen, MAPPED)}"
+
+
+def _rows(results: Any, reading: Reading) -> list[list[Any]]:
+    flat, heads = results.to_dataframe().reset_index(), []
+    for name in flat.columns:
+        quantity = BOUNDS.get(name) or QUANTITIES.get(name)
+        if quantity is not None:
+            unit = unit_of_files(quantity, reading)
+            flat[name] = flat[name] * unit.factor
+        heads.append(name if quantity is None else column_of(quantity, unit))
+    return [heads, *flat.to_numpy(dtype=object).tolist()]
+
+
+def map_picture(results: Any, screen: Screen) -> str:
+    """Draw a map with a ring at the picked point; raise ValueError if it has no result anywhere.
+
+    The part that is undecided is faded, and the part that exceeds a limit once more.
+    """
+    axes = screen.across.name, screen.up.name
+    label, factor = axis_label(screen.quantity, screen)
+    values = results[screen.quantity].transpose(*axes[::-1]).values * factor
+    if numpy.isnan(values).all():
+        raise ValueError(f"{results.attrs['model']} has no result anywhere on this map: choose another model")
+    (x_label, x_factor), (y_label, y_factor) = (axis_label(name, screen) for name in axes)
+    plane = MapPlane(
+        x=results[axes[0]].values * x_factor, y=results[axes[1]].values * y_factor, x_label=x_label, y_label=y_label
+    )
+    picked = screen.picked
+    x, y = (present_value(screen.file, name) for name in axes)
+    margins = relative_margins(results, limits_of(screen), *axes)
+    veils = (plane.contours(values).area(_BELOW_ZERO, 0.0) for values in margins)
+    marks = [
+        *(f'<path class="veil" fill-rule="evenodd" d="{outline}"/>' for outline in veils if outline),
+        *plane.crosses(~results.valid.transpose(*axes[::-1]).values),
+        *plane.ring(x * x_factor, y * y_factor, "here"),
+        *(() if picked is None else plane.ring(picked[0] * x_factor, picked[1] * y_factor, "picked")),
+        *_limit_lines(results, screen, plane),
+    ]
+    levels = svg.levels_between(float(numpy.nanmin(values)), float(numpy.nanmax(values)), _MAX_LEVELS)
+    share = 100 * float(allowed_points(results, screen).mean())
+    sentence = f"{label} over {x_label} and {y_label}; {share:.3g} % of the map keep the limits"
+    return contour_map(plane, values, levels, (label, sentence), marks, "map.pick")
+
+
+def _limit_lines(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
+    """Draw each limit that crosses the map as a line with a handle at its middle."""
+    for number, limit in enumerate(limits_of(screen)):
+        lines = plane.contours(margin_on_plane(results, limit, screen.across.name, screen.up.name).value).lines(0.0)
+        yield from (outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in lines)
+        if lines:
+            longest = max(lines, key=len)
+            yield _handle(number, screen.limits[number], longest[len(longest) // 2], screen.reading)
+
+
+def _handle(number: int, limit: Limit, point: numpy.ndarray, reading: Reading) -> str:
+    """Draw the square of a limit, a slider for mouse, keyboard and screen readers."""
+    quantity, text = QUANTITIES[limit.name], limit_text(limit, reading)
+    value = (limit.high if numpy.isfinite(limit.high) else limit.low) * reading.unit(quantity).factor
+    step = svg.round_step(abs(value) or 1.0, 50)
+    right = point[0] < 240
+    slider = f'role="slider" aria-label="{escape(quantity.title)}" aria-valuenow="{value:.6g}"'
+    return (
+        f'<g tabindex="0" {slider} aria-valuetext="{escape(text)}" data-limit="{number}" data-step="{step:g}"'
+        f' transform="translate({point[0]:.1f} {point[1]:.1f})">'
+        f'<rect class="square" x="-6" y="-6" width="12" height="12"/>'
+        f"{svg.text(11 if right else -11, -6, text, 'on', 'start' if right else 'end')}</g>"
+    )
