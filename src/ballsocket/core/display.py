@@ -6,8 +6,8 @@ import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
-from importlib import import_module
 from math import isfinite
+from pkgutil import resolve_name
 from typing import Any
 
 
@@ -104,6 +104,5 @@ def load_plot(name: str) -> Callable[..., Any]:
     """
     if name not in PLOTS:
         raise LookupError(f"plot {name!r} is not registered; registered plots: {', '.join(sorted(PLOTS)) or 'none'}")
-    module, _, function = PLOTS[name].partition(":")
-    plot: Callable[..., Any] = getattr(import_module(module), function)
+    plot: Callable[..., Any] = resolve_name(PLOTS[name])
     return plot
