@@ -77,7 +77,7 @@ def test_the_check_of_the_page_fails_for_a_model_that_breaks_its_promise(promise
 
 LAST = '    "evidence": "evidence.Evidence",\n'
 OPENED = """
-from ballsocket.app.page import page_files
+from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
 from ballsocket.app.view import make_file
 page = Page("view=volume&preset=hip-28&load.force=3000")
@@ -90,10 +90,10 @@ assert b"Volume: hip-28" in make_file(page.seen(), "HTML")[1]
 
 
 @pytest.mark.skipif(find_spec("tornado") is None, reason="the explorer's extra is not installed")
-def test_a_new_view_is_a_folder_and_a_line(tmp_path):
+def test_a_new_view_is_a_file_and_a_line(tmp_path):
     code = page_code("view")[0]
     assert code.count("\n") <= 31
-    files = {"app/views/volume/__init__.py": "", "app/views/volume/view.py": code}
+    files = {"app/views/volume.py": code}
     extend_package(tmp_path, files, {"app/views/registry.py": {LAST: f'{LAST}    "volume": "volume.Volume",\n'}})
     checked_run(tmp_path, "-c", OPENED)
 
@@ -164,7 +164,7 @@ assert abs(abs(cycle.rotation_increments[:, 0]).sum() / 4 / 0.4 - 1) < 1e-2
 EXPLORER = """
 from ballsocket.app.state.use import CHOICES, hip_of, use_of, use_pairs
 from ballsocket.app.state.screen import Screen
-from ballsocket.app.views.wear.view import Wear
+from ballsocket.app.views.wear import Wear
 from ballsocket.files.joint_file import JointFile
 assert "pendulum" in CHOICES["cycle"]
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})

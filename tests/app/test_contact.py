@@ -19,17 +19,17 @@ from ballsocket.app.pictures.section import petals
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.session import Page
-from ballsocket.app.views.contact import view as contact_view
-from ballsocket.app.views.cup import worker
-from ballsocket.app.views.cup.charts import angle_map
-from ballsocket.app.views.cup.view import _hint
-from ballsocket.app.views.cup.worker import OrientationMap
+from ballsocket.app.views import contact as contact_view
+from ballsocket.app.views import real_cup
+from ballsocket.app.views.cup import _hint, angle_map
+from ballsocket.app.views.real_cup import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
 from ballsocket.core.unit_systems import Units
+from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
-from ballsocket.reports.check_table import checks_html, checks_of
+from ballsocket.reports.pages import checks_html
 from ballsocket.reports.section_plots import gap_factor
 
 from ..extent import either
@@ -292,8 +292,8 @@ def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(at_once):
 
 def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch, asked):
     bs.Sphere(cup=Cup()).press(HIP_36, force=1.0)
-    monkeypatch.setattr(worker, "RESULTS", ResultStore())
-    monkeypatch.setattr(long_view.results, "RESULTS", worker.RESULTS)
+    monkeypatch.setattr(real_cup, "RESULTS", ResultStore())
+    monkeypatch.setattr(long_view.results, "RESULTS", real_cup.RESULTS)
     page = opened(CUP_LINK)
     assert "MPa" in told(page, "cup-numbers")
     assert {name for name, *_ in asked} == {"cup-stood"}
@@ -304,7 +304,7 @@ def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
     begun = Mock(side_effect=runs)
     monkeypatch.setattr(jobs, "Run", begun)
     first, second = (Job(lambda key, news: heard.append((key, news.value))) for _ in range(2))
-    work, other = (partial(worker.set_up, HIP_36, Cup(arc_of_cover=arc)) for arc in (3.0, 2.5))
+    work, other = (partial(real_cup.set_up, HIP_36, Cup(arc_of_cover=arc)) for arc in (3.0, 2.5))
     first.ask("press", work)
     second.ask("cup", work)
     assert begun.call_count == 1
@@ -338,10 +338,11 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
 
 @pytest.mark.long
 def test_the_map_is_that_of_python(monkeypatch):
-    page, angles = opened(CUP_LINK), {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
+    page = opened(CUP_LINK)
+    angles = {name: getattr(real_cup, f"{name.upper()}S")[::5] for name in ("inclination", "anteversion")}
     for name, values in angles.items():
-        monkeypatch.setattr(worker, f"{name.upper()}S", values)
-    found = worker.map_orientations(page.screen.file, lambda news: None)
+        monkeypatch.setattr(real_cup, f"{name.upper()}S", values)
+    found = real_cup.map_orientations(page.screen.file, lambda news: None)
     asked = bs.orient(HIP_36, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
     assert found.figure.startswith(b"\x89PNG")

@@ -4,6 +4,7 @@ import json
 import operator
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
@@ -19,10 +20,9 @@ from ballsocket.app.session import Page
 from ballsocket.app.solving import heavy, solved_curve
 from ballsocket.app.state.screen import START
 from ballsocket.app.state.use import Use
-from ballsocket.app.views.contact.view import Press
-from ballsocket.app.views.cup.worker import bore_of, orientation_key
-from ballsocket.app.views.gait.worker import gait_key
-from ballsocket.app.views.wear.worker import wear_key
+from ballsocket.app.views.contact import Press
+from ballsocket.app.views.hip_runs import gait_key, wear_key
+from ballsocket.app.views.real_cup import bore_of, orientation_key
 from ballsocket.comparison import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.files.joint_file import JointFile
@@ -150,7 +150,7 @@ def until_the_end(run):
 
 
 def judging(force, **cup):
-    from ballsocket.app.views.finite_elements.worker import run_finite_elements
+    from ballsocket.app.views.finite_elements import run_finite_elements
 
     return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
 
@@ -322,9 +322,15 @@ def test_work_that_is_refused_says_why_and_keeps_the_result(monkeypatch, jobs):
     assert "earlier design" in shown(page, "earlier")
 
 
-def test_the_time_left_is_that_of_the_share_so_far():
+def test_the_time_left_is_that_of_the_share_so_far(monkeypatch, jobs):
+    page, now = opened(monkeypatch), [100.0]
+    monkeypatch.setattr(long_view, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    edits(page, "press.run", True)
+    job, key, _ = jobs[-1]
     for elapsed, share, left in ((0.5, 0.5, ""), (10.0, 0.25, ", about 30 s left"), (10.0, 0.99, "")):
-        assert long_view._with_time_left(Reached(share=share, words="wear"), elapsed) == f"wear{left}"
+        now[0] = 100.0 + elapsed
+        job._heard(key, Reached(share=share, words="wear"))
+        assert page.channel.shown_value("=press.run")["words"] == f"wear{left}"
 
 
 def test_a_store_of_results_is_bounded_in_number_bytes_and_time(monkeypatch):

@@ -12,23 +12,23 @@ import pytest
 import ballsocket as bs
 from ballsocket.app import server as serve
 from ballsocket.app.long_view import LongView
-from ballsocket.app.page import page_files
 from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
+from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import AXES, START, VIEWS, MapAxis
 from ballsocket.app.view import make_file
-from ballsocket.app.views.contact.view import Press
-from ballsocket.app.views.design_map import view as map_view
-from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
+from ballsocket.app.views import design_map as map_view
+from ballsocket.app.views.contact import Press
+from ballsocket.app.views.map_study import catalogue_sizes, mapped, models_of
 from ballsocket.app.widgets.joint_fields import layers_edited
 from ballsocket.app.widgets.limit_rows import present_value
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Cup
-from ballsocket.reports.check_table import checks_of
 
 from ..extent import either, some
 from .asking import does, edits, saved, trouble

@@ -21,9 +21,8 @@ from ballsocket.app.session import Page
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, link_of_file, read_link
-from ballsocket.app.widgets.cup_fields import cup_edited, cup_fields
 from ballsocket.app.widgets.fields import in_words_of
-from ballsocket.app.widgets.joint_fields import joint_inputs
+from ballsocket.app.widgets.joint_fields import cup_edited, cup_fields, joint_inputs
 from ballsocket.app.widgets.numbers import CUP_NUMBERS, NUMBERS
 from ballsocket.app.widgets.reading import box_text, handy_step, number_text
 from ballsocket.core.quantities import QUANTITIES

@@ -19,23 +19,22 @@ from ballsocket.app import results
 from ballsocket.app.jobs import Job
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished
-from ballsocket.app.state.evidence_question import DEFAULT_QUESTION, EvidenceQuestion
+from ballsocket.app.state.screen import DEFAULT_QUESTION, EvidenceQuestion
 from ballsocket.app.state.use import DEFAULT_USE, Use
-from ballsocket.app.views.evidence import view as evidence
-from ballsocket.app.views.evidence.worker import EvidencePack, gather_pack, write_question
-from ballsocket.app.views.gait.worker import MERIDIANS, RINGS, simulate_film, simulate_gait
-from ballsocket.app.views.wear import view as wear_view
-from ballsocket.app.views.wear import worker
-from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
+from ballsocket.app.views import evidence, hip_runs
+from ballsocket.app.views import wear as wear_view
+from ballsocket.app.views.evidence import EvidencePack, gather_pack, write_question
+from ballsocket.app.views.hip_runs import MERIDIANS, RINGS, simulate_film, simulate_gait
+from ballsocket.app.views.wear import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.contact.verdict import exact_number
 from ballsocket.core.unit_systems import Units
+from ballsocket.design_checks import wear_check
 from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
-from ballsocket.reports.check_table import wear_check
 
 from .asking import does, edits, opened, saved, told, trouble
 
@@ -210,7 +209,7 @@ def nothing_is_known(monkeypatch):
     store = ResultStore()
     monkeypatch.setattr(results, "RESULTS", store)
     monkeypatch.setattr(wear_view, "RESULTS", store)
-    monkeypatch.setattr(worker, "figure_bytes", lambda figure: b"a picture")
+    monkeypatch.setattr(hip_runs, "figure_bytes", lambda figure: b"a picture")
 
 
 def test_a_life_is_that_of_python(at_once, nothing_is_known):
@@ -258,15 +257,15 @@ def made(scale):
     )
     bore = {"depth": depth, "grid": grid, "cup": bs.Cup(), "load": np.array([0.0, 0.0, 1.0])}
     texts = {"band": "band: of a test", "notes": ("a note",), "figure": b""}
-    return worker.WearResult(cycles=np.arange(3.0), **curves, **bore, **texts, summary=summary, checks=checks)
+    return hip_runs.WearResult(cycles=np.arange(3.0), **curves, **bore, **texts, summary=summary, checks=checks)
 
 
 def test_a_bore_worn_to_the_rim_fails_there_only_by_edge_loading():
     distances = np.array([0.0, 3.0, -1.0])
     hip = SimpleNamespace(frame=SimpleNamespace(reach=1.5), joint=bs.joints["hip-36"])
-    (row,) = worker.worn_rim_rows(hip, distances, np.zeros(3, dtype=bool))
+    (row,) = hip_runs.worn_rim_rows(hip, distances, np.zeros(3, dtype=bool))
     assert (row.title, row.verdict.word) == ("reach of the contact", "undecided")
-    assert worker.worn_rim_rows(hip, distances, np.array([False, False, True])) == []
+    assert hip_runs.worn_rim_rows(hip, distances, np.array([False, False, True])) == []
 
 
 def test_two_designs_are_beside_each_other_in_one_scale():
@@ -315,7 +314,7 @@ def test_a_hip_that_cannot_be_worn_says_why(at_once, nothing_is_known):
 def test_patients_whose_coefficient_scatters_make_the_band(nothing_is_known):
     page = opened(WEAR)
     use = replace(DEFAULT_USE, millions=0.2, spread=1.5)
-    (found,) = worker.simulate_designs({"one": page.screen.file}, use, {}, lambda news: None).values()
+    (found,) = hip_runs.simulate_designs({"one": page.screen.file}, use, {}, lambda news: None).values()
     assert (found.low[1:] < found.penetration[1:]).all()
     assert (found.penetration[1:] < found.high[1:]).all()
     assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)

@@ -8,12 +8,10 @@ from urllib.parse import parse_qs
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.state.evidence_question import DEFAULT_QUESTION
-from ballsocket.app.state.screen import START, link_of, read_link
+from ballsocket.app.state.screen import DEFAULT_QUESTION, START, link_of, read_link
 from ballsocket.app.state.use import Use, hip_of
-from ballsocket.app.views.evidence.worker import write_question
-from ballsocket.app.views.gait.worker import gait_key
-from ballsocket.app.views.wear.worker import wear_key
+from ballsocket.app.views.evidence import write_question
+from ballsocket.app.views.hip_runs import gait_key, wear_key
 from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import tables_of
 from ballsocket.hip import PatientVariability

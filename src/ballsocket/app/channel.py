@@ -12,24 +12,17 @@ MAX_REQUEST_LENGTH = 300_000  # characters of one request: an uploaded joint fil
 
 
 def read_request(text: str | bytes) -> dict[str, Any] | None:
-    """Read one request of a browser; return None for text that is not a request."""
+    """Read one request of a browser; return None for text that is not a request.
+
+    Halves of surrogate pairs, which no message can carry, become question marks.
+    """
     try:
         words = json.loads(text) if len(text) <= MAX_REQUEST_LENGTH else None
     except (ValueError, RecursionError):
         return None
     if not (isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int)):
         return None
-    return _without_surrogates(words)
-
-
-def _without_surrogates(words: dict[str, Any]) -> dict[str, Any]:
-    """Replace halves of surrogate pairs, which no message can carry, by question marks."""
-    try:
-        text = json.dumps(words, ensure_ascii=False)
-        text.encode()
-    except UnicodeEncodeError:
-        return dict(json.loads(text.encode(errors="replace")))
-    return words
+    return dict(json.loads(json.dumps(words, ensure_ascii=False).encode(errors="replace")))
 
 
 class Channel:

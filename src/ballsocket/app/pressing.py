@@ -12,7 +12,6 @@ import numpy
 from ..comparison import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
 from ..contact.describe import values_of
-from ..core.kinds import Unit
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
@@ -147,22 +146,18 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
     depth, force = force_axes(reading.units)
-    top = rounded_up(1.2 * max(force.factor * float(contact.force) for contact in contacts.values()))
-    largest = top / force.factor
-    deepest = max(depth.factor * float(contact.indentation) for contact in contacts.values())
-    return chart(
-        "force over indentation",
-        FORCE_CURVE[0].label(depth),
-        FORCE_CURVE[1].label(force),
-        {name: _force_curve(contact, largest, (depth, force), lines[name]) for name, contact in contacts.items()},
-        (rounded_up(1.3 * deepest), top),
-    )
-
-
-def _force_curve(contact: Contact, largest: float, axes: tuple[Unit, Unit], line: LineStyle) -> Curve:
-    depth, force = zip(FORCE_CURVE, axes, strict=True)
-    mark = (float(values_of(contact, *depth)), float(values_of(contact, *force)))
-    press = curve(contact, largest)
-    if press is None:
-        return Curve(numpy.empty(0), numpy.empty(0), line, mark=mark)
-    return Curve(values_of(press, *depth), values_of(press, *force), line, press.valid, mark)
+    (x, y), (depth, force) = FORCE_CURVE, force_axes(reading.units)
+    marks = {
+        name: (float(values_of(contact, x, depth)), float(values_of(contact, y, force)))
+        for name, contact in contacts.items()
+    }
+    deepest, largest = (max(ends) for ends in zip(*marks.values(), strict=True))
+    top, curves = rounded_up(1.2 * largest), {}
+    for name, contact in contacts.items():
+        press, line = curve(contact, top / force.factor), lines[name]
+        if press is None:
+            curves[name] = Curve(numpy.empty(0), numpy.empty(0), line, mark=marks[name])
+        else:
+            course = values_of(press, x, depth), values_of(press, y, force)
+            curves[name] = Curve(*course, line, press.valid, marks[name])
+    return chart("force over indentation", x.label(depth), y.label(force), curves, (rounded_up(1.3 * deepest), top))

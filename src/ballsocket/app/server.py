@@ -11,6 +11,8 @@ import time
 import webbrowser
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from html import escape
+from importlib.resources import files
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -24,10 +26,11 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from ..core.checks import require, shown
 from .channel import read_request
 from .jobs import PageThread
-from .page import page_files
 from .pressing import pressed
 from .session import Page
 from .state.screen import START
+from .view import FILE_KINDS
+from .views.registry import VIEW_CLASSES, view_class
 from .widgets.words import alert
 
 _STRICT = {
@@ -106,6 +109,36 @@ class _Missing(_Guarded):
     def prepare(self) -> None:
         super().prepare()
         raise HTTPError(404)
+
+
+_KINDS = {".html": "text/html; charset=UTF-8", ".js": "text/javascript; charset=UTF-8", ".css": "text/css"}
+
+
+def page_files() -> dict[str, tuple[str, str]]:
+    """Read the files of the page: kind and content by name."""
+    folder = files("ballsocket") / "app" / "assets"
+    contents = {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
+    kinds = {name: view_class(name) for name in VIEW_CLASSES}
+    modules = sorted(name for name in contents if name.endswith(".js"))
+    parts = {
+        "<!--modules-->": "".join(f'<link rel="modulepreload" href="assets/{name}">\n' for name in modules),
+        "<!--scripts-->": "".join(f'<script type="module" src="assets/{name}"></script>\n' for name in modules),
+        "<!--views-->": _buttons("view", {name: kind.title for name, kind in kinds.items()}),
+        "<!--files-->": _buttons("file", {kind: kind for kind in FILE_KINDS}),
+        "<!--sections-->": "".join(
+            f'<section class="view" data-view="{name}" aria-label="{kind.title}" hidden>{kind.body}</section>\n'
+            for name, kind in kinds.items()
+        ),
+    }
+    for mark, html in parts.items():
+        contents["page.html"] = contents["page.html"].replace(mark, html)
+    return {name: (_KINDS[name[name.rindex(".") :]], content) for name, content in contents.items()}
+
+
+def _buttons(kind: str, words: dict[str, str]) -> str:
+    return "".join(
+        f'<button type="button" data-{kind}="{escape(name)}">{escape(label)}</button>' for name, label in words.items()
+    )
 
 
 class _File(_Guarded):
@@ -262,27 +295,11 @@ class ExplorerServer:
 def server(
     port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False, link: str = ""
 ) -> ExplorerServer:
-    """Set up the server without starting it.
+    """Set up the server without starting it; port 0 takes a free one.
 
-    Parameters
-    ----------
-    port : int
-        Port of the server; 0 takes a free one.
-    address : str
-        Address of the interface to listen on; other machines reach the server only if it is not the loopback.
-    origins : sequence of str
-        Hosts under which browsers may reach it, "hips.example.org:5006", beside this machine's own names.
-    show : bool
-        Open a browser.
-    link : str
-        Query of the link that it opens, "?...".
-
-    Raises
-    ------
-    ValueError
-        The port or the address is invalid.
-    OSError
-        The port is taken.
+    Other machines reach it only if `address` is not the loopback. `origins` are hosts under which browsers may reach
+    it, such as "hips.example.org:5006", beside this machine's own names. `show` opens a browser at the query `link`,
+    "?...". Raises ValueError for an invalid port or address, and OSError if the port is taken.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
     try:

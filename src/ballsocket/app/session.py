@@ -22,7 +22,7 @@ from .state.designs import read_upload, session_text
 from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_link
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
-from .widgets.fields import Field, in_words_of, segments
+from .widgets.fields import in_words_of, segments
 from .widgets.joint_fields import joint_inputs, joint_words, layer_fields, layers_edited
 from .widgets.words import alert
 
@@ -55,7 +55,7 @@ class Page:
         self._slow_presses = SlowPresses(self._refresh)
         self._printing = Job(self._printed)
         self.channel.once("fresh", True)
-        self._put()
+        self._put_inputs()
         self.channel.send()  # inputs before the first answer, for slow lines
         self.channel.number = number
         self._refresh()
@@ -118,7 +118,7 @@ class Page:
             "open": self._open,
             "edit": self._edit,
             "choose": self._choose,
-            "save": self._save,
+            "save": lambda words: run_in_thread(partial(make_file, self.seen(), str(words.get("kind"))), self._saved),
             "upload": self._upload,
         }
         try:
@@ -176,16 +176,10 @@ class Page:
     def _choose(self, words: Mapping[str, Any]) -> None:
         name, value = str(words.get("name")), words.get("value")
         check_names([name], _CHOSEN, "among the choices")
-        wanted = tuple(value) if isinstance(value, list) else value
-        if not isinstance(wanted, tuple if name == "shown" else str) or not all(
-            isinstance(item, str) for item in wanted
-        ):
+        listed = value if name == "shown" else [value]
+        if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
             raise ValueError(f"{name} takes words")
-        self.ask(**{name: wanted})
-
-    def _save(self, words: Mapping[str, Any]) -> None:
-        kind, seen = str(words.get("kind")), self.seen()
-        run_in_thread(partial(make_file, seen, kind), self._saved)
+        self.ask(**{name: tuple(listed) if name == "shown" else value})
 
     def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
         try:
@@ -198,7 +192,7 @@ class Page:
         else:
             if name.endswith(".pdf"):
                 paper = self.screen.reading.units.paper
-                self._printing.ask((name, content), partial(print_page, content.decode("utf-8"), paper))
+                self._printing.ask(name, partial(print_page, content.decode("utf-8"), paper))
                 return
             self._send_file(name, content)
         self.channel.send()
@@ -207,7 +201,7 @@ class Page:
         if isinstance(news, RunRefused):
             self.refuse(news.why)
         elif isinstance(news, RunFinished):
-            self._send_file(key[0], news.value)
+            self._send_file(key, news.value)
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:
@@ -228,19 +222,11 @@ class Page:
             self._send_file("designs.toml", session_text(links).encode("utf-8"))
             return
         check_compared(len(links))
-        compared = (read_link(parse_qs(link, keep_blank_values=True)) for link in links)
-        self.ask(beside=tuple(screen.file for screen in compared), view="compare")
+        compared = tuple(read_link(parse_qs(link, keep_blank_values=True)).file for link in links)
+        self.ask(beside=compared, view="compare")
 
     def _send_file(self, name: str, content: bytes) -> None:
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
-
-    def _fields(self) -> dict[str, Field]:
-        angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
-        sizes = segments("size", "Ball size as", SIZES, self.screen.size)
-        units = segments("units", "Units", _UNITS, self.screen.units)
-        joint = {name: entry.field for name, entry in self._joint_inputs.items()}
-        layers = layer_fields(self.screen.file.joint)
-        return {**joint, **layers, "units": units, "size": sizes, "angle": angles}
 
     def attempt(self, action: Callable[[], None]) -> None:
         try:
@@ -252,18 +238,25 @@ class Page:
         self.channel.send()
 
     def _refresh(self) -> None:
-        self._put()
+        self._put_inputs()
         self.attempt(lambda: self.view.show(self.screen))
         self._slow_presses.ask(*self.view.asks(self.screen))
 
-    def _put(self) -> None:
-        self._joint_inputs = joint_inputs(self.screen)
-        self.inputs = self._fields()
+    def _put_inputs(self) -> None:
+        screen, joint = self.screen, self.screen.file.joint
+        self._joint_inputs = joint_inputs(screen)
+        self.inputs = {
+            **{name: entry.field for name, entry in self._joint_inputs.items()},
+            **layer_fields(joint),
+            "units": segments("units", "Units", _UNITS, screen.units),
+            "size": segments("size", "Ball size as", SIZES, screen.size),
+            "angle": segments("angle", "Angles in", ANGLES, screen.angle),
+        }
         self.channel.put_fields(self.inputs)
         self.channel.put("order", list(self.inputs))
-        self.channel.put("#behind", joint_words(self.screen.file.joint))
-        self.channel.put("view", self.screen.view)
-        self.channel.put("link", self.screen.link)
+        self.channel.put("#behind", joint_words(joint))
+        self.channel.put("view", screen.view)
+        self.channel.put("link", screen.link)
 
     @property
     def view(self) -> View:

@@ -94,17 +94,18 @@ class View:
 
     def fields(self, screen: Screen) -> dict[str, Field]:
         """Return the inputs of the settings by name."""
-        named = {f"{self.name}.{setting.key}": setting.field(screen) for setting in self.settings}
-        return {name: {**field, "name": name} for name, field in named.items()}
+        fields = ({**setting.field(screen), "name": f"{self.name}.{setting.key}"} for setting in self.settings)
+        return {field["name"]: field for field in fields}
+
+    def read(self, key: str, value: Any) -> dict[str, Any]:
+        """Read a changed input of the settings: the changes of the screen."""
+        known = {setting.key: setting for setting in self.settings}
+        check_names([key], known, f"among the inputs of {self.title}")
+        return known[key].read(self.page.screen, value)
 
     def edit(self, key: str, value: Any) -> None:
         """Handle a changed input of the view, named without the view."""
-        known = {setting.key: setting for setting in self.settings}
-        check_names([key], known, f"among the inputs of {self.title}")
-        self.change(**known[key].read(self.page.screen, value))
-
-    def change(self, **changes: Any) -> None:
-        self.page.ask(**changes)
+        self.page.ask(**self.read(key, value))
 
     def put(self, **parts: str) -> None:
         """Fill elements of the view with HTML, by their ids without the view."""
@@ -119,20 +120,20 @@ class View:
         """Run some work in a thread and show its result, unless the screen has changed."""
         screen = self.page.screen
 
-        def show_outcome(outcome: Future[Any]) -> None:
-            try:
-                result = outcome.result()
-            except (ValueError, OutsideDomainError) as error:
-                self.channel.forget_expected()
-                self.fail(str(error))
-            else:
-                show(result)
-
         def finish(outcome: Future[Any]) -> None:
             if screen is self.page.screen:
-                self.page.attempt(partial(show_outcome, outcome))
+                self.page.attempt(partial(self._show_outcome, outcome, show))
 
         run_in_thread(lambda: work() if screen is self.page.screen else None, finish)
+
+    def _show_outcome(self, outcome: Future[Any], show: Callable[[T], None]) -> None:
+        try:
+            result = outcome.result()
+        except (ValueError, OutsideDomainError) as error:
+            self.channel.forget_expected()
+            self.fail(str(error))
+        else:
+            show(result)
 
     def fail(self, sentence: str) -> None:
         """Show why a computation has no result."""
@@ -174,10 +175,11 @@ def _picture(content: ScreenContent, form: str) -> bytes:
 
 
 def _numbers(content: ScreenContent) -> bytes:
+    """Write the table as CSV; text that a spreadsheet would take for a formula is marked."""
     stream = StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(
-        [_plain_text(cell) for cell in row] for row in content.document.rows()
-    )
+    writer = csv.writer(stream, lineterminator="\n")
+    for row in content.document.rows():
+        writer.writerow(f"'{cell}" if isinstance(cell, str) and cell[:1] in tuple("=+-@") else cell for cell in row)
     return stream.getvalue().encode("utf-8")
 
 
@@ -195,11 +197,6 @@ def _report(content: ScreenContent) -> bytes:
 def print_page(page: str, paper: str, report: Report) -> bytes:
     """Print a report as PDF, in a separate process with limits of time and memory."""
     return pdf_of(page, paper)
-
-
-def _plain_text(cell: Any) -> Any:
-    """Mark text that a spreadsheet would take for a formula."""
-    return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@") else cell
 
 
 _FILE_WRITERS: dict[str, Callable[[ScreenContent], bytes]] = {

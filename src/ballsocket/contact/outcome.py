@@ -109,7 +109,6 @@ class Outcome(ABC):
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
-        """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property

@@ -160,12 +160,8 @@ def percent(ratio: float) -> str:
 
 def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
     """Compare the stresses of a single contact with all strengths of its materials, in descending order of ratio."""
-    von_mises = error_bar(contact, "von_mises") if contact.joint.liner.strengths else exact_number(0.0)
-    return strength_uses_at(contact.joint, error_bar(contact, "max_pressure"), von_mises)
-
-
-def strength_uses_at(joint: Joint, pressure: Bounded, von_mises: Bounded) -> tuple[StrengthUse, ...]:
-    """Compare the largest pressure and the largest von Mises stress of the liner, in MPa, with all strengths."""
+    joint, pressure = contact.joint, error_bar(contact, "max_pressure")
+    von_mises = error_bar(contact, "von_mises") if joint.liner.strengths else exact_number(0.0)
     uses = list(_compare_with_material_strengths("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
         uses += _compare_with_material_strengths("ball", joint.ball, pressure, ball_von_mises(joint, pressure))
@@ -180,7 +176,6 @@ def ball_von_mises(joint: Joint, pressure: Bounded) -> Bounded:
 def _compare_with_material_strengths(
     body: str, material: Material, pressure: Bounded, von_mises: Bounded
 ) -> Iterator[StrengthUse]:
-    """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
         yield StrengthUse(part=body, strength=name, stress=Bounded(*map(float, stress)), allowed=float(strength))

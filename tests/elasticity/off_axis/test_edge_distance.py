@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.views.cup.view import _verdict
+from ballsocket.app.views.cup import _verdict
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.elasticity.off_axis.load_cases import edge_margins

@@ -65,14 +65,10 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
         reach=reach,
         cup=contact.model.cup,
     )
-    project = _projection(reach)
-    edge = svg.closed(*project(contact.outline))
-    marks = [
-        f'<path class="patch" d="{edge}"/>',
-        *(_load_cross(*map(float, project(contact.force_vector / contact.force))) if contact.force else ()),
-    ]
+    edge = svg.closed(*_project(reach, contact.outline))
+    marks = [f'<path class="patch" d="{edge}"/>', *_load_cross(reach, contact.force_vector / (contact.force or 1.0))]
     if numpy.isfinite(contact.max_pressure):
-        x, y = map(float, project(contact.max_pressure_at))
+        x, y = map(float, _project(reach, contact.max_pressure_at))
         marks.append(f'<circle class="most" cx="{x:.1f}" cy="{y:.1f}" r="5"/>')
     highest = reading.with_unit(FIELD["pressure"], shown_maximum(contact))
     distance = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
@@ -80,10 +76,9 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
     return bore_map(label, field, marks)
 
 
-def load_bore(field: BoreField, label: str, load: Any) -> str:
+def load_bore(field: BoreField, label: str, load: numpy.ndarray) -> str:
     """Draw a field on a bore, with a cross at the direction of the load (3,), if it is not zero."""
-    marks = _load_cross(*map(float, _projection(field.reach)(load))) if numpy.any(load) else ()
-    return bore_map(label, field, list(marks))
+    return bore_map(label, field, _load_cross(field.reach, load))
 
 
 def grid_field(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], numpy.ndarray]:
@@ -131,34 +126,31 @@ def bare_bore(cup: Cup, reach: float) -> str:
 
 
 def _bore_picture(label: str, cup: Cup, reach: float, field: str, marks: Iterable[str]) -> str:
+    rings, azimuth = [], radians(136)
+    for angle in range(30, int(degrees(reach)) - 4, 30):
+        radius = _RADIUS * sin(radians(angle) / 2) / sin(reach / 2)
+        x, y = _MIDDLE + radius * sin(azimuth), _MIDDLE - radius * cos(azimuth)
+        rings.append(f'<circle class="ring" cx="{_MIDDLE}" cy="{_MIDDLE}" r="{radius:.1f}"/>')
+        rings.append(svg.text(x, y, f"{angle}°", "faint"))
     rim, bore = f'<circle class="rim" {_RIM}/>', f'<circle class="bore" {_RIM}/>'
-    parts = [bore, field, *_angle_rings(reach), rim, *marks, *_body_directions(cup)]
+    parts = [bore, field, *rings, rim, *marks, *_body_directions(cup)]
     inside = f'<g transform="translate(0 {-_TOP:g})">{"".join(parts)}</g>'
     return svg.picture((_MAP_WIDTH, _MAP_HEIGHT - _TOP), label, [inside])
 
 
-def _projection(reach: float) -> Callable[[numpy.ndarray], tuple[numpy.ndarray, numpy.ndarray]]:
-    """Make the projection of unit vectors in the cup's frame to picture coordinates."""
+def _project(reach: float, directions: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Project unit vectors in the cup's frame to picture coordinates."""
     size = _RADIUS / (2 * sin(reach / 2))
-
-    def project(directions: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
-        right, up = on_page(directions)
-        return _MIDDLE + size * right, _MIDDLE - size * up
-
-    return project
+    right, up = on_page(directions)
+    return _MIDDLE + size * right, _MIDDLE - size * up
 
 
-def _load_cross(x: float, y: float) -> Iterator[str]:
+def _load_cross(reach: float, load: numpy.ndarray) -> list[str]:
+    if not numpy.any(load):
+        return []
+    x, y = map(float, _project(reach, load))
     lines = f"M{x - 5:.1f},{y - 5:.1f}L{x + 5:.1f},{y + 5:.1f}M{x - 5:.1f},{y + 5:.1f}L{x + 5:.1f},{y - 5:.1f}"
-    yield f'<path class="halo" d="{lines}"/><path class="cross" d="{lines}"/>'
-
-
-def _angle_rings(reach: float) -> Iterator[str]:
-    for angle in range(30, int(degrees(reach)) - 4, 30):
-        radius = _RADIUS * sin(radians(angle) / 2) / sin(reach / 2)
-        yield f'<circle class="ring" cx="{_MIDDLE}" cy="{_MIDDLE}" r="{radius:.1f}"/>'
-        azimuth = radians(136)
-        yield svg.text(_MIDDLE + radius * sin(azimuth), _MIDDLE - radius * cos(azimuth), f"{angle}°", "faint")
+    return [f'<path class="halo" d="{lines}"/><path class="cross" d="{lines}"/>']
 
 
 def _body_directions(cup: Cup) -> Iterator[str]:

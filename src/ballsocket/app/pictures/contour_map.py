@@ -38,10 +38,6 @@ class MapPlane:
         """Return the vertical picture coordinate of a value."""
         return _TOP + _RISE * (self.y[-1] - value) / (self.y[-1] - self.y[0])
 
-    def holds(self, x: float, y: float) -> bool:
-        """Return True for a point on the map."""
-        return bool(self.x[0] <= x <= self.x[-1] and self.y[0] <= y <= self.y[-1])
-
     def contours(self, values: numpy.ndarray) -> Contours:
         """Return the contours of values (y, x) in picture coordinates; NaN cuts them off."""
         x, y = numpy.meshgrid(self.across(self.x), self.up(self.y))
@@ -49,7 +45,7 @@ class MapPlane:
 
     def ring(self, x: float, y: float, kind: str) -> Iterator[str]:
         """Draw a ring around a point on the map."""
-        if self.holds(x, y):
+        if self.x[0] <= x <= self.x[-1] and self.y[0] <= y <= self.y[-1]:
             yield f'<circle class="{kind}" cx="{self.across(x):.1f}" cy="{self.up(y):.1f}" r="6"/>'
 
     def crosses(self, marked: numpy.ndarray) -> Iterator[str]:
@@ -89,6 +85,17 @@ def contour_map(
     `event` with its two numbers.
     """
     contours = plane.contours(values)
+    samples = [numpy.linspace(0, size - 1, min(size, _MAX_SAMPLES)).round().astype(int) for size in values.shape]
+    rows = [
+        [float(f"{value:.4g}") if numpy.isfinite(value) else None for value in row]
+        for row in values[numpy.ix_(*samples)]
+    ]
+    ends = " ".join(f"{end:.9g}" for end in (plane.x[0], plane.x[-1], plane.y[0], plane.y[-1]))
+    names = escape(json.dumps([plane.x_label, plane.y_label, labels[0]], ensure_ascii=False))
+    data = (  # from which a script finds the numbers of a point
+        f' data-pick="{event}" data-ends="{ends}" data-values="{json.dumps(rows, separators=(",", ":"))}"'
+        f' data-frame="{_LEFT:g} {_TOP:g} {_LEFT + _SPAN:g} {_TOP + _RISE:g}" data-labels="{names}"'
+    )
     parts = [
         f'<rect class="void" {_FRAME}/>',
         *contours.bands(levels),
@@ -99,22 +106,7 @@ def contour_map(
         '<path class="cross" d="M-9,0H9M0,-9V9"/></g>',
         *svg.scale(levels, labels[0], _LEFT, _HEIGHT - 26, _SPAN),
     ]
-    return svg.picture((_WIDTH, _HEIGHT), labels[1], parts, _map_data(plane, values, labels[0], event), "group")
-
-
-def _map_data(plane: MapPlane, values: numpy.ndarray, label: str, event: str) -> str:
-    """Return the attributes from which a script finds the numbers of a point."""
-    thinned = [numpy.linspace(0, size - 1, min(size, _MAX_SAMPLES)).round().astype(int) for size in values.shape]
-    rows = [
-        [float(f"{value:.4g}") if numpy.isfinite(value) else None for value in row]
-        for row in values[numpy.ix_(*thinned)]
-    ]
-    ends = " ".join(f"{end:.9g}" for end in (plane.x[0], plane.x[-1], plane.y[0], plane.y[-1]))
-    names = escape(json.dumps([plane.x_label, plane.y_label, label], ensure_ascii=False))
-    return (
-        f' data-pick="{event}" data-ends="{ends}" data-values="{json.dumps(rows, separators=(",", ":"))}"'
-        f' data-frame="{_LEFT:g} {_TOP:g} {_LEFT + _SPAN:g} {_TOP + _RISE:g}" data-labels="{names}"'
-    )
+    return svg.picture((_WIDTH, _HEIGHT), labels[1], parts, data, "group")
 
 
 def _axes(plane: MapPlane) -> Iterator[str]:

@@ -72,9 +72,16 @@ def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
 
 
 def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
-    """Draw the loaded ball; its clearance is enlarged by `gap_factor`."""
-    x, y = _ball(file, contact, tilt)
-    return f'<path class="part ball" d="{svg.closed(frame.x + frame.scale * x, frame.y - frame.scale * y)}"/>'
+    """Draw the loaded ball: the bore less the gap c - (c + d) cos φ from the load's axis, enlarged by `gap_factor`.
+
+    There is no gap in the contact.
+    """
+    clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
+    angle = numpy.linspace(0.0, 2 * pi, 97)
+    gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
+    radius = frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap)
+    outline = svg.closed(frame.x + radius * numpy.sin(angle), frame.y + radius * numpy.cos(angle))
+    return f'<path class="part ball" d="{outline}"/>'
 
 
 def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highest: float) -> list[str]:
@@ -87,15 +94,6 @@ def extent_of(file: JointFile) -> float:
     return radii_of(file.joint)[-1]
 
 
-def _ball(file: JointFile, contact: Contact | None, tilt: float) -> tuple[Numbers, Numbers]:
-    """Compute the socket's circle less the gap c - (c + d) cos φ from the load's axis; no gap in the contact."""
-    clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
-    angle = numpy.linspace(0.0, 2 * pi, 97)
-    gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
-    radius = float(file.joint.socket_radius) - gap_factor(file.joint) * gap
-    return radius * numpy.sin(angle), -radius * numpy.cos(angle)
-
-
 def petals(file: JointFile, contact: Contact) -> Cells:
     """Return quadrilaterals in the liner whose height shows the pressure."""
     if not float(contact.half_angle) > 0:
@@ -103,7 +101,10 @@ def petals(file: JointFile, contact: Contact) -> Cells:
     if isinstance(contact, OffAxisContact):
         angle, pressure = _pressure_in_plane(contact)
     else:
-        angle, pressure = _pressure_about_axis(contact, file.cup.rim)
+        half, rim = float(contact.half_angle), file.cup.rim
+        angle = half * numpy.sin(numpy.linspace(-pi / 2, pi / 2, _PETALS + 1))
+        angle = numpy.clip(angle, max(-half, -rim), min(half, rim))
+        pressure = numpy.interp(numpy.abs(angle), *profile(contact), right=0.0)
     radius = float(file.joint.socket_radius)
     highest = _HIGHEST * min(float(file.joint.liner_thickness), 0.6 * radius)
     reach = radius + highest * pressure / float(contact.max_pressure)
@@ -111,14 +112,6 @@ def petals(file: JointFile, contact: Contact) -> Cells:
     radii, angles = numpy.stack([bore, bore, reach[1:], reach[:-1]], axis=-1), numpy.stack([a, b, b, a], axis=-1)
     wide = b > a
     return radii[wide], angles[wide], (pressure[:-1] + pressure[1:])[wide] / 2
-
-
-def _pressure_about_axis(contact: Contact, rim: float) -> tuple[Numbers, Numbers]:
-    """Sample angles (rad) within the rim and the pressure of a contact about the cup's axis."""
-    half = float(contact.half_angle)
-    ends = numpy.linspace(-pi / 2, pi / 2, _PETALS + 1)
-    angle = numpy.clip(half * numpy.sin(ends), max(-half, -rim), min(half, rim))
-    return angle, numpy.interp(numpy.abs(angle), *profile(contact), right=0.0)
 
 
 def _pressure_in_plane(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
@@ -143,13 +136,12 @@ class LinerStresses:
 
     @property
     def largest(self) -> float:
-        """Largest stress in MPa."""
         return float(self.values.max())
 
 
 @lru_cache(maxsize=32)
 def liner_stresses(contact: Contact) -> LinerStresses | None:
-    """Compute the stresses of a contact; None if its model has none inside the liner."""
+    """Compute the stresses of a contact; None if its model has none inside the liner, or it is too narrow for them."""
     if not hasattr(contact, "stress") or not float(contact.half_angle) > 0:
         return None
     half, joint = float(contact.half_angle), contact.joint
@@ -158,7 +150,10 @@ def liner_stresses(contact: Contact) -> LinerStresses | None:
         deep = _MASSIVE_DEPTH * half * float(joint.socket_radius)
     angles = _STRESS_WIDTH * half * (numpy.arange(_STRESS_COLUMNS) + 0.5) / _STRESS_COLUMNS
     depths = deep * (numpy.arange(_STRESS_ROWS) + 0.5) / _STRESS_ROWS
-    values = numpy.asarray(contact.stress(angles[None, :], depths[:, None]).von_mises)
+    try:
+        values = numpy.asarray(contact.stress(angles[None, :], depths[:, None]).von_mises)
+    except ValueError:
+        return None
     return LinerStresses(angles, depths, values)
 
 

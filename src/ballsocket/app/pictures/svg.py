@@ -108,12 +108,8 @@ class Contours:
 
     def area(self, low: float, high: float) -> str:
         """Return the outline of values between two levels as path data; empty without such values."""
-        points, offsets = self._made.filled(low, high)
-        rings = (
-            ring
-            for ring_points, ends in zip(points, offsets, strict=True)
-            for ring in numpy.split(ring_points, ends[1:-1])
-        )
+        areas = zip(*self._made.filled(low, high), strict=True)
+        rings = (ring for points, ends in areas for ring in numpy.split(points, ends[1:-1]))
         return "".join(closed(*ring.T) for ring in rings)
 
     def lines(self, level: float) -> list[Numbers]:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
 
-from ...core.checks import check_names, shown
+from ...core.checks import check_names, check_text, shown
 from ...core.kinds import Kind
 from ...core.quantities import FIT, QUANTITIES
 from ...core.unit_systems import Units
+from ...evidence.question import LEVELS
 from ...files.joint_file import JointFile, joint_of
 from ...files.joint_toml import Tables, tables_of
 from ...model_catalogue import catalogue, reference
@@ -23,9 +24,7 @@ from ...studies.limits import Limit
 from ...studies.parameters import PARAMETERS
 from ..views.registry import VIEW_CLASSES
 from ..widgets.reading import Reading
-from . import evidence_question
 from . import use as in_use
-from .evidence_question import DEFAULT_QUESTION, EvidenceQuestion
 from .use import DEFAULT_USE, Use
 
 VIEWS = tuple(VIEW_CLASSES)
@@ -53,6 +52,33 @@ MAX_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
 _VIEWS = ("use", "ask")
 _PREFIXES = tuple(f"beside{number}" for number in range(1, MAX_COMPARED + 1))
+_CHOICES = {"influence": LEVELS, "consequence": LEVELS, "elements": ("no", "yes"), "wear": ("no", "yes")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class EvidenceQuestion:
+    """Inputs of the evidence view, as typed; `write_question` checks their meaning."""
+
+    question: str = "Does this joint keep its limits?"
+    context: str = "A design review before tests. Not for loosening, impingement or fracture."
+    influence: str = "medium"
+    consequence: str = "medium"
+    accuracy: str = "10 %"
+    limits: str = ""  # phrases separated by ;, also in matrix and tolerances
+    matrix: str = "force = 2, 3 kN"
+    tolerances: str = ""
+    friction: str = ""
+    elements: str = "no"
+    wear: str = "no"
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            check_text(entry.name, getattr(self, entry.name))
+        for name, known in _CHOICES.items():
+            check_names([getattr(self, name)], known, f"as {name}")
+
+
+DEFAULT_QUESTION = EvidenceQuestion()  # question of a page without a link
 
 
 def check_compared(count: int) -> None:
@@ -162,13 +188,15 @@ def with_load(file: JointFile, load: dict[str, float]) -> JointFile:
 
 def link_of(screen: Screen) -> str:
     """Return the query of a link: the differences from the start, and the joint."""
-    changed = [name for name in (*_KNOWN, "across", "up") if getattr(screen, name) != getattr(START, name)]
-    values = {name: getattr(screen, name) for name in changed if name != "theme"}
-    pairs = [(name, ",".join(value) if name == "shown" else str(value)) for name, value in values.items()]
+    pairs = []
+    for name in (*_KNOWN, "across", "up"):
+        value = getattr(screen, name)
+        if value != getattr(START, name) and name != "theme":
+            pairs.append((name, ",".join(value) if name == "shown" else str(value)))
     if screen.picked is not None:
         pairs.append(("picked", ",".join(map(repr, screen.picked))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
-    pairs += [*in_use.use_pairs(screen.use), *evidence_question.question_pairs(screen.asked)]
+    pairs += [*in_use.use_pairs(screen.use), *question_pairs(screen.asked)]
     pairs += _flat(_tables(screen.file), "")
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
@@ -191,9 +219,16 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
         words["shown"] = tuple(dict.fromkeys(name for name in words["shown"].split(",") if name))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
     if "picked" in pairs:
-        words["picked"] = _point(pairs["picked"][0])
+        text = pairs["picked"][0]
+        try:
+            x, y = map(float, text.split(","))
+        except ValueError as error:
+            raise ValueError(
+                f"picked = {shown(text)} is not a point of a map: two numbers with a comma between"
+            ) from error
+        words["picked"] = x, y
     words["use"] = in_use.use_of(_part(pairs, "use"))
-    words["asked"] = evidence_question.question_of(_part(pairs, "ask"))
+    words["asked"] = question_of(_part(pairs, "ask"))
     words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
     further = [_part(pairs, prefix) for prefix in _PREFIXES]
@@ -209,14 +244,6 @@ def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
 def _axis(phrase: str) -> MapAxis:
     name, low, high = parse_range(phrase)
     return MapAxis(name=name, low=low, high=high)
-
-
-def _point(text: str) -> tuple[float, float]:
-    try:
-        x, y = map(float, text.split(","))
-    except ValueError as error:
-        raise ValueError(f"picked = {shown(text)} is not a point of a map: two numbers with a comma between") from error
-    return x, y
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:
@@ -242,9 +269,8 @@ def _tables(file: JointFile) -> Tables:
 
 def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
     """Flatten tables to dotted names, with layers by number."""
-    items: Iterable[tuple[Any, Any]] = enumerate(part) if isinstance(part, list) else part.items()
     pairs = []
-    for name, value in items:
+    for name, value in enumerate(part) if isinstance(part, list) else part.items():
         if isinstance(value, dict | list):
             pairs += _flat(value, f"{prefix}{name}.")
         else:
@@ -283,3 +309,14 @@ def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> li
     """Write each end of a limit as text that `parse_limit` reads."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
+
+
+def question_pairs(inputs: EvidenceQuestion) -> list[tuple[str, str]]:
+    """List the differences from `DEFAULT_QUESTION` as pairs of a link."""
+    return [(f"ask.{name}", value) for name, value in vars(inputs).items() if value != getattr(DEFAULT_QUESTION, name)]
+
+
+def question_of(pairs: Mapping[str, str]) -> EvidenceQuestion:
+    """Read a question from pairs of a link, without their prefix."""
+    check_names(pairs, [entry.name for entry in fields(EvidenceQuestion)], "of a question in the link")
+    return EvidenceQuestion(**pairs)

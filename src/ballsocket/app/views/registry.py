@@ -14,11 +14,11 @@ VIEW_CLASSES = {
     "judge": "finite_elements.ElementCheck",
     "evidence": "evidence.Evidence",
 }
-"""Folder and class of each view by its name in links, in the order of the page."""
+"""Module and class of each view by its name in links, in the order of the page."""
 
 
 @cache
 def view_class(name: str) -> Any:
     """Import the class of a view."""
-    folder, _, kind = VIEW_CLASSES[name].partition(".")
-    return getattr(import_module(f".{folder}.view", __package__), kind)
+    module, _, kind = VIEW_CLASSES[name].partition(".")
+    return getattr(import_module(f".{module}", __package__), kind)

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from math import isnan, nan
 
 from ...comparison import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...contact.verdict import Verdict, range_text
+from ...core.answers import Check
 from ...core.quantities import CONTACT, JOINT
+from ...design_checks import checks_of, verdict_of
 from ...files.joint_file import JointFile
-from ...model_catalogue import OFF_AXIS
 from ...question import real_cup_reason
-from ...reports.check_table import Check, checks_of, verdict_of
 from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
-from ..views.cup.worker import answer_in_cup, is_prepared
+from ..views.real_cup import is_prepared, pressed_in_cup
 from .reading import number_text
 from .words import VERDICT_KINDS, percent
 
@@ -69,15 +70,17 @@ def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[
     """Press designs by a model, with HTML below some names."""
     designs = {}
     for name, file in files.items():
+        contact: Contact | None
         if real_cup_reason(file) and is_prepared(file):
-            comparison, by, limit = answer_in_cup(file).comparison, OFF_AXIS, ""
+            contact, reason, limit = pressed_in_cup(file), "", ""
         else:
-            comparison, by = pressed(file, (model,)), model
+            comparison = pressed(file, (model,))
+            contact, reason = successful_contacts(comparison).get(model), comparison.missing.get(model, "no result")
             limit = real_cup_reason(file, comparison.contacts.get(model))
         designs[name] = ComparedDesign(
             file=file,
-            contact=successful_contacts(comparison).get(by),
-            reason=comparison.missing.get(by, "no result"),
+            contact=contact,
+            reason=reason,
             limit=f"{limit}: see Cup" if limit else "",
             heading=headings.get(name, ""),
         )
@@ -119,9 +122,15 @@ def design_table(designs: Designs, base: str, screen: Screen, names: Sequence[st
 def design_rows(
     designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)
 ) -> list[tuple[str, list[Cell]]]:
-    """Tabulate designs in columns: verdict, checks, validity, dimensions, materials and the results of some `names`."""
+    """Tabulate designs in columns: verdict, checks, validity, dimensions, materials and the results of some `names`.
+
+    A load that needs the real cup has no checks.
+    """
     listed, reading = list(designs.values()), screen.reading
-    checks = [_checks(design) for design in listed]
+    checks: list[Sequence[Check]] = [
+        () if design.contact is None or design.limit else checks_of(design.contact, design.file.cup, design.von_mises)
+        for design in listed
+    ]
     rows = [("verdict", [_verdict(design, part) for design, part in zip(listed, checks, strict=True)])]
     for check in dict.fromkeys((row.title, row.limit) for part in checks for row in part if row.capacity):
         ratios = [{(row.title, row.limit): row for row in part}.get(check) for part in checks]
@@ -136,27 +145,16 @@ def design_rows(
     rows.append(("ball", [Cell(text="rigid" if ball is None else ball.name or "custom numbers") for ball in balls]))
     for quantity in (CONTACT[name] for name in CONTACT if name in names):
         unit = reading.unit(quantity)
-        values = {name: _value(design, quantity.name, unit.factor) for name, design in designs.items()}
-        rows.append((f"{quantity.title}{unit.text_in_brackets}", [_number(name, values, base) for name in designs]))
+        values = [float(getattr(design.contact, quantity.name, nan)) * unit.factor for design in listed]
+        reference = values[list(designs).index(base)]
+        rows.append((f"{quantity.title}{unit.text_in_brackets}", [_number(value, reference) for value in values]))
     return rows
 
 
-def _value(design: ComparedDesign, attribute: str, factor: float) -> float:
-    return float("nan") if design.contact is None else float(getattr(design.contact, attribute)) * factor
-
-
-def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
-    value = values[name]
-    if value == values[base] or value != value:
+def _number(value: float, base: float) -> Cell:
+    if value == base or isnan(value):
         return Cell(text=number_text(value))
-    return Cell(text=number_text(value), difference=percent(float(relative_deviation(value, values[base])), "+"))
-
-
-def _checks(design: ComparedDesign) -> Sequence[Check]:
-    """List the checks of a design; none for a load that needs the real cup."""
-    if design.contact is None or design.limit:
-        return ()
-    return checks_of(design.contact, design.file.cup, design.von_mises)
+    return Cell(text=number_text(value), difference=percent(float(relative_deviation(value, base)), "+"))
 
 
 def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> Cell:

@@ -1,4 +1,4 @@
-"""Inputs of the joint and its load, each with its field and its edit, and those of the layers behind the liner."""
+"""Inputs of joint, load, cup and layers, each with its field and its edit."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
-from math import degrees, inf, isinf
+from math import atan2, degrees, inf, isinf, radians, tan
 from typing import Any
 
 from ...core.checks import check_names, check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
-from ...files.inputs import Input
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
-from ...problem import Joint, Layer, Support
+from ...problem import Joint, Layer, Material, Support
+from ...problem.cup import UP, Side
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
+from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
 from .fields import Field, choice, segments, tick, words
-from .numbers import ALLOWABLE, THICKNESS, TILT, Number, choice_of, load_of, number_of
+from .numbers import ALLOWABLE, CUP_NUMBERS, THICKNESS, TILT, Number, choice_of, number_of, of_parameter
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
@@ -30,6 +31,8 @@ _LENGTHS = ("ball_radius", "clearance", "liner_thickness", "outer_radius")  # le
 _MAX_NAME = 80  # characters of a design's name
 _NO_CHOICE, _REMOVE = "", "away"
 _NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
+_BODY, _AXIS = "body", "axis"
+_LEANS = ("inwards", "forwards")
 
 
 @dataclass(frozen=True)
@@ -43,18 +46,21 @@ class JointInput:
 def joint_inputs(screen: Screen) -> dict[str, JointInput]:
     """Return every input of the joint on the screen by name, in the order of the page."""
     file, tables, joint = screen.file, tables_of(screen.file), screen.file.joint
+    ((kind_of_load, _),) = file.load.items()
+    presets = [(_PRESET, "– choose –"), *joints]
     preset = joint.name if joints.get(joint.name) == joint else _PRESET
+    kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind_of_load)
     solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
     allowable = ALLOWABLE.field("allowable", joint.liner.allowable_pressure, screen.reading)
     liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
     listed = [
         JointInput(words("name", "Design", joint.name), partial(_with_name, file)),
-        JointInput(
-            choice("preset", "Start from", [(_PRESET, "– choose –"), *joints], preset), partial(_with_preset, file)
-        ),
+        JointInput(choice("preset", "Start from", presets, preset), partial(_with_preset, file)),
         *_number_inputs(screen, _LENGTHS),
         *([] if joint.backing else [JointInput(solid, partial(_with_solid_socket, file))]),
-        *_load_inputs(screen, tables),
+        JointInput(kinds, partial(_with_kind_of_load, screen)),
+        _number_input(screen, "load", of_parameter(kind_of_load), tables["load"][kind_of_load]),
+        JointInput(TILT.field("tilt", degrees(file.tilt), screen.reading), partial(_with_tilt, screen)),
         JointInput(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
         *_number_inputs(screen, ("liner_young", "liner_poisson")),
         JointInput({**allowable, "optional": True}, partial(_with_allowable, screen)),
@@ -71,31 +77,29 @@ def joint_inputs(screen: Screen) -> dict[str, JointInput]:
 
 def _number_inputs(screen: Screen, names: Sequence[str]) -> list[JointInput]:
     """Return the inputs of finite numbers; a rigid ball has none, and an interference is no clearance."""
-    joint, specs = screen.file.joint, {name: number_of(name, screen.size) for name in names}
+    joint, inputs = screen.file.joint, []
     owners = {"joint": joint, "liner": joint.liner, "ball": joint.ball}
-    values = {name: float(getattr(owners[spec.entry.part], spec.entry.key, inf)) for name, spec in specs.items()}
-    return [
-        _number_input(screen, name, spec, values[name])
-        for name, spec in specs.items()
-        if values[name] < inf and (spec.entry.part != "joint" or values[name] >= 0)
-    ]
+    for name in names:
+        spec = number_of(name, screen.size)
+        value = float(getattr(owners[spec.entry.part], spec.entry.key, inf))
+        if value < inf and (spec.entry.part != "joint" or value >= 0):
+            inputs.append(_number_input(screen, name, spec, value))
+    return inputs
 
 
 def _number_input(screen: Screen, name: str, spec: Number, value: float) -> JointInput:
+    """Return the input of a number of a table; a diameter sets its radius."""
+    part, key = spec.entry.part, spec.entry.key
+
     def edit(typed: Any) -> JointFile:
         meant = spec.meant(typed, screen.reading)
-        return _changed(screen.file, lambda tables: _set_number(tables, spec.entry, meant))
+        if part != "joint":
+            return _changed(screen.file, lambda tables: tables.setdefault(part, {}).update({key: meant}))
+        single = DIAMETERS.get(key, key)
+        length = meant if single == key else meant / 2
+        return _changed(screen.file, lambda tables: _set_length(tables["joint"], single, length))
 
     return JointInput(spec.field(name, value, screen.reading), edit)
-
-
-def _set_number(tables: Tables, entry: Input, value: float) -> None:
-    """Set a number of a table; a diameter sets its radius."""
-    if entry.part == "joint":
-        single = DIAMETERS.get(entry.key, entry.key)
-        _set_length(tables["joint"], single, value if single == entry.key else value / 2)
-    else:
-        tables.setdefault(entry.part, {})[entry.key] = value
 
 
 def _set_length(lengths: Tables, name: str, value: float) -> None:
@@ -104,17 +108,6 @@ def _set_length(lengths: Tables, name: str, value: float) -> None:
     for key in [key for key in lengths if key in LENGTHS and key not in kept]:
         del lengths[key]
     lengths[name] = value
-
-
-def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
-    file, reading = screen.file, screen.reading
-    ((kind, _),) = file.load.items()
-    kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind)
-    return [
-        JointInput(kinds, partial(_with_kind_of_load, screen)),
-        _number_input(screen, "load", load_of(kind), tables["load"][kind]),
-        JointInput(TILT.field("tilt", degrees(file.tilt), reading), partial(_with_tilt, screen)),
-    ]
 
 
 def _thickness_input(screen: Screen, index: int, layer: Layer) -> JointInput:
@@ -196,13 +189,10 @@ def _with_tilt(screen: Screen, value: Any) -> JointFile:
 
 def _with_allowable(screen: Screen, value: Any) -> JointFile:
     """Change the allowable pressure of the liner; an empty box removes it."""
-
-    def change(tables: Tables) -> None:
-        tables["liner"].pop("allowable_pressure", None)
-        if value != "":
-            tables["liner"]["allowable_pressure"] = ALLOWABLE.meant(value, screen.reading)
-
-    return _changed(screen.file, change)
+    if value == "":
+        return _changed(screen.file, lambda tables: tables["liner"].pop("allowable_pressure", None))
+    pressure = ALLOWABLE.meant(value, screen.reading)
+    return _changed(screen.file, lambda tables: tables["liner"].update(allowable_pressure=pressure))
 
 
 def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
@@ -213,10 +203,8 @@ def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
         return _changed(file, lambda tables: tables.pop(part, None))
     if chosen != _CUSTOM:
         return _changed(file, lambda tables: tables.update({part: {"material": chosen}}))
-    material = getattr(file.joint, part)
-    numbers = {"young": 2e5, "poisson": 0.3}
-    if material is not None:
-        numbers = {"young": float(material.young), "poisson": float(material.poisson)}
+    material = getattr(file.joint, part) or Material(young=2e5, poisson=0.3)
+    numbers = {"young": float(material.young), "poisson": float(material.poisson)}
     return _changed(file, lambda tables: tables.update({part: numbers}))
 
 
@@ -228,9 +216,8 @@ def layer_fields(joint: Joint) -> dict[str, Field]:
         custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
         options = [*custom, *materials, (_REMOVE, "– remove –")]
         listed.append(choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named))
-    listed.append(
-        choice("behind.add", "Add a layer behind the liner", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE)
-    )
+    additions = [(_NO_CHOICE, "– choose –"), *materials]
+    listed.append(choice("behind.add", "Add a layer behind the liner", additions, _NO_CHOICE))
     if joint.backing:
         listed.append({**choice_of("joint.support", joint.support.value), "name": "behind.support"})
     return {field["name"]: field for field in listed}
@@ -261,3 +248,60 @@ def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
     joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
     return replace(file, joint=_as_changed(joint))
+
+
+def cup_fields(screen: Screen, view: str = "cup") -> dict[str, Field]:
+    """Return every input of the cup by name, which begins with that of the view; inputs without effect are hidden."""
+    file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
+    numbers = {
+        "inclination": (degrees(cup.inclination), tilted),
+        "anteversion": (degrees(cup.anteversion), tilted),
+        **{name: (lean, tilted) for name, lean in zip(_LEANS, leaning(file), strict=True)},
+        "tilt": (degrees(file.aim.get("tilt", 0.0)), not tilted),
+        "arc_of_cover": (degrees(cup.arc_of_cover), False),
+        "chamfer": (cup.chamfer, False),
+    }
+    aims = ((_BODY, "in the body"), (_AXIS, "from the cup's axis"))
+    listed = [
+        *(
+            {**CUP_NUMBERS[name].field(name, round(value, 9) + 0.0, screen.reading), "hidden": hidden}
+            for name, (value, hidden) in numbers.items()
+        ),
+        segments("aim", "Load direction given", aims, _AXIS if tilted else _BODY),
+        choice_of("cup.side", cup.side.value),
+        choice_of("cup.interface", cup.interface.value),
+    ]
+    return {f"{view}.{field['name']}": {**field, "name": f"{view}.{field['name']}"} for field in listed}
+
+
+def leaning(file: JointFile) -> tuple[float, float]:
+    """Compute the angles in degrees by which a load leans medially and anteriorly."""
+    x, y, z = file.aim.get("direction", UP)
+    return degrees(atan2(_inwards(file) * x, z)), degrees(atan2(y, z))
+
+
+def _inwards(file: JointFile) -> float:
+    """Return the sign of the body's x axis that points medially."""
+    return -1.0 if file.cup.side is Side.RIGHT else 1.0
+
+
+def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
+    direction = (_inwards(file) * tan(radians(inwards)), tan(radians(forwards)), 1.0)
+    return replace(file, aim={} if direction[:2] == (0.0, 0.0) else {"direction": direction})
+
+
+def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
+    """Return the joint file after a change of one input of `cup_fields`, named without its prefix."""
+    check_names([key], (*CUP_NUMBERS, "side", "interface", "aim"), "among the inputs of a cup")
+    file = screen.file
+    if key in CUP_NUMBERS:
+        value = CUP_NUMBERS[key].meant(value, screen.reading)
+    if key == "tilt":
+        return varied(file, {"load": {key: value}})
+    if key in _LEANS:
+        return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), key: value})
+    if key == "aim":  # the load keeps its angle to the cup's axis where possible
+        check_names([value], (_BODY, _AXIS), "as aim")
+        return replace(file, aim={} if value == _BODY else {"tilt": file.tilt})
+    changed = varied(file, {"cup": {key: value}})
+    return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed  # medial stays so

@@ -63,7 +63,13 @@ class LimitRows:
 
         `present` gives the number of the design for a row without a value. Raises ValueError if there are no rows.
         """
-        rows, read, wrong = _checked(value), [], None
+        if not isinstance(value, list) or not all(
+            isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
+        ):
+            raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
+        check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
+        check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
+        rows, read, wrong = tuple((name, sign, text.strip()) for name, sign, text in value), [], None
         known = {row: limit for limit in limits for row in _rows_of(limit, reading)}  # an untouched row is not rounded
         try:
             for wrong, row in enumerate(rows):  # noqa: B007 - the refused row
@@ -97,32 +103,18 @@ def limit_text(limit: Limit, reading: Reading) -> str:
     return f"{quantity.title} {' and '.join(ends)}"
 
 
-def _checked(value: Any) -> tuple[Row, ...]:
-    if not isinstance(value, list) or not all(
-        isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
-    ):
-        raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
-    check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
-    check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
-    return tuple((row[0], row[1], row[2].strip()) for row in value)
-
-
 def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]) -> Limit:
     name, sign, text = row
-    quantity = QUANTITIES[name]
+    quantity, title = QUANTITIES[name], capital(QUANTITIES[name].title)
     if text:
-        end = typed_quantity(capital(quantity.title), text, quantity, reading)
-        require(capital(quantity.title), end, isfinite(end), "a limit is a finite number")
+        end = typed_quantity(title, text, quantity, reading)
+        require(title, end, isfinite(end), "a limit is a finite number")
     else:
         factor = reading.unit(quantity).factor
-        end = _rounded(present(name) * factor, _ROUNDINGS[sign]) / factor
-        require(capital(quantity.title), end, isfinite(end), "this design has no value for it: type one")
+        digits = f"{present(name) * factor:.12g}"  # without the error of a conversion
+        end = float(Context(prec=_DIGITS, rounding=_ROUNDINGS[sign]).create_decimal(digits)) / factor
+        require(title, end, isfinite(end), "this design has no value for it: type one")
     return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
-
-
-def _rounded(value: float, rounding: str) -> float:
-    """Round to a few digits in one direction; 12 digits remove the error of a conversion first."""
-    return float(Context(prec=_DIGITS, rounding=rounding).create_decimal(f"{value:.12g}"))
 
 
 def _rows_of(limit: Limit, reading: Reading) -> list[Row]:

@@ -118,8 +118,3 @@ def of_parameter(name: str) -> Number:
     part, _, key = name.partition("_")
     named = (f"joint.{name}", f"{part}.{key}", f"load.{name}")
     return _number(next(path for path in named if path in _INPUTS))
-
-
-def load_of(kind: str) -> Number:
-    """Return the input of a kind of load."""
-    return _number(f"load.{kind}")

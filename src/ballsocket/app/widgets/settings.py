@@ -9,8 +9,11 @@ from typing import Any
 
 from ...core.checks import shown
 from ...core.kinds import Kind, Unit
+from ...hip.cycle_registry import CYCLES
 from ..state.screen import Screen
-from .fields import Field, choice, number, typed, words
+from ..state.use import CHOICES
+from .fields import Field, choice, number, segments, typed, words
+from .numbers import BODY_WEIGHT
 
 
 @dataclass(frozen=True)
@@ -71,3 +74,21 @@ def text(path: str, label: str, rows: int = 1) -> Setting:
         return changed(screen, path, value.strip())
 
     return Setting(key, lambda screen: words(key, label, attrgetter(path)(screen), rows), read)
+
+
+def _body_weight_field(screen: Screen) -> Field:
+    field = BODY_WEIGHT.field("body_weight", screen.use.body_weight, screen.reading)
+    return {**field, "hidden": not CYCLES[screen.use.cycle].per_body_weight}
+
+
+_FOUNDATIONS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
+CYCLE_SETTINGS = (
+    chosen("use.cycle", "Cycle", CHOICES["cycle"]),
+    Setting(
+        "body_weight",
+        _body_weight_field,
+        lambda screen, value: changed(screen, "use.body_weight", BODY_WEIGHT.meant(value, screen.reading)),
+    ),
+    chosen("use.contact", "Liner model", _FOUNDATIONS, segments, _FOUNDATIONS.__getitem__),
+)
+"""Cycle, body weight where the cycle was measured in patients, and the model of the liner: for Gait and Wear."""

@@ -12,13 +12,15 @@ from ...comparison import Comparison, relative_deviation
 from ...contact import Contact
 from ...contact.describe import values_of
 from ...contact.verdict import Verdict
+from ...core.answers import Check
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, HEADLINE, Quantity
 from ...core.unit_systems import Units
+from ...design_checks import checks_of, unchecked_text, verdict_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
-from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
+from ...reports.pages import checks_html
 from ...reports.style import line_of
 from ..pictures.chart import swatch
 from .reading import Reading, number_text
@@ -42,6 +44,12 @@ def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
     behind = "" if isnan(value) else _unit_html(unit)
     small = f"<small>{escape(more)}</small>" if more else ""
     return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
+
+
+def quantity_cell(quantity: Quantity, value: Any, reading: Reading, title: str = "", more: str = "") -> str:
+    """Return a number in internal units by the title of its quantity, or another one, in the units of the page."""
+    unit = reading.unit(quantity)
+    return number_cell(title or quantity.title, float(value) * unit.factor, unit.text, more)
 
 
 def _unit_html(unit: str) -> str:
@@ -162,9 +170,11 @@ def headline(
     first, quantities = CONTACT[_MAIN_QUANTITY], distinct_quantities(float(contact.max_pressure_angle))
     cells = "".join(_quantity_cell(quantity, contact, reading) for quantity in quantities if quantity is not first)
     notes = contact.quick_notes if von_mises is None else contact.notes
+    if not contact.joint.liner.strengths:  # the verdict already states the utilisation
+        notes = tuple(note for note in notes if note != contact.utilisation_note)
     return (
         f"<dl class='first'>{_quantity_cell(first, contact, reading)}</dl>"
-        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, _unstated(contact, notes))}"
+        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes)}"
         f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
     )
 
@@ -175,11 +185,6 @@ def checked(rows: Sequence[Check], reading: Reading) -> str:
     status = f"<p class='verdict {VERDICT_KINDS[verdict]}' role='status'>{verdict.sign} {escape(sentence)}</p>"
     unchecked = f"<p class='quiet'>N{escape(text[1:])}</p>" if (text := unchecked_text(rows)) else ""
     return f"{status}{unchecked}{checks_html(rows, reading.with_unit) if rows else ''}"
-
-
-def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:
-    """List notes without that on utilisation where the verdict already states it."""
-    return [note for note in notes if contact.joint.liner.strengths or note != contact.utilisation_note]
 
 
 def _quantity_cell(quantity: Quantity, contact: Contact, reading: Reading) -> str:

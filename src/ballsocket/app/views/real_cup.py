@@ -10,30 +10,28 @@ from typing import Any
 
 import numpy
 
-from ....elasticity.finite_elements.mesh import socket_shape
-from ....elasticity.finite_elements.progress import progress_to
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....elasticity.off_axis.grid import rim_grid
-from ....elasticity.off_axis.model import Sphere
-from ....elasticity.off_axis.orientations import orient
-from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
-from ....files.joint_file import JointFile
-from ....model_catalogue import OFF_AXIS, named_models
-from ....problem import Joint
-from ....problem.cup import Cup, Side
-from ....question import PressAnswer, PressQuestion, answer, complete
-from ....reports.figure_files import figure_bytes
-from ....reports.orientation_results import orientation_figure
-from ...results import RESULTS, without_name
-from ...running import Reached, Report
+from ...elasticity.finite_elements.mesh import socket_shape
+from ...elasticity.finite_elements.progress import progress_to
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...elasticity.off_axis.grid import rim_grid
+from ...elasticity.off_axis.model import Sphere
+from ...elasticity.off_axis.orientations import orient
+from ...elasticity.off_axis.ring_matrices import are_cup_rings_cached
+from ...files.joint_file import JointFile
+from ...model_catalogue import OFF_AXIS, named_models
+from ...problem import Joint
+from ...problem.cup import Cup, Side
+from ...question import PressQuestion, answer, complete
+from ...reports.figure_files import figure_bytes
+from ...reports.orientation_results import orientation_figure
+from ..results import RESULTS, without_name
+from ..running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
 ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))  # orientations of the map
 
 LEWINNEK = (30.0, 50.0, 5.0, 25.0)
 """Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""
-
-PREPARING = "Preparing the real cup ..."
 
 
 def bore_of(file: JointFile) -> tuple[Joint, Cup]:
@@ -44,43 +42,36 @@ def bore_of(file: JointFile) -> tuple[Joint, Cup]:
 def is_prepared(file: JointFile) -> bool:
     """Return True if the ring matrices of a bore are known, in memory or on disk: a press then takes a moment."""
     bore = bore_of(file)
-    if RESULTS.get(("cup", bore)) is None and _are_rings_cached(*bore):
-        RESULTS.put(("cup", bore), True)
-    return RESULTS.get(("cup", bore)) is not None
-
-
-def _are_rings_cached(joint: Joint, cup: Cup) -> bool:
+    if RESULTS.get(("cup", bore)) is not None:
+        return True
     try:
-        return are_cup_rings_cached(joint, cup, rim_grid(socket_shape(joint, cup).reach, Sphere.ring_width))
+        prepared = are_cup_rings_cached(*bore, rim_grid(socket_shape(*bore).reach, Sphere.ring_width))
     except ValueError:  # a cup that does not fit the joint: the press states why
         return False
+    if prepared:
+        RESULTS.put(("cup", bore), True)
+    return prepared
 
 
 @lru_cache(maxsize=32)
-def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> PressAnswer:
+def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> OffAxisContact:
     file = JointFile(joint, dict(load), cup, dict(aim))
     answered = answer(PressQuestion(file=file, models={OFF_AXIS: named_models[OFF_AXIS]}, exact=None))
     contact: Any = answered.comparison[OFF_AXIS]
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes) or contact.status.sentence)
-    return answered
+    return contact
 
 
-def answer_in_cup(file: JointFile) -> PressAnswer:
+def pressed_in_cup(file: JointFile) -> OffAxisContact:
     """Press the load of a joint file in its cup; raise ValueError without a result."""
     file, _ = complete(file)
     return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
 
 
-def pressed_in_cup(file: JointFile) -> OffAxisContact:
-    """Return the contact of a joint file in its cup; raise ValueError without a result."""
-    contact: Any = answer_in_cup(file).comparison[OFF_AXIS]
-    return contact
-
-
 def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
     """Compute the ring matrices of a bore in a separate process; they are cached on disk."""
-    report(Reached(share=0.1, words=PREPARING))
+    report(Reached(share=0.1, words="Preparing the real cup ..."))
     Sphere(cup=cup).press(joint, force=1.0)
     return True
 

@@ -9,30 +9,30 @@ from html import escape
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from ....comparison import Comparison, successful_contacts
-from ....contact import Contact
-from ....core.quantities import BEARING, FIELD
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue, reference
-from ....question import complete, real_cup_reason
-from ....reports.cup_plots import cup_figure
-from ....reports.figure_files import figure_bytes
-from ....reports.press_plots import press_figure
-from ....reports.press_report import press_lede, press_sections
-from ....reports.style import line_of
-from ....studies.derivatives import LocalUncertainty, local_uncertainty
-from ...long_view import LongView
-from ...pictures.chart import swatch
-from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import fine_curves, is_waiting, press_charts, pressed
-from ...running import Work
-from ...state.screen import PAINTED, Screen
-from ...view import STRESS_PAUSE, Document, Host
-from ...widgets.fields import choice, segments, several
-from ...widgets.words import alert, headline, models_table, number_rows
-from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
-from .drawing import first_view, frame_of, key
+from ...comparison import Comparison, successful_contacts
+from ...contact import Contact
+from ...core.quantities import BEARING, FIELD
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue, reference
+from ...question import complete, real_cup_reason
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.press_plots import press_figure
+from ...reports.press_report import press_lede, press_sections
+from ...reports.style import line_of
+from ...studies.derivatives import LocalUncertainty, local_uncertainty
+from ..long_view import LongView
+from ..pictures.chart import swatch
+from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
+from ..pressing import fine_curves, is_waiting, press_charts, pressed
+from ..running import Work
+from ..state.screen import PAINTED, Screen
+from ..view import STRESS_PAUSE, Document, Host
+from ..widgets.fields import choice, segments, several
+from ..widgets.words import alert, headline, models_table, number_rows
+from .contact_drawing import first_view, frame_of, key
+from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
 
 _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 """Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
@@ -161,7 +161,7 @@ class Press(LongView):
         if screen.painted == "pressure" or contact is None:
             self._put_drawing(screen, contact, None)
         else:
-            self.compute(lambda: _stresses(contact), partial(self._put_drawing, screen, contact))
+            self.compute(partial(liner_stresses, contact), partial(self._put_drawing, screen, contact))
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
         file, tilt = complete(screen.file)[0], screen.file.tilt
@@ -202,15 +202,21 @@ class Press(LongView):
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units
         if self._needs_cup(screen, comparison):
             return self._real_document(screen, comparison)
-        by = comparison.contacts.get(screen.answered_by)
+        by, file = comparison.contacts.get(screen.answered_by), screen.file
         drawn = _drawn(comparison, screen)
+
+        def effects() -> LocalUncertainty | None:
+            """Compute the effect of one percent of each number; None without a load."""
+            pressing = any(float(load) > 0 for load in file.load.values())
+            return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
+
         return Document(
             picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
             rows=lambda: _rows(comparison, screen),
-            sections=lambda: press_sections(comparison, units, surroundings=_local_effects(screen.file)),
-            lede=lambda: "" if by is None else press_lede(by, screen.file.cup, units),
+            sections=lambda: press_sections(comparison, units, surroundings=effects()),
+            lede=lambda: "" if by is None else press_lede(by, file.cup, units),
             contact=by,
         )
 
@@ -238,14 +244,6 @@ def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
     return {name: contacts[name] for name in screen.shown if name in contacts}
 
 
-def _stresses(contact: Contact) -> LinerStresses | None:
-    """Compute the stresses in the liner; None without them, and for a contact that is too narrow for them."""
-    try:
-        return liner_stresses(contact)
-    except ValueError:
-        return None
-
-
 def _with_real(real: Contact | None, comparison: Comparison) -> Comparison:
     """Return a comparison with the contact in the real cup first."""
     first = {} if real is None else {real.model.name: real}
@@ -270,9 +268,3 @@ def _fields(screen: Screen) -> dict[str, Any]:
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
     heads, *rows = number_rows("model", comparison, screen.reading)
     return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]
-
-
-def _local_effects(file: JointFile) -> LocalUncertainty | None:
-    """Compute the effect of one percent of each number; None without a load."""
-    pressing = any(float(load) > 0 for load in file.load.values())
-    return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None

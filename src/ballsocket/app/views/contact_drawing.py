@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from html import escape
+from itertools import pairwise
 from math import atan2, cos, isinf, pi, radians, sin
 
-from ....contact import Contact
-from ....core.kinds import Unit
-from ....core.quantities import Quantity
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....files.joint_file import JointFile
-from ....reports.section_plots import gap_factor, radii_of
-from ...pictures import svg
-from ...pictures.section import DrawingFrame, ball, layers, painted
-from ...widgets.fields import Field
-from ...widgets.reading import number_text
+from ...contact import Contact
+from ...core.kinds import Unit
+from ...core.quantities import Quantity
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...files.joint_file import JointFile
+from ...reports.section_plots import gap_factor, radii_of
+from ..pictures import svg
+from ..pictures.section import DrawingFrame, ball, layers, painted
+from ..widgets.fields import Field
+from ..widgets.reading import number_text
 
 Formatter = Callable[[float], str]
 Aim = tuple[float, Unit]
@@ -75,23 +76,26 @@ def _labelled_value(lines: tuple[str, str], x: float, y: float, anchor: str) -> 
 
 
 def _dimensions(file: JointFile, frame: DrawingFrame, unit: Unit) -> Iterator[str]:
+    """Draw the diameters of head, bore and shell, the clearance, and the thickness of the liner."""
+
     def format_length(value: float) -> str:
         return f"{number_text(value * unit.factor, unit.text)} {unit.text}"
 
-    yield from _head(file, frame, format_length)
+    radius, angle = float(file.joint.ball_radius), radians(118.0)
+    yield _both_ways(*frame.at(0.985 * radius, angle), *frame.at(0.985 * radius, angle + pi))
+    label = _labelled_value(("head", f"⌀ {format_length(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
+    yield f'<g class="on-ball">{label}</g>'
     yield from _bore_and_gap(file, frame, format_length)
     yield from _liner(file, frame, format_length)
     lengths = [file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)]
-    if not any(isinf(float(length)) for length in lengths):
-        yield from _shell(frame, f"⌀ {format_length(2 * radii_of(file.joint)[-1])}")
-
-
-def _head(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
-    radius, angle = float(file.joint.ball_radius), radians(118.0)
-    start, end = frame.at(0.985 * radius, angle), frame.at(0.985 * radius, angle + pi)
-    yield _both_ways(*start, *end)
-    label = _labelled_value(("head", f"⌀ {format_length(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
-    yield f'<g class="on-ball">{label}</g>'
+    if any(isinf(float(length)) for length in lengths):
+        return
+    x_left, x_right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
+    for x in (x_left, x_right):
+        yield svg.line(x, frame.y + 4, x, low + 5, "thin")
+    yield _both_ways(x_left, low, x_right, low)
+    shell = f"⌀ {format_length(2 * radii_of(file.joint)[-1])}"
+    yield _labelled_value(("shell", shell), frame.x, low + 20, "middle")
 
 
 def _bore_and_gap(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
@@ -123,26 +127,15 @@ def _leader(x1: float, y1: float, x2: float, y2: float) -> str:
     return _arrow(x2, y2, x1, y1, "dim", 6.0)
 
 
-def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
-    x_left, x_right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
-    for x in (x_left, x_right):
-        yield svg.line(x, frame.y + 4, x, low + 5, "thin")
-    yield _both_ways(x_left, low, x_right, low)
-    yield _labelled_value(("shell", text), frame.x, low + 20, "middle")
-
-
 def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]
-    for number, (material, inner, outer) in enumerate(
-        zip(materials, radii_of(file.joint), radii_of(file.joint)[1:], strict=False)
-    ):
-        if frame.scale * (outer - inner) > 14:
+    for number, (material, (inner, outer)) in enumerate(zip(materials, pairwise(radii_of(joint)), strict=False)):
+        thick = frame.scale * (outer - inner)
+        if thick > 14:
             x, y = frame.at((inner + outer) / 2, 0.0)
-            yield svg.text(
-                x, y + 4 + 0.2 * frame.scale * (outer - inner) * (number == 0), material.name or "liner", "name"
-            )
+            yield svg.text(x, y + 4 + 0.2 * thick * (number == 0), material.name or "liner", "name")
 
 
 def _contact_edge(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> Iterator[str]:
@@ -168,26 +161,19 @@ def _load(start: float, frame: DrawingFrame, fields: Mapping[str, Field], tilt: 
     tip, tail = ((frame.x + away * sin(tilt), frame.y - away * cos(tilt)) for away in (start, long))
     x, y = frame.x + (long + 16) * sin(tilt), frame.y - (long + 16) * cos(tilt)
     yield f"<g {_handle('load', 'arrow', load)}>{_arrow(*tail, *tip, 'load', 15.0)}</g>"
-    yield (
-        f"<g {_handle('tilt', 'arrow', tilt_field)}>"
-        + f'<circle class="knob" cx="{tail[0]:.1f}" cy="{tail[1]:.1f}" r="8"/></g>'
-    )
+    knob = f'<circle class="knob" cx="{tail[0]:.1f}" cy="{tail[1]:.1f}" r="8"/>'
+    yield f"<g {_handle('tilt', 'arrow', tilt_field)}>{knob}</g>"
     text = f"{load['text']} {load['unit']}" + (f", {tilt_field['value']:.3g}{tilt_field['unit']}" if tilt else "")
-    aside = tilt > _STEEP_TILT  # the names of bore and gap are to the right
-    yield svg.text(
-        x - 20 if aside else x + (4 if tilt else 14),
-        y - 16 if aside else y + 5,
-        text,
-        "value",
-        "end" if aside else "start",
-    )
+    if tilt > _STEEP_TILT:  # the names of bore and gap are to the right
+        yield svg.text(x - 20, y - 16, text, "value", "end")
+    else:
+        yield svg.text(x + (4 if tilt else 14), y + 5, text, "value", "start")
 
 
 def _borders(file: JointFile, frame: DrawingFrame, fields: Mapping[str, Field]) -> Iterator[str]:
     """Draw the outer border of each layer as a handle."""
-    radii = radii_of(file.joint)
     names = ["liner_thickness", *(f"layer{number}" for number in range(len(file.joint.backing)))]
-    for name, inner, outer in zip(names, radii, radii[1:], strict=False):
+    for name, (inner, outer) in zip(names, pairwise(radii_of(file.joint)), strict=False):
         if name in fields:
             numbers = f"data-inner='{inner!r}' data-factor='{fields[name]['factor']!r}'"
             arc = frame.arc(outer, 0.98 * file.cup.rim)

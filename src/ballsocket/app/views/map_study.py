@@ -11,23 +11,23 @@ from typing import Any
 
 import numpy
 
-from ....comparison import THIN_LINER_RATIO
-from ....contact import Model
-from ....core.kinds import Kind
-from ....core.quantities import JOINT, QUANTITIES
-from ....core.validity import OutsideDomainError, check_domain
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue
-from ....problem import Joint
-from ....problem.dimensions import give
-from ....studies.design import Span, grid
-from ....studies.limits import Limit, allowed, count_verdicts, undecided_reason
-from ....studies.metadata import held_in, held_text
-from ....studies.parameters import LOADS, PARAMETERS, press_arguments
-from ....studies.run import default_model, joint_of_arrays, study
-from ....studies.task import with_bounds
-from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
-from ...widgets.numbers import of_parameter
+from ...comparison import THIN_LINER_RATIO
+from ...contact import Model
+from ...core.kinds import Kind
+from ...core.quantities import JOINT, QUANTITIES
+from ...core.validity import OutsideDomainError, check_domain
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue
+from ...problem import Joint
+from ...problem.dimensions import give
+from ...studies.design import Span, grid
+from ...studies.limits import Limit, allowed, count_verdicts, undecided_reason
+from ...studies.metadata import held_in, held_text
+from ...studies.parameters import LOADS, PARAMETERS, press_arguments
+from ...studies.run import default_model, joint_of_arrays, study
+from ...studies.task import with_bounds
+from ..state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
+from ..widgets.numbers import of_parameter
 
 _POINTS = 61
 _SOLVED_POINTS = 17  # values along an axis where every joint is solved: a second in all
@@ -120,7 +120,7 @@ def best_point(results: Any, screen: Screen) -> dict[str, float] | None:
 def map_summary(results: Any, screen: Screen) -> str:
     """Describe the map as HTML: its allowed part, its smallest value there, and its marks."""
     fine, point, reading = allowed_points(results, screen), best_point(results, screen), screen.reading
-    words = []
+    mapped_quantity, words = QUANTITIES[screen.quantity], []
     if results.attrs["model"] != screen.map_model:
         words.append(f"Model {results.attrs['model']}, since {screen.map_model} covers none of these joints.")
     if screen.limits:
@@ -130,10 +130,9 @@ def map_summary(results: Any, screen: Screen) -> str:
     if point is not None:
         axes = map(QUANTITIES.__getitem__, point)
         position = " and ".join(f"{axis.title} {reading.with_unit(axis, point[axis.name])}" for axis in axes)
-        smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
+        smallest = reading.with_unit(mapped_quantity, float(results[screen.quantity].sel(point)))
         within = " within the limits" if screen.limits else ""
-        title = QUANTITIES[screen.quantity].title
-        words.append(f"Minimum of the {title}{within}: <b>{smallest}</b> at {escape(position)}.")
+        words.append(f"Minimum of the {mapped_quantity.title}{within}: <b>{smallest}</b> at {escape(position)}.")
     if held := held_in(results):
         words.append(f"Held: {reading.units.sentence(held_text(held))}.")
     if not bool(results.valid.all()):
@@ -158,14 +157,10 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     made, load, possible = press_arguments(_joint_on(file.joint, rounded), rounded)
     if not bool(possible):
         raise ValueError("invalid geometry: the clearance would be negative, or the liner would have no thickness")
-    plain = replace(
-        made,
-        ball_radius=round(float(made.ball_radius), 9),
-        clearance=round(float(made.clearance), 9),
-        liner_thickness=round(float(made.liner_thickness), 9),
-        name="",
-        source="",
-    )
+    lengths: dict[str, Any] = {
+        name: round(float(getattr(made, name)), 9) for name in ("ball_radius", "clearance", "liner_thickness")
+    }
+    plain = replace(made, **lengths, name="", source="")
     return replace(file, joint=plain, load={name: float(value) for name, value in load.items()} or file.load)
 
 
@@ -178,10 +173,8 @@ def move_limit(results: Any, screen: Screen, number: int, point: tuple[float, fl
     value = float(field.interp({across.name: x, up.name: y}))
     if not isfinite(value):
         raise ValueError(f"{limit.name} has no number there: the limit stays where it was")
-    end = float(f"{value:.3g}")
-    old = screen.limits[number]
-    changed = replace(old, high=end) if isfinite(limit.high) else replace(old, low=end)
-    return (*screen.limits[:number], changed, *screen.limits[number + 1 :])
+    end: dict[str, Any] = {"high" if isfinite(limit.high) else "low": float(f"{value:.3g}")}
+    return (*screen.limits[:number], replace(screen.limits[number], **end), *screen.limits[number + 1 :])
 
 
 def picked_point(screen: Screen) -> dict[str, float] | None:
@@ -191,8 +184,7 @@ def picked_point(screen: Screen) -> dict[str, float] | None:
 
 def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
     """Replace each number of a point by the nearest catalogue size, where there are sizes."""
-    return {name: _nearest_size(name, value) for name, value in point.items()}
-
-
-def _nearest_size(name: str, value: float) -> float:
-    return min(of_parameter(name).typical.sizes, key=lambda size: abs(size - value), default=value)
+    return {
+        name: min(of_parameter(name).typical.sizes, key=lambda size: abs(size - value), default=value)
+        for name, value in point.items()
+    }

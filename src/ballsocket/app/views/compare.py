@@ -8,26 +8,30 @@ from functools import partial
 from html import escape
 from typing import Any
 
-from ....contact import Contact
-from ....core.checks import check_names
-from ....core.quantities import JOINT
-from ....files.joint_file import JointFile
-from ....model_catalogue import catalogue
-from ....problem.presets import joints
-from ....reports.figure_files import figure_bytes
-from ....reports.pages import table
-from ....reports.press_plots import press_figure
-from ....reports.style import LineStyle, numbered
-from ...pressing import fine_curves, press_charts
-from ...state.screen import MAX_COMPARED, Screen
-from ...view import STRESS_PAUSE, Document, Host, View, field_places
-from ...widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
-from ...widgets.fields import Field, choice
-from ...widgets.words import number_rows
+from ...contact import Contact
+from ...core.checks import check_names
+from ...core.quantities import JOINT
+from ...files.joint_file import JointFile
+from ...model_catalogue import catalogue
+from ...problem.presets import joints
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
+from ...reports.press_plots import press_figure
+from ...reports.style import LineStyle, numbered
+from ..pressing import fine_curves, press_charts
+from ..state.screen import MAX_COMPARED, Screen
+from ..view import STRESS_PAUSE, Document, Host, View, field_places
+from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
+from ..widgets.fields import choice
+from ..widgets.words import number_rows
 
 _CHOOSE = ""
 _PRESENT = "this design"
 _INPUTS = ("keep", "preset", "base", "remove")
+_EXAMPLE_SHOWN = (
+    "Nothing has been added yet, so a preset is shown beside this design as an example. Add this design, then change "
+    "its numbers: the table shows every difference. "
+)
 _EXAMPLES = ("hip-36", "hip-28")
 """Presets of which the first that differs from the design is shown beside it on an empty page."""
 
@@ -68,19 +72,25 @@ class Compare(View):
         files = compared_files(screen)
         base = base_of(files, screen)
         designs = _pressed(files, screen)
-        contacts = _contacts(designs)
-        self.channel.put_fields(_fields(files, base))
+        presets = [(_CHOOSE, "– choose –"), *joints]
+        options = [(str(index), name) for index, name in enumerate(files)]
+        added = choice("compare.preset", "Add a preset", presets, _CHOOSE)
+        from_base = choice("compare.base", "Differences from", options, str(list(files).index(base)))
+        self.channel.put_fields({field["name"]: field for field in (added, from_base)})
+        differences = f"Behind the numbers: the difference from {escape(base)}. The drawings have one scale."
         self.put(
-            note=_explanation(base, screen),
-            table=_table(designs, base, screen),
-            charts=press_charts(contacts, _lines(files), screen.reading),
+            note=f"<p class='quiet'>{'' if screen.beside else _EXAMPLE_SHOWN}{differences}</p>",
+            table=design_table(with_drawings(designs), base, screen),
+            charts=press_charts(_contacts(designs), _lines(files), screen.reading),
         )
 
+        def stressed() -> str:
+            return design_table(with_drawings(with_stresses(designs)), base, screen)
+
         self._cancel_stress()
-        stressed = partial(
-            self.compute, lambda: _table(with_stresses(designs), base, screen), lambda table: self.put(table=table)
+        self._cancel_stress = self.page.later(
+            STRESS_PAUSE, partial(self.compute, stressed, lambda table: self.put(table=table))
         )
-        self._cancel_stress = self.page.later(STRESS_PAUSE, stressed)
 
     def document(self, screen: Screen) -> Document:
         files = compared_files(screen)
@@ -132,45 +142,19 @@ def base_of(files: Mapping[str, JointFile], screen: Screen) -> str:
     return list(files)[min(int(screen.base), len(files) - 1)]
 
 
-def _table(designs: Designs, base: str, screen: Screen) -> str:
-    return design_table(with_drawings(designs), base, screen)
-
-
 def _pressed(files: Mapping[str, JointFile], screen: Screen) -> Designs:
-    return press_designs(
-        files, screen.answered_by, {name: _heading(name, file, screen) for name, file in files.items()}
-    )
-
-
-def _heading(name: str, file: JointFile, screen: Screen) -> str:
-    head, liner = (
-        screen.reading.with_unit(JOINT[key], float(getattr(file.joint, key)))
-        for key in ("head_diameter", "liner_thickness")
-    )
-    sizes = f"<small>head ⌀ {head}, liner {liner}</small>"
-    if name == _PRESENT or not screen.beside:
-        return sizes
-    attributes = f"data-tell='compare.remove' data-value='{escape(name)}' aria-label='Remove {escape(name)}'"
-    return f"{sizes}<button type='button' class='plain' {attributes}>Remove</button>"
-
-
-def _fields(files: Mapping[str, JointFile], base: str) -> dict[str, Field]:
-    presets = [(_CHOOSE, "– choose –"), *joints]
-    options = [(str(index), name) for index, name in enumerate(files)]
-    return {
-        "compare.preset": choice("compare.preset", "Add a preset", presets, _CHOOSE),
-        "compare.base": choice("compare.base", "Differences from", options, str(list(files).index(base))),
-    }
-
-
-def _explanation(base: str, screen: Screen) -> str:
-    differences = f"Behind the numbers: the difference from {escape(base)}. The drawings have one scale."
-    if screen.beside:
-        return f"<p class='quiet'>{differences}</p>"
-    return (
-        "<p class='quiet'>Nothing has been added yet, so a preset is shown beside this design as an example. Add this "
-        f"design, then change its numbers: the table shows every difference. {differences}</p>"
-    )
+    """Press the designs, with sizes and a button to remove each below their names."""
+    headings = {}
+    for name, file in files.items():
+        head, liner = (
+            screen.reading.with_unit(JOINT[key], float(getattr(file.joint, key)))
+            for key in ("head_diameter", "liner_thickness")
+        )
+        headings[name] = f"<small>head ⌀ {head}, liner {liner}</small>"
+        if name != _PRESENT and screen.beside:
+            attributes = f"data-tell='compare.remove' data-value='{escape(name)}' aria-label='Remove {escape(name)}'"
+            headings[name] += f"<button type='button' class='plain' {attributes}>Remove</button>"
+    return press_designs(files, screen.answered_by, headings)
 
 
 def _contacts(designs: Designs) -> dict[str, Contact]:

@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
+from html import escape
 from typing import Any
 
-from ....core.checks import check_names
-from ....core.quantities import JOINT, QUANTITIES, SHELL
-from ....files.joint_file import JointFile
-from ....reports.figure_files import figure_bytes
-from ....reports.pages import answer_table
-from ....reports.study_plots import design_map
-from ....studies.study_answer import map_table
-from ....studies.task import BOUNDS, EDGE_DISTANCE
-from ...pictures.contour_map import read_point
-from ...state.screen import AXES, MAPPED, MapAxis, Screen
-from ...view import Document, Host, View, field_places
-from ...widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ...widgets.fields import Field, choice, empty_number, segments
-from ...widgets.limit_rows import LimitRows, present_value
-from ...widgets.numbers import of_parameter
-from ...widgets.reading import Reading, box_text
-from ...widgets.settings import Setting, chosen
-from ...widgets.words import alert, column_of, unit_of_files
-from ..compare.view import with_compared
-from .charts import map_picture
-from .worker import (
+import numpy
+
+from ...core.checks import check_names
+from ...core.quantities import JOINT, QUANTITIES, SHELL
+from ...files.joint_file import JointFile
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import answer_table
+from ...reports.study_plots import design_map
+from ...studies.limits import Limit, margin_on_plane, relative_margins
+from ...studies.study_answer import map_table
+from ...studies.task import BOUNDS, EDGE_DISTANCE
+from ..pictures import svg
+from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
+from ..state.screen import AXES, MAPPED, MapAxis, Screen
+from ..view import Document, Host, View, field_places
+from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
+from ..widgets.fields import Field, choice, empty_number, segments
+from ..widgets.limit_rows import LimitRows, limit_text, present_value
+from ..widgets.numbers import of_parameter
+from ..widgets.reading import Reading, box_text
+from ..widgets.settings import Setting, chosen
+from ..widgets.words import alert, column_of, unit_of_files
+from .compare import with_compared
+from .map_study import (
     allowed_points,
+    axis_label,
     best_point,
     catalogue_sizes,
     check_map,
@@ -55,6 +60,8 @@ _BUTTONS = "".join(
     f"<button type='button' class='plain' data-tell='map.{event}'>{words}</button> "
     for event, words in (("use", "Use this design"), ("compare", "Add to the comparison"), ("drop", "Close"))
 )
+_BELOW_ZERO = -1e300
+_MAX_LEVELS = 12
 
 
 def _axis_setting(which: str) -> Setting:
@@ -138,58 +145,52 @@ class DesignMap(View):
         self.channel.put_fields({**self.fields(self.page.screen), "map.limits": limits})
 
     def edit(self, key: str, value: Any) -> None:
-        if key in _ACTIONS:
-            _ACTIONS[key](self, value)
+        screen = self.page.screen
+        if key == "limits":
+            self._edit_limits(value)
+        elif key == "drag":
+            number, *point = read_point(value, 3)
+            self.page.ask(limits=move_limit(mapped(screen), screen, int(number), self._in_study(*point)))
+        elif key == "pick":
+            x, y = self._in_study(*read_point(value, 2))
+            self._show_point({screen.across.name: x, screen.up.name: y})
+        elif key == "best":
+            best = best_point(mapped(screen), screen)
+            if best is None:
+                raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
+            self._show_point(best)
+        elif key == "use":
+            self.page.ask(file=self._picked_file(), picked=None)
+        elif key == "compare":
+            self.page.ask(beside=with_compared(screen, self._picked_file()))
+        elif key == "drop":
+            self.page.ask(picked=None)
         else:
-            super().edit(key, value)
-
-    def change(self, **changes: Any) -> None:
-        """Request another map, unless it is impossible."""
-        check_map(replace(self.page.screen, **changes))
-        self.page.ask(**changes)
+            changes = self.read(key, value)
+            check_map(replace(screen, **changes))
+            self.page.ask(**changes)
 
     def _edit_limits(self, value: Any) -> None:
         """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""
         screen = self.page.screen
-        limits = self._rows.read(
-            value,
-            screen.limits,
-            screen.reading,
-            self._present_value,
-            lambda limits: allowed_points(mapped(screen), replace(screen, limits=limits)),
-        )
+
+        def present(name: str) -> float:
+            designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+            return present_value(screen.file, name, designs[_PRESENT].contact)
+
+        def check(limits: tuple[Limit, ...]) -> None:
+            allowed_points(mapped(screen), replace(screen, limits=limits))
+
+        limits = self._rows.read(value, screen.limits, screen.reading, present, check)
         self._put_fields()
         if limits is not None:
             self.page.ask(limits=limits)
 
-    def _present_value(self, name: str) -> float:
-        """Return a number of the design on the screen by the model of the map."""
-        screen = self.page.screen
-        designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
-        return present_value(screen.file, name, designs[_PRESENT].contact)
-
-    def _edit_drag(self, value: Any) -> None:
-        number, x, y = read_point(value, 3)
-        point = self._in_study(x, y)
-        self.page.ask(limits=move_limit(mapped(self.page.screen), self.page.screen, int(number), point))
-
     def _in_study(self, x: float, y: float) -> tuple[float, float]:
         """Convert a point in the units of the axes to those of a study."""
-        reading = self.page.screen.reading
-        across, up = (
-            reading.unit(QUANTITIES[axis.name]).factor for axis in (self.page.screen.across, self.page.screen.up)
-        )
+        screen = self.page.screen
+        across, up = (screen.reading.unit(QUANTITIES[axis.name]).factor for axis in (screen.across, screen.up))
         return x / across, y / up
-
-    def _pick(self, value: Any) -> None:
-        x, y = self._in_study(*read_point(value, 2))
-        self._show_point({self.page.screen.across.name: x, self.page.screen.up.name: y})
-
-    def _pick_best(self, value: Any) -> None:
-        point = best_point(mapped(self.page.screen), self.page.screen)
-        if point is None:
-            raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
-        self._show_point(point)
 
     def _show_point(self, point: dict[str, float]) -> None:
         picked = catalogue_sizes(point) if self.page.screen.sizes == "catalogue" else point
@@ -210,17 +211,6 @@ class DesignMap(View):
             rows=lambda: _rows(results, screen.reading),
             sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
         )
-
-
-_ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
-    "limits": DesignMap._edit_limits,
-    "drag": DesignMap._edit_drag,
-    "pick": DesignMap._pick,
-    "best": DesignMap._pick_best,
-    "use": lambda view, value: view.page.ask(file=view._picked_file(), picked=None),
-    "compare": lambda view, value: view.page.ask(beside=with_compared(view.page.screen, view._picked_file())),
-    "drop": lambda view, value: view.page.ask(picked=None),
-}
 
 
 def _drawn(screen: Screen) -> dict[str, str]:
@@ -250,3 +240,59 @@ def _rows(results: Any, reading: Reading) -> list[list[Any]]:
             flat[name] = flat[name] * unit.factor
         heads.append(name if quantity is None else column_of(quantity, unit))
     return [heads, *flat.to_numpy(dtype=object).tolist()]
+
+
+def map_picture(results: Any, screen: Screen) -> str:
+    """Draw a map with a ring at the picked point; raise ValueError if it has no result anywhere.
+
+    The part that is undecided is faded, and the part that exceeds a limit once more.
+    """
+    axes = screen.across.name, screen.up.name
+    label, factor = axis_label(screen.quantity, screen)
+    values = results[screen.quantity].transpose(*axes[::-1]).values * factor
+    if numpy.isnan(values).all():
+        raise ValueError(f"{results.attrs['model']} has no result anywhere on this map: choose another model")
+    (x_label, x_factor), (y_label, y_factor) = (axis_label(name, screen) for name in axes)
+    plane = MapPlane(
+        x=results[axes[0]].values * x_factor, y=results[axes[1]].values * y_factor, x_label=x_label, y_label=y_label
+    )
+    picked = screen.picked
+    x, y = (present_value(screen.file, name) for name in axes)
+    margins = relative_margins(results, limits_of(screen), *axes)
+    veils = (plane.contours(values).area(_BELOW_ZERO, 0.0) for values in margins)
+    marks = [
+        *(f'<path class="veil" fill-rule="evenodd" d="{outline}"/>' for outline in veils if outline),
+        *plane.crosses(~results.valid.transpose(*axes[::-1]).values),
+        *plane.ring(x * x_factor, y * y_factor, "here"),
+        *(() if picked is None else plane.ring(picked[0] * x_factor, picked[1] * y_factor, "picked")),
+        *_limit_lines(results, screen, plane),
+    ]
+    levels = svg.levels_between(float(numpy.nanmin(values)), float(numpy.nanmax(values)), _MAX_LEVELS)
+    share = 100 * float(allowed_points(results, screen).mean())
+    sentence = f"{label} over {x_label} and {y_label}; {share:.3g} % of the map keep the limits"
+    return contour_map(plane, values, levels, (label, sentence), marks, "map.pick")
+
+
+def _limit_lines(results: Any, screen: Screen, plane: MapPlane) -> Iterator[str]:
+    """Draw each limit that crosses the map as a line with a handle at its middle."""
+    for number, limit in enumerate(limits_of(screen)):
+        lines = plane.contours(margin_on_plane(results, limit, screen.across.name, screen.up.name).value).lines(0.0)
+        yield from (outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in lines)
+        if lines:
+            longest = max(lines, key=len)
+            yield _handle(number, screen.limits[number], longest[len(longest) // 2], screen.reading)
+
+
+def _handle(number: int, limit: Limit, point: numpy.ndarray, reading: Reading) -> str:
+    """Draw the square of a limit, a slider for mouse, keyboard and screen readers."""
+    quantity, text = QUANTITIES[limit.name], limit_text(limit, reading)
+    value = (limit.high if numpy.isfinite(limit.high) else limit.low) * reading.unit(quantity).factor
+    step = svg.round_step(abs(value) or 1.0, 50)
+    right = point[0] < 240
+    slider = f'role="slider" aria-label="{escape(quantity.title)}" aria-valuenow="{value:.6g}"'
+    return (
+        f'<g tabindex="0" {slider} aria-valuetext="{escape(text)}" data-limit="{number}" data-step="{step:g}"'
+        f' transform="translate({point[0]:.1f} {point[1]:.1f})">'
+        f'<rect class="square" x="-6" y="-6" width="12" height="12"/>'
+        f"{svg.text(11 if right else -11, -6, text, 'on', 'start' if right else 'end')}</g>"
+    )

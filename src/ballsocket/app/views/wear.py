@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from dataclasses import replace
 from functools import partial
+from html import escape
+from math import nan
 from typing import Any
 
-from ....core.checks import check_names
-from ....core.kinds import Unit
-from ....core.quantities import CONTACT
-from ....files.joint_file import JointFile
-from ....hip.law_fields import LawField
-from ....problem.presets import joints
-from ....reports.pages import picture
-from ...long_view import LongView, long_body
-from ...results import RESULTS
-from ...running import Work
-from ...state.screen import Screen
-from ...state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
-from ...view import Document, field_places
-from ...widgets.cycle_settings import CYCLE_SETTINGS
-from ...widgets.fields import Field, choice, number, segments
-from ...widgets.numbers import capital
-from ...widgets.settings import Setting, amount, changed, chosen
-from ...widgets.words import unit_of_files
-from .charts import depth_maps, empty_chart, penetration_chart, wear_numbers
-from .worker import WEAR_SECONDS, WearResult, simulate_designs, wear_key
+from ...comparison import relative_deviation
+from ...core.checks import check_names
+from ...core.kinds import Unit
+from ...core.quantities import CONTACT, DERIVED
+from ...files.joint_file import JointFile
+from ...hip.law_fields import LawField
+from ...problem.presets import joints
+from ...reports.pages import picture, table
+from ...reports.style import BLUE, VERMILLION, LineStyle
+from ..long_view import LongView, long_body
+from ..pictures.bore import CELLS_EDGE, METRIC, BoreField, grid_field, load_bore
+from ..pictures.chart import Curve, chart, legend
+from ..pressing import rounded_up
+from ..results import RESULTS
+from ..running import Work
+from ..state.screen import Screen
+from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
+from ..view import Document, field_places
+from ..widgets.fields import Field, choice, number, segments
+from ..widgets.numbers import capital
+from ..widgets.reading import Reading
+from ..widgets.settings import CYCLE_SETTINGS, Setting, amount, changed, chosen
+from ..widgets.words import checked, doubt, notes_list, number_text, percent, unit_of_files
+from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
+_DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]  # quantities whose units depths and pressures have
+_DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
 def _beside_field(screen: Screen) -> Field:
@@ -37,14 +45,12 @@ def _beside_field(screen: Screen) -> Field:
     return choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE)
 
 
-def _compared(screen: Screen, value: Any) -> tuple[JointFile, ...]:
-    """Return the compared design: this one, or a preset in the same cup."""
-    if value == _ALONE:
-        return ()
-    if value in (_NOW, _AS_COMPARED):
-        return (screen.file,) if value == _NOW else screen.beside
+def _read_beside(screen: Screen, value: Any) -> dict[str, Any]:
+    present = {_ALONE: (), _NOW: (screen.file,), _AS_COMPARED: screen.beside}
+    if value in present:
+        return {"beside": present[value]}
     check_names([value], joints, "as design")
-    return (replace(screen.file, joint=joints[value]),)
+    return {"beside": (replace(screen.file, joint=joints[value]),)}
 
 
 def _law_field(key: str, part: LawField, value: float, title: str) -> Field:
@@ -60,7 +66,6 @@ def _read_law_number(key: str, part: LawField, value: Any) -> float:
 
 
 def _coefficient_field(screen: Screen) -> Field:
-    """Describe the input of the wear coefficient, hidden for a law without one."""
     part = screen.use.coefficient_field
     if part is None:
         return {**number("coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), "hidden": True}
@@ -100,7 +105,7 @@ class Wear(LongView):
         amount("use.millions", "Million cycles", (0.5, 20.0), 0.5),
         chosen("use.creep", "Include creep", CHOICES["creep"], segments),
         *map(_law_setting, CREEP_INPUTS),
-        Setting("beside", _beside_field, lambda screen, value: {"beside": _compared(screen, value)}),
+        Setting("beside", _beside_field, _read_beside),
     )
     body = long_body(
         "wear",
@@ -174,3 +179,96 @@ def designs(screen: Screen) -> dict[str, JointFile]:
         name = file.joint.name or "the other"
         named[f"{name}, beside" if name in named else name] = file
     return named
+
+
+def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
+    """Tabulate the final wear of each design, with the difference from the first."""
+    columns = [_final_values(design, reading) for design in designs.values()]
+    rows = []
+    for name, base in columns[0].items():
+        others = [column[name] for column in columns[1:]]
+        apart = [f" ({percent(float(relative_deviation(value, base)), '+')})" if base else "" for value in others]
+        cells = [number_text(value) + share for value, share in zip(others, apart, strict=True)]
+        rows.append([name, number_text(base), *cells])
+    used = "".join(
+        f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"
+        for name, entry in designs.items()
+    )
+    notes = "".join(
+        f"{doubt(entry.summary['contact']['valid'], name)}"
+        f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes)}"
+        for name, entry in designs.items()
+    )
+    return f"{table(['after the last cycle', *designs], rows)}{used}{notes}"
+
+
+def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
+    last, values = worn.summary["history"][-1], {"worn volume [mm³]": float(worn.volume[-1])}
+    edge = nan if last["edge_distance"] is None else last["edge_distance"]
+    for name, quantity, value in (
+        ("deepest wear", _DEPTH, float(worn.deepest[-1])),
+        ("penetration", _DEPTH, float(worn.penetration[-1])),
+        ("penetration by creep alone", _DEPTH, last["penetration_of_creep"]),
+        ("largest pressure, new", _PRESSURE, worn.summary["cycle"]["peaks"]["max_pressure_MPa"]),
+        ("largest pressure, worn", _PRESSURE, last["max_pressure"]),
+        ("smallest distance to the rim, worn", DERIVED["edge_distance"], edge),
+    ):
+        unit = reading.unit(quantity)
+        values[f"{name}{unit.text_in_brackets}"] = value * unit.factor
+    for state, checks in (("new", worn.summary["contact"]["unworn"]), ("worn", last["contact"])):
+        used = (check["utilisation"] for check in checks if check["utilisation"] is not None)
+        values[f"utilisation σv/σy, {state}"] = max(used, default=nan)
+    return values
+
+
+def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
+    """Draw the penetration of each design over the cycles, with its band."""
+    lines = dict(zip(designs, _DESIGN_LINES, strict=False))
+    unit = reading.unit(_DEPTH)
+    curves = {
+        name: Curve(
+            design.cycles,
+            unit.factor * design.penetration,
+            lines[name],
+            band=(unit.factor * design.low, unit.factor * design.high),
+        )
+        for name, design in designs.items()
+    }
+    end = max(float(design.cycles[-1]) for design in designs.values())
+    highest = rounded_up(unit.factor * max(float(design.high.max()) for design in designs.values()))
+    sentences = []
+    for name, design in designs.items():
+        last, low, high = (
+            reading.with_unit(_DEPTH, float(values[-1])) for values in (design.penetration, design.low, design.high)
+        )
+        sentences.append(f"{name}: {last} after {design.cycles[-1]:g} million cycles, {low} to {high}")
+    label, up = f"penetration: {'; '.join(sentences)}", f"penetration{unit.text_in_brackets}"
+    drawn = chart(label, "million cycles", up, curves, (end, highest))
+    return f"{drawn}<p class='legend'>{legend(lines)}</p>"
+
+
+def empty_chart(millions: float, reading: Reading) -> str:
+    """Draw the axes of the penetration over the cycles, for a design without a result."""
+    unit, label = reading.unit(_DEPTH), "penetration over the cycles, not computed yet"
+    up = f"penetration{unit.text_in_brackets}"
+    return chart(label, "million cycles", up, {}, (millions, 0.1 * unit.factor))
+
+
+def depth_maps(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
+    """Draw the worn depth of each bore in one colour scale."""
+    unit, figures = reading.unit(_DEPTH), []
+    deepest = {name: float(worn.depth.max()) for name, worn in designs.items()}
+    for index, (name, worn) in enumerate(designs.items()):
+        field = BoreField(
+            name=f"wear{index}",
+            at=grid_field(worn.grid, unit.factor * worn.depth),
+            highest=unit.factor * (max(deepest.values()) or 1.0),
+            label=f"worn depth{unit.text_in_brackets}",
+            reach=worn.grid.reach,
+            cup=worn.cup,
+            least=CELLS_EDGE,
+        )
+        label = f"worn depth of {name} seen from its opening, up to {reading.with_unit(_DEPTH, deepest[name])}"
+        bore = load_bore(field, label, worn.load)
+        figures.append(f"<figure><figcaption>{escape(name)}</figcaption>{bore}</figure>")
+    return "".join(figures)

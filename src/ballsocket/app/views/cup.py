@@ -6,31 +6,44 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import radians
+from math import degrees, radians
 from typing import Any
 
-from ....contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
-from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
-from ....core.validity import Status
-from ....elasticity.off_axis.contact import OffAxisContact
-from ....reports.check_table import checks_of
-from ....reports.cup_plots import cup_figure
-from ....reports.figure_files import figure_bytes
-from ....reports.pages import picture, table
-from ....reports.press_report import press_lede
-from ...long_view import LongView, LongWork, long_body
-from ...pictures.bore import bare_bore, pressed_bore, pressed_viewer
-from ...pictures.contour_map import read_point
-from ...running import Work
-from ...state.screen import STANDINGS, Screen
-from ...view import Document, Host, field_places
-from ...widgets.cup_fields import cup_edited, cup_fields
-from ...widgets.fields import segments
-from ...widgets.reading import Reading
-from ...widgets.settings import chosen
-from ...widgets.words import VERDICT_KINDS, checked, column_of, number_cell, trust, unit_of_files, value_text
-from .charts import angle_map
-from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
+import numpy
+from scipy.interpolate import RectBivariateSpline
+
+from ...contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
+from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES
+from ...core.validity import Status
+from ...design_checks import checks_of
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...problem.cup import Cup
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import picture, table
+from ...reports.press_report import press_lede
+from ..long_view import LongView, LongWork, long_body
+from ..pictures import svg
+from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
+from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
+from ..running import Work
+from ..state.screen import STANDINGS, Screen
+from ..view import Document, Host, field_places
+from ..widgets.fields import segments
+from ..widgets.joint_fields import cup_edited, cup_fields
+from ..widgets.reading import Reading
+from ..widgets.settings import chosen
+from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, unit_of_files, value_text
+from .real_cup import (
+    LEWINNEK,
+    OrientationMap,
+    bore_of,
+    is_prepared,
+    map_orientations,
+    orientation_key,
+    pressed_in_cup,
+    set_up,
+)
 
 _FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
 _TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
@@ -40,16 +53,14 @@ _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 
 _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
 _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
+_MIN_POINTS, _FINE_POINTS = 4, 61  # values an axis: least for a cubic spline, and of a smooth contour
 
 
 class CupView(LongView):
     """View of the load in the present cup, followed by a map over orientations."""
 
-    title = "Cup"
-    name = "cup"
+    name, title, run_label, automatic = "cup", "Cup", "Prepare the cup", True
     settings = (chosen("standing", "Map of", STANDINGS, segments, lambda name: QUANTITIES[name].title, key="show"),)
-    run_label = "Prepare the cup"
-    automatic = True
     body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
@@ -81,20 +92,18 @@ class CupView(LongView):
         is_prepared(screen.file)
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
-        if self.long.result(screen) is not None:
-            self.expect("numbers", "map", "viewer")
-            self.compute(lambda: _drawn(screen), lambda parts: self.put(**parts))
-            self._ask_map(screen)
-        elif result is None:
-            self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
-
-    def _ask_map(self, screen: Screen) -> None:
-        if "tilt" not in screen.file.aim:
-            self.orientations.show(screen)
+        if self.long.result(screen) is None:
+            if result is None:
+                self.put(map=bare_bore(screen.file.cup, screen.file.cup.arc_of_cover / 2))
             return
-        self.orientations.leave()
-        self.orientations.put_button(hidden=True)
-        self.put(**{"stood-earlier": "", "stood": _NO_MAP})
+        self.expect("numbers", "map", "viewer")
+        self.compute(lambda: _drawn(screen), lambda parts: self.put(**parts))
+        if "tilt" in screen.file.aim:
+            self.orientations.leave()
+            self.orientations.put_button(hidden=True)
+            self.put(**{"stood-earlier": "", "stood": _NO_MAP})
+        else:
+            self.orientations.show(screen)
 
     def edit(self, key: str, value: Any) -> None:
         if key == "show":
@@ -102,8 +111,8 @@ class CupView(LongView):
         elif key == "usual":
             self._set_angles(**_TYPICAL)
         elif key == "pick":
-            angles = (round(angle, 1) for angle in read_point(value, len(_TYPICAL)))
-            self._set_angles(**dict(zip(_TYPICAL, angles, strict=True)))
+            inclination, anteversion = (round(angle, 1) for angle in read_point(value, 2))
+            self._set_angles(inclination=inclination, anteversion=anteversion)
         else:
             self.page.ask(file=cup_edited(self.page.screen, key, value))
 
@@ -116,10 +125,10 @@ class CupView(LongView):
         self.page.ask(file=screen.file)
 
     def _show_map(self, screen: Screen, orientations: OrientationMap | None) -> None:
-        drawn = ""
-        if orientations is not None:
-            drawn = f"{angle_map(orientations, screen.file.cup, screen.standing, screen.reading)}{_KEY}"
-        self.put(stood=drawn)
+        if orientations is None:
+            self.put(stood="")
+        else:
+            self.put(stood=angle_map(orientations, screen.file.cup, screen.standing, screen.reading) + _KEY)
 
     def document(self, screen: Screen) -> Document:
         if not is_prepared(screen.file):
@@ -185,45 +194,36 @@ def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str
 
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
-    angle = reading.unit(CUP["inclination"])
     margin = f"{_edge_margin_text(contact, reading)} of arc"
     cells = [
-        _cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, margin),
-        _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
-        number_cell("tilt of the load", float(contact.tilt) * angle.factor, angle.text),
-        _cell(CONTACT["half_angle"], contact.half_angle, reading),
-        _cell(CONTACT["force"], contact.force, reading),
+        quantity_cell(DERIVED[EDGE_DISTANCE], contact.edge_distance, reading, more=margin),
+        quantity_cell(CONTACT["max_pressure"], contact.max_pressure, reading),
+        quantity_cell(CUP["inclination"], contact.tilt, reading, "tilt of the load"),
+        quantity_cell(CONTACT["half_angle"], contact.half_angle, reading),
+        quantity_cell(CONTACT["force"], contact.force, reading),
     ]
     checks = checked(checks_of(contact, contact.model.cup), reading)
     notes = f"{trust(contact, contact.notes)}{_hint(contact)}"
     return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes}"
 
 
-def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> str:
-    unit = reading.unit(quantity)
-    return number_cell(quantity.title, float(value) * unit.factor, unit.text, more)
-
-
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
+    bar, verdict = error_bar(contact, EDGE_DISTANCE), rim_verdict(contact)
+    apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
+    apart += f" ({_edge_margin_text(contact, reading)})"
     if contact.status.failed:
         verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
-        return _verdict_html(verdict, f"No contact on the bore: {contact.status.sentence}")
-    if float(contact.half_angle) == 0:
-        return _verdict_html(Verdict.UNDECIDED, "No contact: the ball is not loaded")
-    bar = error_bar(contact, EDGE_DISTANCE)
-    verdict = rim_verdict(contact)
-    if contact.edge_loaded and contact.joint.clearance < 0:
-        return _verdict_html(Verdict.UNDECIDED, "The contact reaches the rim, as is normal in a preloaded joint")
-    if verdict is Verdict.EXCEEDED:
-        return _verdict_html(verdict, "Rim contact (edge loading): the contact reaches the rim of the cup")
-    apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
-    angle = _edge_margin_text(contact, reading)
-    if verdict is Verdict.UNDECIDED:
-        return _verdict_html(verdict, f"The contact may reach the rim: it ends {apart} ({angle}) before it")
-    return _verdict_html(verdict, f"The contact ends {apart} ({angle}) before the rim")
-
-
-def _verdict_html(verdict: Verdict, sentence: str) -> str:
+        sentence = f"No contact on the bore: {contact.status.sentence}"
+    elif float(contact.half_angle) == 0:
+        verdict, sentence = Verdict.UNDECIDED, "No contact: the ball is not loaded"
+    elif contact.edge_loaded and contact.joint.clearance < 0:
+        verdict, sentence = Verdict.UNDECIDED, "The contact reaches the rim, as is normal in a preloaded joint"
+    elif verdict is Verdict.EXCEEDED:
+        sentence = "Rim contact (edge loading): the contact reaches the rim of the cup"
+    elif verdict is Verdict.UNDECIDED:
+        sentence = f"The contact may reach the rim: it ends {apart} before it"
+    else:
+        sentence = f"The contact ends {apart} before the rim"
     return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(sentence)}</p>"
 
 
@@ -240,3 +240,49 @@ def _hint(contact: OffAxisContact) -> str:
     angles = escape(" and ".join(f"{name} {angle:g}°" for name, angle in _TYPICAL.items()))
     words = f"This cup opens straight down. Set {angles}"
     return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"
+
+
+def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
+    """Draw a field over inclination and anteversion, with the present cup and Lewinnek's zone.
+
+    Complete fields are interpolated by cubic splines, for smooth contours.
+    """
+    held = orientations.held
+    fields = [numpy.where(held, getattr(orientations, name), numpy.nan).T for name in (quantity, "edge_distance")]
+    x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
+    if min(len(x), len(y)) >= _MIN_POINTS and all(numpy.isfinite(field).all() for field in fields):
+        splines = [RectBivariateSpline(y, x, field) for field in fields]
+        x, y = (numpy.linspace(axis[0], axis[-1], _FINE_POINTS) for axis in (x, y))
+        fields = [spline(y, x) for spline in splines]
+    values, edge_distance = fields
+    plane = MapPlane(x=x, y=y, x_label=CUP["inclination"].label(), y_label=CUP["anteversion"].label())
+    values = numpy.where(numpy.isfinite(values), values, numpy.nan) * reading.unit(QUANTITIES[quantity]).factor
+    rim = plane.contours(edge_distance)
+    label = reading.label(QUANTITIES[quantity])
+    high = float(numpy.nanmax(values, initial=0.0))
+    low = float(numpy.nanmin(values, initial=high if quantity == "max_pressure" else 0.0))  # 0 is the rim
+    left, right, bottom, top = LEWINNEK
+    corner = f'x="{plane.across(left):.1f}" y="{plane.up(top):.1f}"'
+    size = f'width="{plane.across(right) - plane.across(left):.1f}" height="{plane.up(bottom) - plane.up(top):.1f}"'
+    marks = [
+        *(outlined("path", "limit", f'd="{svg.path(*line.T)}"') for line in rim.lines(0.0)),
+        outlined("rect", "zone", f"{corner} {size}"),
+        *plane.ring(degrees(cup.inclination), degrees(cup.anteversion), "here"),
+    ]
+    labels = label, _map_description(orientations, label, reading)
+    return contour_map(plane, values, svg.levels_between(low, high, 7), labels, marks, "cup.pick")
+
+
+def _map_description(orientations: OrientationMap, label: str, reading: Reading) -> str:
+    free = orientations.held & (orientations.edge_distance > 0)
+    if not free.any():
+        return f"{label}: in every orientation of the map the contact reaches the rim"
+    best = numpy.where(free, orientations.edge_distance, -numpy.inf)
+    row, column = numpy.unravel_index(int(best.argmax()), best.shape)
+    inclination, anteversion = degrees(orientations.inclination[row]), degrees(orientations.anteversion[column])
+    share = f"{100 * free.mean():.0f} % of the orientations keep the contact off the rim"
+    apart = reading.with_unit(QUANTITIES["edge_distance"], float(best.max()))
+    return (
+        f"{label} over inclination and anteversion: {share}; furthest, {apart}, at "
+        f"inclination {inclination:.3g}°, anteversion {anteversion:.3g}°"
+    )

@@ -1,1 +1,0 @@
-"""Joints side by side."""

@@ -1,1 +1,0 @@
-"""Contact of one joint under one load."""

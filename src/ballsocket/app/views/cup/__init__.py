@@ -1,1 +1,0 @@
-"""Load in a real cup with its orientation."""

@@ -1,1 +1,0 @@
-"""Map of one quantity over two numbers of a joint."""

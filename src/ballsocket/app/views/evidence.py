@@ -1,0 +1,301 @@
+"""Evidence: a question about the joint on the screen, gathered while one looks, as a pack to hand in."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from base64 import b64encode
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from html import escape
+from math import prod
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from ...contact.verdict import Verdict
+from ...core.checks import check_names, shown
+from ...core.kinds import Kind
+from ...evidence.folder import SUMS, WORK, names_of, write
+from ...evidence.matrix import limit_text, title_of, verdict_text
+from ...evidence.pack import gather_evidence, plan
+from ...evidence.question import LEVELS, Question, read_question
+from ...files.joint_file import JointFile, JointTables
+from ...files.joint_toml import Tables, tables_of
+from ...files.units import parse
+from ...hip.cycle_registry import CYCLES
+from ...model_catalogue import reference
+from ...problem.cup import Cup
+from ...problem.presets import joints
+from ...reports.evidence_page import conclusions, evidence_page
+from ...reports.evidence_parts import case_text, value_text
+from ...reports.pages import items, table
+from ...studies.expressions import parse_choices, parse_limit
+from ...studies.limits import Limit
+from ...studies.parameters import PARAMETERS
+from ..long_view import LongView, long_body
+from ..pressing import pressed
+from ..running import Reached, Report, Work
+from ..state.screen import EvidenceQuestion, Screen, phrases_of
+from ..state.use import Use
+from ..view import Document, Host, field_places
+from ..widgets.fields import segments
+from ..widgets.limit_rows import LimitRows, present_value
+from ..widgets.settings import chosen, text
+from ..widgets.words import VERDICT_KINDS, alert
+
+_NO_YES = ("no", "yes")
+_INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
+_LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
+_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
+_HIP, _QUESTION = "hip.toml", "question.toml"
+EVIDENCE_SECONDS = 600.0  # seconds that a pack may take
+_WORST_CASE_STEPS = 6  # approximate steps of the worst cases
+
+
+class Evidence(LongView):
+    """View that gathers evidence for a question and resumes after a stop."""
+
+    settings = (
+        text("asked.question", "Decision", 2),
+        text("asked.context", "Context: what the result is for, and not for", 2),
+        chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
+        chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
+        text("asked.accuracy", "Allowed error of the numbers"),
+        text("asked.matrix", "Cases, such as force = 2, 3 kN"),
+        text("asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
+        text("asked.friction", "Coefficient of friction, if any"),
+        chosen("asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
+        chosen("asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
+    )
+    title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
+    body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
+
+    def __init__(self, page: Host) -> None:
+        super().__init__(page)
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._rows = LimitRows("evidence.limits", _LIMITED)
+
+    def question_of(self, screen: Screen) -> Hashable:
+        use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
+        return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
+
+    def work(self, screen: Screen) -> Work:
+        axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
+        if not screen.asked.limits.strip():
+            raise ValueError(_NO_LIMIT)
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="ballsocket-")
+        return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder.name)
+
+    def show_inputs(self, screen: Screen) -> None:
+        limits = self._rows.field(_limits(screen.asked), screen.reading)
+        self.channel.put_fields({**self.fields(screen), "evidence.limits": limits})
+
+    def show_result(self, screen: Screen, result: EvidencePack | None) -> None:
+        self.put(found=_case_table(screen) if result is None else _pack_html(result))
+
+    def edit(self, key: str, value: Any) -> None:
+        screen = self.page.screen
+        if key == "take":
+            content = b64encode(self.result(screen).content).decode("ascii")
+            self.channel.once("file", {"name": "evidence.zip", "content": content})
+        elif key == "allowable":
+            pressure = screen.file.joint.liner.allowable_pressure
+            if pressure is None:
+                raise ValueError("the liner has no allowable pressure: enter it beside the liner")
+            self.page.ask(asked=replace(screen.asked, limits=f"max_pressure <= {float(pressure):g} MPa"))
+        elif key == "limits":
+            self._edit_limits(value)
+        else:
+            super().edit(key, value)
+
+    def _edit_limits(self, value: Any) -> None:
+        """Take the rows of limits, or show which row is wrong."""
+        screen = self.page.screen
+        contact = pressed(screen.file, (reference.name,)).contacts.get(reference.name)
+        present = partial(present_value, screen.file, contact=contact)
+        limits = self._rows.read(value, _limits(screen.asked), screen.reading, present)
+        self.show_inputs(screen)
+        if limits is not None:
+            phrases = "; ".join(phrase for limit in limits for phrase in phrases_of(limit))
+            self.page.ask(asked=replace(screen.asked, limits=phrases))
+
+    def document(self, screen: Screen) -> Document:
+        pack: EvidencePack = self.result(screen)
+        heads, rows = _worst(pack)
+        return Document(
+            rows=lambda: [heads, *rows],
+            sections=lambda: {"evidence": ("Evidence", items(pack.conclusions) + table(heads, rows))},
+        )
+
+    def leave(self) -> None:
+        super().leave()
+        if self._folder is not None:
+            self._folder.cleanup()
+
+
+def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
+    """Read the limits of a question; none if a link has others than limits."""
+    try:
+        return tuple(map(parse_limit, phrases_in(question.limits)))
+    except ValueError:
+        return ()
+
+
+def _case_table(screen: Screen) -> str:
+    """List the cases of the question, or the error in it, before there is a result."""
+    try:
+        axes = axes_of(screen.asked, screen.file, screen.use)
+    except ValueError as error:
+        return alert(str(error).removeprefix("question.toml: "))
+    number = prod(map(len, axes.values()))
+    rows = [
+        [PARAMETERS[name].title, ", ".join(screen.reading.with_unit(PARAMETERS[name], value) for value in values)]
+        for name, values in axes.items()
+    ]
+    offer = "" if screen.asked.limits.strip() else _OFFER
+    heads = ["1 case" if number == 1 else f"{number} cases", "values"]
+    return f"{offer}{table(heads, rows, 'text')}{_CONTENTS}"
+
+
+_OFFER = (
+    "<p class='trust no'>✗ No limit is stated. "
+    "<button type='button' class='plain' data-tell='evidence.allowable'>Use the liner's allowable pressure</button>"
+    "</p>"
+)
+_CONTENTS = (
+    "<p class='quiet'>The pack has a page with the decision on each limit, the worst cases and their figures, all "
+    "numbers as JSON, the question and checksums. It takes some seconds, with wear minutes.</p>"
+)
+
+
+def _pack_html(pack: EvidencePack) -> str:
+    """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
+    take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
+    limits, decisions = pack.record["limits"], []
+    verdicts = [Verdict[limit["verdict"].upper()] for limit in limits]
+    for verdict, limit in sorted(zip(verdicts, limits, strict=True), key=itemgetter(0), reverse=True):
+        words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
+        decisions.append(f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>")
+    return f"{''.join(decisions)}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
+
+
+def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:
+    worst = pack.record["worst"].items()
+    rows = [[title_of(name), value_text(name, row), case_text(row["case"])] for name, row in worst]
+    return ["worst", "value", "case"], rows
+
+
+def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: Path) -> Question:
+    """Write the question file into a folder, with a hip file if wear is included, and read it again."""
+    import tomli_w
+
+    (folder / _HIP).unlink(missing_ok=True)
+    tables = {_QUESTION: _tables(inputs, file)} | ({_HIP: _hip(file, use)} if inputs.wear == "yes" else {})
+    for name, content in tables.items():
+        for words in _texts(content):
+            if Path(words).is_absolute() or ".." in Path(words).parts:  # a pack includes every file that is named
+                raise ValueError(f"{shown(words)} is a path, and words are needed")
+        (folder / name).write_text(tomli_w.dumps(content), encoding="utf-8")
+    return read_question(folder / _QUESTION)
+
+
+def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
+    tables: Tables = {
+        "question": inputs.question,
+        "context_of_use": inputs.context,
+        "finite_elements": inputs.elements == "yes",
+        "risk": {"influence": inputs.influence, "consequence": inputs.consequence},
+        "required": {"accuracy": inputs.accuracy, "limits": list(phrases_in(inputs.limits))},
+        "matrix": dict(map(_axis, phrases_in(inputs.matrix))),
+        "tolerances": dict(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
+        **_joint(file),
+    }
+    if inputs.friction.strip():
+        tables["friction"] = {"coefficient": inputs.friction}
+    if inputs.wear == "yes":
+        tables["wear"] = {"file": _HIP}
+    return tables
+
+
+def _hip(file: JointFile, use: Use) -> Tables:
+    return {
+        **_joint(file),
+        **({"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}),
+        "cycles": 1e6 * use.millions,
+        "cycle": {"name": use.cycle},
+        "wear": {**use.wear_table, "contact": use.contact},
+        **use.creep_tables,
+    }
+
+
+def _joint(file: JointFile) -> Tables:
+    """Return the joint as the name of a preset in the default cup, otherwise as tables."""
+    if file.cup == Cup() and not file.cup.oriented and joints.get(file.joint.name) == file.joint:
+        return {"joint": file.joint.name}
+    return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
+
+
+def phrases_in(text: str) -> Iterator[str]:
+    """Yield the phrases of a text, which semicolons or line ends separate."""
+    return (phrase.strip() for phrase in text.replace("\n", ";").split(";") if phrase.strip())
+
+
+def _halves(context: str, phrase: str) -> tuple[str, str]:
+    name, sign, value = phrase.partition("=")
+    if not sign:
+        raise ValueError(f"{shown(phrase)} in {context} needs a name and =, such as 'clearance = 0.1 +- 0.02 mm'")
+    return name.strip(), value.strip()
+
+
+def _axis(phrase: str) -> tuple[str, Any]:
+    """Read one axis of the matrix: a name with one number or several; angles have a unit, as bare ones are degrees."""
+    listed = parse_choices(phrase)
+    name, text = _halves("the matrix", phrase) if listed is None else (listed[0], "")
+    check_names([name], PARAMETERS, "in the matrix")
+    kind = PARAMETERS[name].kind
+    values = [parse(name, text, kind)] if listed is None else listed[1]
+    return name, [f"{value!r} {Kind.ANGLE.unit}" if kind is Kind.ANGLE else value for value in values]
+
+
+def _texts(part: Any) -> Iterator[str]:
+    for entry in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        yield from [entry] if isinstance(entry, str) else _texts(entry)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EvidencePack:
+    """Conclusions in sentences, the record, and the folder as a ZIP file."""
+
+    conclusions: tuple[str, ...]
+    record: dict[str, Any]
+    content: bytes
+
+
+def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tuple[float, ...]]:
+    """Return the values of each axis of a question's matrix; raise ValueError if the question is invalid."""
+    with tempfile.TemporaryDirectory() as folder:
+        return dict(write_question(inputs, file, use, Path(folder)).axes)
+
+
+def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str, report: Report) -> EvidencePack:
+    """Gather evidence in a separate process, reusing the results that the folder holds."""
+    path = Path(folder)
+    question = write_question(inputs, file, use, path)
+    pieces = _WORST_CASE_STEPS + sum(len(part) for part in plan(question).parts.values())
+    finished: list[str] = []
+
+    def heard(name: str) -> None:
+        finished.append(name)
+        report(Reached(share=min(0.95, len(finished) / pieces), words=f"done: {name}"))
+
+    record = gather_evidence(question, path / WORK, heard)
+    write(question, record, evidence_page, path)
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
+        for name in sorted({*names_of(question), SUMS}):
+            pack.write(path / name, name)
+    return EvidencePack(conclusions=tuple(conclusions(record)), record=record, content=stream.getvalue())

@@ -1,1 +1,0 @@
-"""Evidence pack for a question."""

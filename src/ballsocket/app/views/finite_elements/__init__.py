@@ -1,1 +1,0 @@
-"""Check of a contact by finite elements."""

@@ -1,0 +1,349 @@
+"""Gait: a cycle of the hip, instant by instant: load, pressure, film, distance to the rim."""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Hashable
+from dataclasses import dataclass, replace
+from functools import partial
+from html import escape
+from math import radians
+from typing import Any
+
+import numpy
+
+from ...core.checks import shown
+from ...core.kinds import Unit
+from ...core.quantities import CONTACT, DERIVED, FIELD, Quantity
+from ...files.joint_file import JointFile
+from ...reports.figure_files import figure_bytes
+from ...reports.hip_plots import course_figure
+from ...reports.pages import picture, table
+from ...reports.style import BLUE, INK, LineStyle
+from ..long_view import LongView, LongWork, long_body
+from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
+from ..pictures.chart import Curve, chart, legend
+from ..pictures.svg import levels_between
+from ..pressing import rounded_up
+from ..running import Work
+from ..state.screen import Screen
+from ..state.use import FIELDS, UploadedCycle
+from ..view import Document, Host
+from ..widgets.fields import segments
+from ..widgets.reading import Reading
+from ..widgets.settings import CYCLE_SETTINGS, chosen
+from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
+from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
+
+_LARGEST = 100_000  # characters of a table
+_FILM_SECONDS = 300.0
+_INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
+<div data-field="gait.contact"></div>
+<div class="field"><label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
+<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div>"""
+_SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
+<div class="player"><span id="gait-at" data-at hidden></span>
+<div class="transport" hidden><button type="button" class="plain">▶ Play</button>
+<input type="range" min="0" step="1" aria-label="instant of the cycle"></div><output></output>
+<div class="panes"><div><div data-field="gait.field"></div><div id="gait-viewer"></div><div id="gait-flat"></div>
+<div data-field="gait-film.run"></div><div id="gait-film-trouble" role="alert"></div></div>
+<div id="gait-courses" class="courses"></div></div></div>"""
+
+_PHASE_LABEL = "phase of the cycle [%]"
+_SIZE = (520.0, 182.0)
+_INK, _BLUE = LineStyle(INK), LineStyle(BLUE, (6.0, 2.0))
+_NM, _RATIO = Unit("nm"), Unit("")
+_FILM_TITLE = "film thickness"
+
+
+class Gait(LongView):
+    """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
+
+    name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
+    settings = (*CYCLE_SETTINGS, chosen("use.field", "Shown on the cup", FIELDS, segments))
+    body = long_body("gait", _INPUTS, _SHOWN)
+
+    def __init__(self, page: Host) -> None:
+        super().__init__(page)
+        self._upload: UploadedCycle | None = None
+        self._cycle = page.screen.use.cycle
+        self.film = LongWork(
+            page,
+            "gait-film",
+            "Compute the film",
+            self.question_of,
+            lambda screen: partial(simulate_film, screen.file, screen.use, self._upload),
+            self._show_film,
+            automatic=True,
+            longest=_FILM_SECONDS,
+        )
+        self.further = [self.film]
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return gait_key(screen.file, screen.use, self._upload)
+
+    def work(self, screen: Screen) -> Work:
+        return partial(simulate_gait, screen.file, screen.use, self._upload)
+
+    def show_inputs(self, screen: Screen) -> None:
+        if screen.use.cycle != self._cycle:
+            self._upload, self._cycle = None, screen.use.cycle
+        super().show_inputs(screen)
+        upload_note = "" if self._upload is None else f" {escape(self._upload.name)}: a link does not hold it."
+        self.put(load=f"The load is that of the cycle; the force beside the joint is not used.{upload_note}")
+
+    def show_result(self, screen: Screen, result: GaitResult | None) -> None:
+        if result is None:
+            bore = bare_bore(screen.file.cup, radians(90.0))
+            self.put(numbers="", viewer="", flat=bore, courses=empty_charts(screen.reading))
+        elif result is self.long.result(screen):
+            self.film.show(screen)
+        else:
+            self._show_cycle(screen, result, None)
+
+    def _show_film(self, screen: Screen, film: GaitFilm | None) -> None:
+        result = self.long.result(screen)
+        if result is not None:
+            self._show_cycle(screen, result, self.film.result(screen))
+
+    def _show_cycle(self, screen: Screen, result: GaitResult, film: GaitFilm | None) -> None:
+        reading, instant = screen.reading, screen.use.instant
+        instant = result.heaviest if instant is None else min(instant, len(result.phase) - 1)
+        field = film if screen.use.field == "film" else None
+        self.put(
+            at=str(instant),
+            numbers=_numbers(result, film, reading),
+            viewer=gait_viewer(result, field, screen.file, reading),
+            flat=flat_bore(result, field, screen.file, reading, instant),
+            courses=gait_charts(result, film, reading),
+        )
+
+    def edit(self, key: str, value: Any) -> None:
+        if key == "own":
+            self._upload = _read_upload(value)
+            self.show(self.page.screen)
+        elif key == "instant":
+            if not isinstance(value, int) or isinstance(value, bool):
+                raise ValueError("an instant of a cycle is a whole number")
+            self.page.ask(use=replace(self.page.screen.use, instant=value))
+        else:
+            super().edit(key, value)
+
+    def document(self, screen: Screen) -> Document:
+        result, film, reading = self.result(screen), self.film.result(screen), screen.reading
+        courses = {
+            course.label(reading): values for charted in courses_of(result, film, reading) for course, values in charted
+        }
+        heads = ["phase [%]", *courses]
+        rows = numpy.stack([result.phase, *courses.values()], axis=1).tolist()
+        numbers = {
+            **result.numbers,
+            **{f"film_{name}": value for name, value in (film.numbers if film else {}).items()},
+        }
+        listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in numbers.items()])
+        sections = {
+            "checks": ("Checks", f"{rim_sentence(result, reading)}{checked(result.checks, reading)}"),
+            "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes)),
+        }
+        if film is not None:
+            sections["film"] = ("Film", picture(film.figure, "film over the cycle") + notes_list([film.note]))
+        return Document(
+            picture=lambda form: figure_bytes(course_figure(result.phase, courses, result.name), form),
+            rows=lambda: [heads, *rows],
+            sections=lambda: sections,
+        )
+
+
+def _read_upload(value: Any) -> UploadedCycle:
+    upload = value if isinstance(value, dict) else {}
+    name, text, size = str(upload.get("name", "")), upload.get("text"), upload.get("size")
+    if not isinstance(text, str):
+        raise ValueError(f"{shown(value)} is not a table of a cycle, which has a name and a text")
+    if len(text) > _LARGEST or (isinstance(size, int) and size > _LARGEST):
+        raise ValueError(f"the table is longer than {_LARGEST} characters: a cycle needs some hundred lines")
+    return UploadedCycle(name, text)
+
+
+def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
+    force, pressure, distance = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
+    least, notes = least_edge_distance(result), list(result.notes)
+    cells = [
+        quantity_cell(force, result.force.max(initial=0.0), reading, "largest load"),
+        quantity_cell(pressure, numpy.nanmax(result.pressure, initial=0.0), reading, "largest pressure"),
+        quantity_cell(distance, least, reading, "smallest distance to the rim", result.worst),
+        quantity_cell(distance, result.numbers["slide_mm"], reading, "sliding distance per cycle"),
+    ]
+    if film is not None:
+        state = "wave method, valid here" if film.valid else "✗ wave method, not valid here"
+        thinnest, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
+        cells.append(number_cell("smallest film thickness", thinnest, "nm", state))
+        cells.append(number_cell("smallest film ratio λ", ratio, "", film.regime))
+        notes.append(film.note)
+    checks = checked(result.checks, reading)
+    rim = rim_sentence(result, reading)
+    return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes)}"
+
+
+@dataclass(frozen=True)
+class Course:
+    """Quantity over the cycle: its field of `GaitResult` or `GaitFilm`, its name, and its unit."""
+
+    field: str
+    name: str
+    quantity: Quantity | None = None
+    own_unit: Unit = _NM
+    line: LineStyle = _INK
+
+    def unit(self, reading: Reading) -> Unit:
+        return self.own_unit if self.quantity is None else reading.unit(self.quantity)
+
+    def label(self, reading: Reading) -> str:
+        return f"{self.name}{self.unit(reading).text_in_brackets}"
+
+    def of(self, result: GaitResult | GaitFilm, reading: Reading) -> numpy.ndarray:
+        return numpy.asarray(getattr(result, self.field)) * self.unit(reading).factor
+
+
+_LOAD, _PRESSURE = Course("force", "load", CONTACT["force"]), CONTACT["max_pressure"]
+_PRESS_CHARTS = (
+    (_LOAD,),
+    (Course("pressure", _PRESSURE.title, _PRESSURE),),
+    (Course("edge", DERIVED["edge_distance"].title, DERIVED["edge_distance"]),),
+)
+_FILM_CHARTS = (
+    (Course("least", "smallest film thickness"), Course("central", "central film thickness", line=_BLUE)),
+    (Course("ratio", "film ratio λ", own_unit=_RATIO),),
+)
+
+
+def courses_of(result: GaitResult, film: GaitFilm | None, reading: Reading) -> list[list[tuple[Course, numpy.ndarray]]]:
+    """List the courses of each chart with their values."""
+    known = [[(course, course.of(result, reading)) for course in charted] for charted in _PRESS_CHARTS]
+    if film is None:
+        return known
+    return [*known, *([(course, course.of(film, reading)) for course in charted] for charted in _FILM_CHARTS)]
+
+
+def gait_charts(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
+    """Return the charts of a cycle, and the numbers with which the page plays it."""
+    charts = courses_of(result, film, reading)
+    listed = [
+        {"name": course.name, "unit": course.unit(reading).text, "values": _plain(values, 5), "chart": number}
+        for number, charted in enumerate(charts)
+        for course, values in charted
+    ]
+    data = {"phase": _plain(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
+    drawn = "".join(_chart(charted, result, reading) for charted in charts)
+    pending = "" if film is not None else "".join(_empty_chart(charted, reading) for charted in _FILM_CHARTS)
+    numbers = escape(json.dumps(data, separators=(",", ":")), quote=True)
+    return f"<div data-player='{numbers}'></div>{drawn}{pending}"
+
+
+def empty_charts(reading: Reading) -> str:
+    """Return axes without curves for a cycle that is being prepared."""
+    return "".join(_empty_chart(charted, reading) for charted in (*_PRESS_CHARTS, *_FILM_CHARTS))
+
+
+def _empty_chart(charted: tuple[Course, ...], reading: Reading) -> str:
+    words = f"{charted[0].label(reading)}: Preparing ..."
+    axes = chart(words, _PHASE_LABEL, "", {}, (100.0, 1.0), _SIZE)
+    return f"<figure class='quiet'><figcaption>{escape(words)}</figcaption>{axes}</figure>"
+
+
+def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, reading: Reading) -> str:
+    unit = charted[0][0].unit(reading)
+    known = numpy.concatenate([values[numpy.isfinite(values)] for _, values in charted])
+    highest = rounded_up(1.05 * float(known.max(initial=0.0)))
+    curves = {
+        course.name: Curve(result.phase, numpy.where(numpy.isfinite(values), values, numpy.nan), course.line)
+        for course, values in charted
+    }
+    flagged = _spans(result) if charted[0][0].field == "edge" else []
+    sentences = []
+    for course, values in charted:
+        finite = values[numpy.isfinite(values)]
+        ends = f"{number_text(finite.min())} to {number_text(finite.max())} {unit.text}" if finite.size else "no number"
+        sentences.append(f"{course.name}: {ends}".rstrip())
+    sentence = "; ".join(sentences)
+    named = f"{legend({course.name: course.line for course, _ in charted})} " if len(charted) > 1 else ""
+    red = " <b class='no'>✗ red: rim contact</b>" if flagged else ""
+    drawn = chart(
+        f"over the cycle: {sentence}", _PHASE_LABEL, unit.text or "λ", curves, (100.0, highest), _SIZE, flagged
+    )
+    return f"<figure><figcaption>{escape(sentence)}{red} {named}</figcaption>{drawn}</figure>"
+
+
+def _spans(result: GaitResult) -> list[tuple[float, float]]:
+    """List the ranges of phase in % with rim contact."""
+    steps = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], result.rim, [0]])))
+    half = 50.0 / len(result.phase)
+    return [
+        (float(result.phase[start]) - half, float(result.phase[end - 1]) + half)
+        for start, end in zip(steps[::2], steps[1::2], strict=True)
+    ]
+
+
+def least_edge_distance(result: GaitResult) -> float:
+    """Return the smallest distance from the contact to the rim in mm; NaN if the cycle presses nothing."""
+    known = result.edge[numpy.isfinite(result.edge)]
+    return float(known.min()) if known.size else numpy.nan
+
+
+def rim_sentence(result: GaitResult, reading: Reading) -> str:
+    """State in words if the contact reaches the rim, and when."""
+    if not result.rim.any():
+        distance = least_edge_distance(result)
+        if numpy.isnan(distance):
+            return "<p class='trust no'>✗ No contact: this cycle never presses the ball into its socket</p>"
+        least = reading.with_unit(DERIVED["edge_distance"], distance)
+        return f"<p class='trust yes'>✓ No rim contact: the contact ends at least {least} before the rim</p>"
+    spans = ", ".join(f"{low:.0f} to {high:.0f} %" for low, high in _spans(result))
+    share = f"{100 * result.rim.mean():.0f} % of the cycle"
+    return f"<p class='trust no'>✗ Rim contact in {share} ({spans}): the pressure there is a lower bound</p>"
+
+
+def _shown(result: GaitResult, film: GaitFilm | None, reading: Reading) -> tuple[Frames, float, str]:
+    """Return the field on the bore, the factor of its unit, and its label; the pressure without a film."""
+    if film is not None:
+        return film.frames, 1.0, f"{_FILM_TITLE}{_NM.text_in_brackets}"
+    return result.frames, reading.unit(FIELD["pressure"]).factor, reading.label(FIELD["pressure"])
+
+
+def gait_viewer(result: GaitResult, film: GaitFilm | None, file: JointFile, reading: Reading) -> str:
+    """Show the pressure or the film of a cycle on the bore in three dimensions."""
+    frames, factor, label = _shown(result, film, reading)
+    levels = levels_between(0.0, factor * frames.highest or 1.0)
+    return viewer(
+        "gait",
+        f"{label} on the cup in the chosen instant",
+        colour_scale(levels, label),
+        **shape_of(file.joint, file.cup, result.reach, RINGS, MERIDIANS),
+        bytes=b64encode(frames.cells.tobytes()).decode("ascii"),
+        gain=factor * frames.highest / levels[-1],
+        loads=result.load.round(4).tolist(),
+        sizes=(result.force / (float(result.force.max(initial=0.0)) or 1.0)).round(4).tolist(),
+        film=film is not None,
+    )
+
+
+def flat_bore(result: GaitResult, film: GaitFilm | None, file: JointFile, reading: Reading, instant: int) -> str:
+    """Draw the pressure or the film of one instant on the flat bore."""
+    frames, factor, label = _shown(result, film, reading)
+    nodes = factor * frames.highest / 255 * frames.cells[instant]
+    field = BoreField(
+        name="gait",
+        at=node_field(nodes if film is None else numpy.where(nodes > 0, nodes, numpy.nan), result.reach),
+        highest=factor * frames.highest or 1.0,
+        label=label,
+        reach=result.reach,
+        cup=file.cup,
+        least=CELLS_EDGE if film is None else 1e-3,
+    )
+    phase, highest = result.phase[instant], number_text(nodes.max())
+    words = f"{label} at {phase:.1f} % of the cycle, seen from the opening, up to {highest}"
+    return load_bore(field, words, result.load[instant])
+
+
+def _plain(values: numpy.ndarray, digits: int) -> list[float | None]:
+    return [float(f"{value:.{digits}g}") if numpy.isfinite(value) else None for value in values.tolist()]

@@ -1,1 +1,0 @@
-"""Gait cycle of a hip."""

@@ -1,1 +1,0 @@
-"""Wear of a design over millions of cycles."""
