@@ -50,7 +50,6 @@ class Job:
 
     @property
     def works(self) -> bool:
-        """State of the job: True while a process runs."""
         return self._run is not None
 
     def ask(self, key: Hashable, work: Work) -> None:

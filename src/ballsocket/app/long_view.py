@@ -41,7 +41,6 @@ class LongWork:
     longest: float = MAX_SECONDS  # s
     kind: str = ""  # of the result, by default the name
     _shown: Any = field(default=None, init=False)
-    _asked: Hashable = field(default=None, init=False)
     _cancelled: Hashable = field(default=None, init=False)
     _refusal: str = field(default="", init=False)
     _start: float = field(default=0.0, init=False)
@@ -49,10 +48,6 @@ class LongWork:
     def __post_init__(self) -> None:
         self._job = Job(lambda key, news: self.page.attempt(partial(self._hear, key, news)), self.longest)
         self.page.listen(self.name, lambda key, value: self.click(value))
-
-    def works_on(self, screen: Screen) -> bool:
-        """Return True while the work for a screen runs."""
-        return self._job.works and self._asked == self._key(screen)
 
     def show(self, screen: Screen) -> None:
         """Show the stored result for a screen, or that of an earlier screen with a mark."""
@@ -97,8 +92,7 @@ class LongWork:
             return
         self._start = time.monotonic()
         self.put_button(share=0.0, words="starting")
-        self._asked = self._key(screen)
-        self._job.ask(self._asked, work)
+        self._job.ask(self._key(screen), work)
 
     def _key(self, screen: Screen) -> Hashable:
         return self.kind or self.name, self.question_of(screen)
@@ -114,11 +108,7 @@ class LongWork:
 
     def _hear(self, question: Hashable, news: Any) -> None:
         if isinstance(news, Reached):
-            elapsed, words = time.monotonic() - self._start, news.words
-            if elapsed >= 1.0 and 0.05 < news.share < 1.0:
-                left = elapsed * (1.0 - news.share) / news.share
-                words += f", about {left:.0f} s left" if left >= 1.0 else ""
-            self.put_button(news.share, words)
+            self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
         elif isinstance(news, RunRefused):
             self._cancelled, self._refusal = question, alert(news.why)
             self._put("trouble", self._refusal)
@@ -130,6 +120,13 @@ class LongWork:
 
     def leave(self) -> None:
         self._job.stop()
+
+
+def _with_time_left(news: Reached, elapsed: float) -> str:
+    if elapsed < 1.0 or not 0.05 < news.share < 1.0:
+        return news.words
+    left = elapsed * (1.0 - news.share) / news.share
+    return f"{news.words}, about {left:.0f} s left" if left >= 1.0 else news.words
 
 
 class LongView(View):

@@ -295,27 +295,11 @@ class ExplorerServer:
 def server(
     port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False, link: str = ""
 ) -> ExplorerServer:
-    """Set up the server without starting it.
+    """Set up the server without starting it; port 0 takes a free one.
 
-    Parameters
-    ----------
-    port : int
-        Port of the server; 0 takes a free one.
-    address : str
-        Address of the interface to listen on; other machines reach the server only if it is not the loopback.
-    origins : sequence of str
-        Hosts under which browsers may reach it, "hips.example.org:5006", beside this machine's own names.
-    show : bool
-        Open a browser.
-    link : str
-        Query of the link that it opens, "?...".
-
-    Raises
-    ------
-    ValueError
-        The port or the address is invalid.
-    OSError
-        The port is taken.
+    Other machines reach it only if `address` is not the loopback. `origins` are hosts under which browsers may reach
+    it, such as "hips.example.org:5006", beside this machine's own names. `show` opens a browser at the query `link`,
+    "?...". Raises ValueError for an invalid port or address, and OSError if the port is taken.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
     try:

@@ -56,9 +56,6 @@ class Laws(Protocol):
 class PressModel(ModelInfo):
     """Base class of models whose result is a `Contact`."""
 
-    is_closed_sphere: ClassVar[bool] = False
-    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
-
     @abstractmethod
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
         """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
@@ -364,7 +361,6 @@ class Contact(Outcome):
 
     @staticmethod
     def _check_friction(coefficient: Array, axis_angle: float) -> Array:
-        """Check a coefficient of friction and the angle of an axis in rad, and return the coefficient."""
         if isinstance(coefficient, tuple | list):
             raise TypeError(
                 f"coefficient must be a number or an array, got the {type(coefficient).__name__} {shown(coefficient)}"

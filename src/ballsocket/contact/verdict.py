@@ -30,14 +30,10 @@ EDGE_DISTANCE = "edge_distance"  # arc from the edge of the contact to the rim; 
 _BALL_STRESS_ERROR = 0.02
 """Relative error of the largest von Mises stress in the ball, see `strength.ball_stress_ratio`."""
 
-_PRESSURE_SHARE, _HEMISPHERE_SAFETY = 0.5, 1.5
-"""Increase of the largest pressure over that of the stress; safety factor of the estimated change on a hemisphere."""
-
-_NEARLY_HEMISPHERE = radians(80.0)
-"""Angle between load and rim from which a cup counts as a hemisphere."""
-
-_AREA_ERRORS = 2.0
-"""Relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε."""
+_PRESSURE_SHARE = 0.5  # increase of the largest pressure by a free rim over that of the stress
+_HEMISPHERE_SAFETY = 1.5  # factor on the estimated change on a hemisphere
+_NEARLY_HEMISPHERE = radians(80.0)  # angle between load and rim from which a cup counts as a hemisphere
+_AREA_ERRORS = 2.0  # relative error of the area 2π R1² (1 - cos ε), at most twice that of the half angle ε
 
 
 def error_bar(contact: Contact, name: str) -> Bounded:
@@ -180,7 +176,6 @@ def ball_von_mises(joint: Joint, pressure: Bounded) -> Bounded:
 def _compare_with_material_strengths(
     body: str, material: Material, pressure: Bounded, von_mises: Bounded
 ) -> Iterator[StrengthUse]:
-    """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
         yield StrengthUse(part=body, strength=name, stress=Bounded(*map(float, stress)), allowed=float(strength))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
 from math import isfinite
+from pkgutil import resolve_name
 from typing import Any
 
 
@@ -92,22 +93,16 @@ def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     return f"<b>{escape(title)}</b><table>{body}</table>"
 
 
-Plot = Callable[..., Any]  # a function that returns a matplotlib figure
-
-_LOADERS: dict[str, Callable[[], Plot]] = {}
-
-
-def register_plot(name: str, loader: Callable[[], Plot]) -> None:
-    """Register a loader of a plot function by name, so that matplotlib is imported only when a plot is made."""
-    _LOADERS[name] = loader
+PLOTS: dict[str, str] = {}
+"""Plot functions, such as "ballsocket.reports.press_plots:plot", by name; the room of reports adds them."""
 
 
-def load_plot(name: str) -> Plot:
-    """Import and return the plot function registered under a name.
+def load_plot(name: str) -> Callable[..., Any]:
+    """Import and return a function of `PLOTS` that draws a matplotlib figure, when a plot is made.
 
     Raises LookupError: a name that no room has registered.
     """
-    if name not in _LOADERS:
-        known = ", ".join(sorted(_LOADERS)) or "none"
-        raise LookupError(f"plot {name!r} is not registered; registered plots: {known}")
-    return _LOADERS[name]()
+    if name not in PLOTS:
+        raise LookupError(f"plot {name!r} is not registered; registered plots: {', '.join(sorted(PLOTS)) or 'none'}")
+    plot: Callable[..., Any] = resolve_name(PLOTS[name])
+    return plot

@@ -130,7 +130,6 @@ class CohortStore(ArrayPieceStore):
             return None
 
     def to_arrays(self, result: CohortResult) -> dict[str, Numbers]:
-        """Return the arrays of a result by name."""
         return {array.name: getattr(result, array.name) for array in fields(result)}
 
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> CohortResult | None:

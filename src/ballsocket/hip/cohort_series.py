@@ -123,7 +123,6 @@ class CohortSeries:
 
     @property
     def first_degree(self) -> int:
-        """Degree of the first series."""
         return _FIRST_DEGREES[len(set(self.family.box.axes) - {CLEARANCE})]
 
     @property

@@ -76,7 +76,6 @@ class FamilyStore(ArrayPieceStore):
     prefix: str = "series"
 
     def to_arrays(self, result: dict[str, Numbers]) -> dict[str, Numbers]:
-        """Return the arrays of a piece."""
         return result
 
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:

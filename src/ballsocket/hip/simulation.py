@@ -49,7 +49,6 @@ class Checkpoint:
 
     @property
     def path(self) -> Path:
-        """Path of the checkpoint file."""
         return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:

@@ -162,7 +162,7 @@ class MeasuredWear:
         return [counts[:index].count(count) for index, count in enumerate(counts)]
 
     def standard_uncertainty(self, fitted: Numbers) -> Numbers:
-        """Compute the standard uncertainty of each value from its fitted value; the fitted value itself if unknown."""
+        """Compute the standard uncertainty of each value from its fitted value, which it is itself if unknown."""
         if self.uncertainty is not None:
             return numpy.asarray(self.uncertainty)
         return fitted if self.relative_uncertainty is None else self.relative_uncertainty * fitted

@@ -72,7 +72,6 @@ class WearIntegrator:
 
     @property
     def ball_volume(self) -> float:
-        """Worn volume of the ball in mm³."""
         return float(self.ball @ self.setup.ball_areas) if len(self.ball) else 0.0
 
     @property

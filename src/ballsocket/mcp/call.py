@@ -35,23 +35,8 @@ MAX_ANSWER = 2_000_000  # bytes
 def command_line(name: str, arguments: Mapping[str, Any], folder: Path, commands: Commands) -> list[str]:
     """Return the command and its arguments for a call of a tool.
 
-    Parameters
-    ----------
-    name : str
-        Name of the tool.
-    arguments : mapping
-        Arguments of the call.
-    folder : Path
-        Folder of the server: files outside are refused; the content of a file is written to it.
-    commands : mapping
-        Functions of the commands by name.
-
-    Raises
-    ------
-    ValueError
-        An argument is missing, unknown or not allowed.
-    OSError
-        The folder cannot be read or written.
+    Files outside the folder of the server are refused; the content of a file is written to it. Raises ValueError for
+    an argument that is missing, unknown or not allowed, and OSError if the folder cannot be read or written.
     """
     tool = TOOLS[known_name("tool", name, TOOLS)]
     offered = parameters(tool, commands)

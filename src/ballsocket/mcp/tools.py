@@ -29,13 +29,7 @@ FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 
 def file_table(kind: str) -> type[Table]:
-    """Return the tables of a kind of input file.
-
-    Raises
-    ------
-    ValueError
-        A kind that is not known; the message suggests the nearest one.
-    """
+    """Return the tables of a kind of input file; raise ValueError with the nearest kind for an unknown one."""
     module, name = FILE_TABLES[known_name("kind of file", kind, FILE_TABLES)]
     tables: type[Table] = getattr(import_module(f"ballsocket.{module}"), name)
     return tables

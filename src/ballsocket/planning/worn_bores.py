@@ -332,7 +332,6 @@ def _find_unworn(points: Numbers, local: _Neighbourhoods, name: str) -> list[_Un
 
 
 def _smoothed_depth(points: Numbers, local: _Neighbourhoods, sphere: _Unworn) -> Numbers:
-    """Return the smoothed depths (n,) of points below a sphere."""
     return local.smooth(_polar(points, sphere.centre)[1] - sphere.radius)
 
 

@@ -163,7 +163,6 @@ def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
 
 
 def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
-    """Label the cells of both sides with the values of their axes."""
     for side, set_ticks, set_label in (
         (across, axes.set_xticks, axes.set_xlabel),
         (down, axes.set_yticks, axes.set_ylabel),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf, isfinite
@@ -188,9 +188,11 @@ def with_load(file: JointFile, load: dict[str, float]) -> JointFile:
 
 def link_of(screen: Screen) -> str:
     """Return the query of a link: the differences from the start, and the joint."""
-    changed = [name for name in (*_KNOWN, "across", "up") if getattr(screen, name) != getattr(START, name)]
-    values = {name: getattr(screen, name) for name in changed if name != "theme"}
-    pairs = [(name, ",".join(value) if name == "shown" else str(value)) for name, value in values.items()]
+    pairs = []
+    for name in (*_KNOWN, "across", "up"):
+        value = getattr(screen, name)
+        if value != getattr(START, name) and name != "theme":
+            pairs.append((name, ",".join(value) if name == "shown" else str(value)))
     if screen.picked is not None:
         pairs.append(("picked", ",".join(map(repr, screen.picked))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
@@ -217,7 +219,14 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
         words["shown"] = tuple(dict.fromkeys(name for name in words["shown"].split(",") if name))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
     if "picked" in pairs:
-        words["picked"] = _point(pairs["picked"][0])
+        text = pairs["picked"][0]
+        try:
+            x, y = map(float, text.split(","))
+        except ValueError as error:
+            raise ValueError(
+                f"picked = {shown(text)} is not a point of a map: two numbers with a comma between"
+            ) from error
+        words["picked"] = x, y
     words["use"] = in_use.use_of(_part(pairs, "use"))
     words["asked"] = question_of(_part(pairs, "ask"))
     words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
@@ -235,14 +244,6 @@ def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
 def _axis(phrase: str) -> MapAxis:
     name, low, high = parse_range(phrase)
     return MapAxis(name=name, low=low, high=high)
-
-
-def _point(text: str) -> tuple[float, float]:
-    try:
-        x, y = map(float, text.split(","))
-    except ValueError as error:
-        raise ValueError(f"picked = {shown(text)} is not a point of a map: two numbers with a comma between") from error
-    return x, y
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:
@@ -268,9 +269,8 @@ def _tables(file: JointFile) -> Tables:
 
 def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
     """Flatten tables to dotted names, with layers by number."""
-    items: Iterable[tuple[Any, Any]] = enumerate(part) if isinstance(part, list) else part.items()
     pairs = []
-    for name, value in items:
+    for name, value in enumerate(part) if isinstance(part, list) else part.items():
         if isinstance(value, dict | list):
             pairs += _flat(value, f"{prefix}{name}.")
         else:

@@ -37,13 +37,6 @@ def _inputs(laws: Mapping[str, type[Law]], prefix: str = "") -> dict[str, LawFie
     return {prefix + part.key: part for part in parts if part.required and not part.is_list}
 
 
-def _creep_choices() -> tuple[str, ...]:
-    """Return "no", "yes" for the default law, and the other laws whose required fields are numbers."""
-    _, *further = CREEP_LAWS.items()
-    names = (name for name, law in further if not any(part.is_list and part.required for part in law.law_fields()))
-    return (_NO_CREEP, _DEFAULT_CREEP, *names)
-
-
 WEAR_INPUTS = {key: part for key, part in _inputs(WEAR_LAWS).items() if key != COEFFICIENT}
 """Numbers of wear laws beside the coefficient, by input."""
 
@@ -130,12 +123,17 @@ class Use:
         return {"creep": {**law, **{name.removeprefix(_CREEP_PREFIX): value for name, value in numbers.items()}}}
 
 
+_FURTHER_CREEP_LAWS = tuple(
+    name
+    for name, law in list(CREEP_LAWS.items())[1:]  # the first is the default law
+    if not any(part.is_list and part.required for part in law.law_fields())
+)
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "cycle": tuple(CYCLES),
     "contact": CONTACTS,
     "field": FIELDS,
     "law": LAWS,
-    "creep": _creep_choices(),
+    "creep": (_NO_CREEP, _DEFAULT_CREEP, *_FURTHER_CREEP_LAWS),
 }
 """Names of each choice."""
 
@@ -157,9 +155,9 @@ def _instant(number: float) -> int:
 
 def use_pairs(use: Use) -> list[tuple[str, str]]:
     """List the differences from `DEFAULT_USE` as pairs of a link."""
-    names = [name for name in _PLAIN_FIELDS if getattr(use, name) != getattr(DEFAULT_USE, name)]
-    numbers = [(name, value) for name, value in use.law_numbers if value != LAW_INPUTS[name].example]
-    return [(f"use.{name}", str(value)) for name, value in (*((name, getattr(use, name)) for name in names), *numbers)]
+    plain = {name: getattr(use, name) for name in _PLAIN_FIELDS if getattr(use, name) != getattr(DEFAULT_USE, name)}
+    numbers = {name: value for name, value in use.law_numbers if value != LAW_INPUTS[name].example}
+    return [(f"use.{name}", str(value)) for name, value in {**plain, **numbers}.items()]
 
 
 _PLAIN_FIELDS = tuple(part.name for part in fields(Use) if part.name != "law_numbers")

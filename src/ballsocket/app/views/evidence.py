@@ -252,20 +252,13 @@ def _halves(context: str, phrase: str) -> tuple[str, str]:
 
 
 def _axis(phrase: str) -> tuple[str, Any]:
-    """Read one axis of the matrix: a name with one number or several."""
+    """Read one axis of the matrix: a name with one number or several; angles have a unit, as bare ones are degrees."""
     listed = parse_choices(phrase)
-    if listed is not None:
-        name, values = listed
-        check_names([name], PARAMETERS, "in the matrix")
-        return name, [_bare(name, value) for value in values]
-    name, value = _halves("the matrix", phrase)
+    name, text = _halves("the matrix", phrase) if listed is None else (listed[0], "")
     check_names([name], PARAMETERS, "in the matrix")
-    return name, [_bare(name, parse(name, value, PARAMETERS[name].kind))]
-
-
-def _bare(name: str, value: float) -> Any:
-    """Write a number for a question file; angles carry a unit because a bare angle means degrees."""
-    return f"{value!r} {Kind.ANGLE.unit}" if PARAMETERS[name].kind is Kind.ANGLE else value
+    kind = PARAMETERS[name].kind
+    values = [parse(name, text, kind)] if listed is None else listed[1]
+    return name, [f"{value!r} {Kind.ANGLE.unit}" if kind is Kind.ANGLE else value for value in values]
 
 
 def _texts(part: Any) -> Iterator[str]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from html import escape
-from typing import Any
+from typing import Any, cast
 
 import numpy
 
@@ -110,11 +110,14 @@ def _pictures(result: ElementResult, screen: Screen) -> str:
     )
     ((kind, load),) = result.file.load.items()
     caption = f"head ⌀ {head}, outside ⌀ {outside}, {CONTACT[kind].title} {reading.with_unit(CONTACT[kind], load)}"
+    names = {JUDGE: "finite elements", reference.name: "exact"}
+    lines = {names[model]: line_of(model) for model in result.pressures}
+    profiles = {names[model]: (*pressures, True) for model, pressures in result.pressures.items()}
     return (
         f"<div class='beside elements'><figure><figcaption>{escape(caption)}</figcaption>"
         f"{section_picture(result.drawing, result.file, reading)}</figure>"
         f"<figure><figcaption>Pressure beside the exact one</figcaption>"
-        f"{pressure_picture(result.pressures, reading)}</figure></div>"
+        f"{pressure_chart(profiles, lines, reading)}<p class='legend'>{legend(lines)}</p></figure></div>"
     )
 
 
@@ -206,15 +209,14 @@ def _bands(part: Part, levels: list[float], project: Any) -> list[str]:
     triangulation = Triangulation(part.position[0], part.position[1], triangles)
     ends = [*levels[:-1], max(levels[-1], float(part.stress.von_mises.max()) * (1 + 1e-9))]
     filled = Figure().subplots().tricontourf(triangulation, part.stress.von_mises, levels=ends)
-    return ["".join(_strokes(path, project)) for path in filled.get_paths()]
-
-
-def _strokes(path: Any, project: Any) -> Iterator[str]:
-    """Write a path of matplotlib as that of a picture."""
-    if path.codes is None:
-        return
-    for (x, y), code in zip(project(path.vertices.T, 1.0), path.codes, strict=True):
-        yield "Z" if code == _CLOSE else f"{'M' if code == _MOVE else 'L'}{x:.1f},{y:.1f}"
+    bands, outlines = [], cast("Any", filled.get_paths())
+    for path in outlines:
+        points = [] if path.codes is None else zip(project(path.vertices.T, 1.0), path.codes, strict=True)
+        strokes = (
+            "Z" if code == _CLOSE else f"{'M' if code == _MOVE else 'L'}{x:.1f},{y:.1f}" for (x, y), code in points
+        )
+        bands.append("".join(strokes))
+    return bands
 
 
 def section_picture(drawing: SectionDrawing, file: JointFile, reading: Reading) -> str:
@@ -241,14 +243,6 @@ def section_picture(drawing: SectionDrawing, file: JointFile, reading: Reading) 
     ]
     label = f"mesh and von Mises stress in section: {', '.join(sizes)}"
     return svg.picture((_WIDTH, drawing.height + 56), label, parts)
-
-
-def pressure_picture(pressures: Mapping[str, tuple[numpy.ndarray, numpy.ndarray]], reading: Reading) -> str:
-    """Draw pressures (MPa) over angles (rad) by the names of their models."""
-    names = {JUDGE: "finite elements", reference.name: "exact"}
-    lines = {names[model]: line_of(model) for model in pressures}
-    profiles = {names[model]: (*profile, True) for model, profile in pressures.items()}
-    return f"{pressure_chart(profiles, lines, reading)}<p class='legend'>{legend(lines)}</p>"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -99,15 +99,14 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
     worst, first, checks = edge.closest_approach(hip.frame), hip.first, hip.unworn_checks
     valid = all(check.valid for check in checks)
     sizes = hip.cycle.force_magnitudes
+    forces = hip.frame.forces
     return GaitResult(
         name=hip.cycle.name,
         phase=100 * hip.cycle.phases,
         force=sizes,
         pressure=_course(hip, unworn.pressure.max(axis=1, initial=0.0)),
         edge=_course(hip, edge.distance),
-        load=numpy.divide(
-            hip.frame.forces, sizes[:, None], out=numpy.zeros_like(hip.frame.forces), where=sizes[:, None] > 0
-        ),
+        load=numpy.divide(forces, sizes[:, None], out=numpy.zeros_like(forces), where=sizes[:, None] > 0),
         frames=_frames(hip, unworn.pressure, float(unworn.pressure.max(initial=0.0))),
         reach=hip.frame.reach,
         worst="no contact in this cycle" if worst is None else worst.location,

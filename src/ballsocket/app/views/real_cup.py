@@ -21,7 +21,7 @@ from ...files.joint_file import JointFile
 from ...model_catalogue import OFF_AXIS, named_models
 from ...problem import Joint
 from ...problem.cup import Cup, Side
-from ...question import PressAnswer, PressQuestion, answer, complete
+from ...question import PressQuestion, answer, complete
 from ...reports.figure_files import figure_bytes
 from ...reports.orientation_results import orientation_figure
 from ..results import RESULTS, without_name
@@ -54,25 +54,19 @@ def is_prepared(file: JointFile) -> bool:
 
 
 @lru_cache(maxsize=32)
-def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> PressAnswer:
+def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> OffAxisContact:
     file = JointFile(joint, dict(load), cup, dict(aim))
     answered = answer(PressQuestion(file=file, models={OFF_AXIS: named_models[OFF_AXIS]}, exact=None))
     contact: Any = answered.comparison[OFF_AXIS]
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes) or contact.status.sentence)
-    return answered
-
-
-def answer_in_cup(file: JointFile) -> PressAnswer:
-    """Press the load of a joint file in its cup; raise ValueError without a result."""
-    file, _ = complete(file)
-    return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
+    return contact
 
 
 def pressed_in_cup(file: JointFile) -> OffAxisContact:
-    """Return the contact of a joint file in its cup; raise ValueError without a result."""
-    contact: Any = answer_in_cup(file).comparison[OFF_AXIS]
-    return contact
+    """Press the load of a joint file in its cup; raise ValueError without a result."""
+    file, _ = complete(file)
+    return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
 
 
 def set_up(joint: Joint, cup: Cup, report: Report) -> bool:

@@ -14,12 +14,11 @@ from ...core.answers import Check
 from ...core.quantities import CONTACT, JOINT
 from ...design_checks import checks_of, verdict_of
 from ...files.joint_file import JointFile
-from ...model_catalogue import OFF_AXIS
 from ...question import real_cup_reason
 from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
-from ..views.real_cup import answer_in_cup, is_prepared
+from ..views.real_cup import is_prepared, pressed_in_cup
 from .reading import number_text
 from .words import VERDICT_KINDS, percent
 
@@ -71,15 +70,17 @@ def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[
     """Press designs by a model, with HTML below some names."""
     designs = {}
     for name, file in files.items():
+        contact: Contact | None
         if real_cup_reason(file) and is_prepared(file):
-            comparison, by, limit = answer_in_cup(file).comparison, OFF_AXIS, ""
+            contact, reason, limit = pressed_in_cup(file), "", ""
         else:
-            comparison, by = pressed(file, (model,)), model
+            comparison = pressed(file, (model,))
+            contact, reason = successful_contacts(comparison).get(model), comparison.missing.get(model, "no result")
             limit = real_cup_reason(file, comparison.contacts.get(model))
         designs[name] = ComparedDesign(
             file=file,
-            contact=successful_contacts(comparison).get(by),
-            reason=comparison.missing.get(by, "no result"),
+            contact=contact,
+            reason=reason,
             limit=f"{limit}: see Cup" if limit else "",
             heading=headings.get(name, ""),
         )

@@ -67,23 +67,10 @@ def words(name: str, label: str, value: str, rows: int = 1) -> Field:
 
 
 def typed(label: str, text: Any, unit: Unit, kind: str) -> float:
-    """Convert typed text to the number of a table; a bare number has the unit beside the box.
+    """Convert typed text, "0.2", "0,2", "0.2 mm" or "1 1/8 in", to the number of a table.
 
-    Parameters
-    ----------
-    label : str
-        Words beside the box, for a refusal.
-    text : str or float
-        "0.2", "0,2", "0.2 mm", "1 1/8 in".
-    unit : Unit
-        Of a bare number; its factor leads to it from the number in the table.
-    kind : str
-        Physical kind of the number, for text with a unit.
-
-    Raises
-    ------
-    ValueError
-        No number, or one that could be two.
+    A bare number has the `unit` beside the box, whose factor leads to it from the number in the table. Raises
+    ValueError for no number, or one that could be two.
 
     Examples
     --------
