@@ -235,7 +235,7 @@ def hip(results: Results, folder: Path) -> None:
     _history(results, "resumed", in_use(creep=wear.logarithmic()).after(1e6, report_at=[4e5], store=store))
     ladder = wear.logarithmic(wear.constrained_share(0.45))
     results.add("creep/response", ladder.response(numpy.array([1.0, 1e3, 1e6, 1e9])))
-    results.add("creep", [ladder.compliances, ladder.times])
+    results.add("creep", list(ladder.elements))
 
 
 def _first(results: Results, name: str, use: wear.HipSimulation) -> None:

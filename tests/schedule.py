@@ -9,6 +9,7 @@ _FIRST = (
     "tests/elasticity/",
     "tests/lubrication/",
     "tests/test_docs.py",
+    "tests/test_contributed.py",
     "tests/compiled/",
     "tests/cli/",
     "tests/studies/",

@@ -6,7 +6,7 @@ from collections import UserDict
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import Any, TypeVar
 
 from .contact import Model, ModelInfo
@@ -44,8 +44,7 @@ _SLOW_MODELS = {
 @cache
 def _load_model(entry: str) -> Any:
     """Import the module of an entry such as "models.refined:Refined", and return a model of its class."""
-    module, _, name = entry.partition(":")
-    return getattr(import_module(f".{module}", __package__), name)()
+    return resolve_name(f"{__package__}.{entry}")()
 
 
 SomeInfo = TypeVar("SomeInfo", bound=ModelInfo)

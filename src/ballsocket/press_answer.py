@@ -16,6 +16,7 @@ from .core.arrays import to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
 from .core.quantities import CONTACT, HEADLINE, LOADS
 from .core.unit_systems import Amount, Sentence, joint_sentence
+from .design_checks import checks_of, unchecked_text, verdict_of
 from .model_catalogue import JUDGE, OFF_AXIS, reference
 from .question import PressAnswer
 
@@ -87,9 +88,11 @@ def describe_curve(contact: Contact) -> Answer:
 
 
 def press_remarks(answered: PressAnswer) -> list[str]:
-    """List sentences on meshes, rings, assumptions, the end of a preload, and the pull-out force of an answer."""
+    """List sentences on the verdict, meshes, rings, assumptions, the end of a preload, and the pull-out force."""
     comparison, seconds = answered.comparison, answered.seconds
-    remarks = [_mesh_remark(comparison[JUDGE], seconds[JUDGE])] if JUDGE in comparison else []
+    remarks = [f"verdict by {answered.leading}: {design_verdict(answered)[1]}"]
+    if JUDGE in comparison:
+        remarks.append(_mesh_remark(comparison[JUDGE], seconds[JUDGE]))
     if OFF_AXIS in comparison:
         remarks.append(_sphere_remark(comparison[OFF_AXIS], seconds[OFF_AXIS]))
     remarks += answered.assumptions
@@ -101,6 +104,14 @@ def press_remarks(answered: PressAnswer) -> list[str]:
         force, displacement = Amount(pulled.force, NEWTONS), Amount(pulled.displacement, MILLIMETRES)
         remarks.append(Sentence("pull-out force {}, {} out of the cup's centre", force, displacement))
     return [*remarks, *(() if pulled is None else pulled.notes)]
+
+
+def design_verdict(answered: PressAnswer) -> tuple[Verdict, str]:
+    """Return the verdict on all checks of the leading contact in its cup, and its sentence."""
+    contact = answered.comparison[answered.leading]
+    checks = checks_of(contact, answered.file.cup, float(contact.von_mises))
+    verdict, sentence = verdict_of(checks)
+    return verdict, "; ".join(filter(None, [sentence, unchecked_text(checks)]))
 
 
 def _mesh_remark(contact: Any, seconds: float) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import degrees, pi
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -39,7 +40,7 @@ class PressQuestion:
     gap: str | None = None  # name of the gap of the models that have a choice
     pull_out: float | None = None  # coefficient of friction while the ball is pulled out of its cup, if it is
 
-    @property
+    @cached_property
     def chosen(self) -> dict[str, Model]:
         """Models that solve the question, by name: the requested ones, or the default one."""
         needs_sphere = self.pull_out is not None or real_cup_reason(self.file)

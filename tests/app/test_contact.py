@@ -26,9 +26,10 @@ from ballsocket.app.views.real_cup import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
 from ballsocket.core.unit_systems import Units
+from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
-from ballsocket.reports.check_table import checks_html, checks_of
+from ballsocket.reports.pages import checks_html
 from ballsocket.reports.section_plots import gap_factor
 
 from ..extent import either

@@ -212,13 +212,6 @@ def test_a_star_stands_for_any_part_of_a_name(name, count):
         assert HostNames([name]).trust(f"http://{host}", "127.0.0.1") == (host in HOSTS[:count])
 
 
-def test_importing_the_module_of_the_command_runs_nothing(capsys):
-    import ballsocket.__main__
-
-    assert callable(ballsocket.__main__.main)
-    assert capsys.readouterr().out == ""
-
-
 def moves_load(wire, number=2):
     """Whether a page takes an edit."""
     wire.ask(number, "edit", name="load", value=2900)

@@ -4,6 +4,7 @@ import json
 import operator
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
@@ -321,9 +322,15 @@ def test_work_that_is_refused_says_why_and_keeps_the_result(monkeypatch, jobs):
     assert "earlier design" in shown(page, "earlier")
 
 
-def test_the_time_left_is_that_of_the_share_so_far():
+def test_the_time_left_is_that_of_the_share_so_far(monkeypatch, jobs):
+    page, now = opened(monkeypatch), [100.0]
+    monkeypatch.setattr(long_view, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    edits(page, "press.run", True)
+    job, key, _ = jobs[-1]
     for elapsed, share, left in ((0.5, 0.5, ""), (10.0, 0.25, ", about 30 s left"), (10.0, 0.99, "")):
-        assert long_view._with_time_left(Reached(share=share, words="wear"), elapsed) == f"wear{left}"
+        now[0] = 100.0 + elapsed
+        job._heard(key, Reached(share=share, words="wear"))
+        assert page.channel.shown_value("=press.run")["words"] == f"wear{left}"
 
 
 def test_a_store_of_results_is_bounded_in_number_bytes_and_time(monkeypatch):

@@ -24,11 +24,11 @@ from ballsocket.app.views.map_study import catalogue_sizes, mapped, models_of
 from ballsocket.app.widgets.joint_fields import layers_edited
 from ballsocket.app.widgets.limit_rows import present_value
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Cup
-from ballsocket.reports.check_table import checks_of
 
 from ..extent import either, some
 from .asking import does, edits, saved, trouble

@@ -29,12 +29,12 @@ from ballsocket.app.views.wear import depth_maps, penetration_chart, wear_number
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.contact.verdict import exact_number
 from ballsocket.core.unit_systems import Units
+from ballsocket.design_checks import wear_check
 from ballsocket.elasticity.off_axis.grid import graded_grid
 from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
-from ballsocket.reports.check_table import wear_check
 
 from .asking import does, edits, opened, saved, told, trouble
 

@@ -112,7 +112,7 @@ def test_a_narrow_press_table_names_the_columns_that_it_omits():
         heads = next(line.split() for line in text.splitlines() if line.startswith("model "))
         omitted = " ".join(text.split()).partition("not shown, the terminal is too narrow: ")[2]
         assert all((symbol in heads) != (f"{symbol} " in omitted) for symbol in symbols)
-        assert (omitted == "") == (columns == 80)
+        assert ("U energy" in omitted) == (columns < 80)
 
 
 def test_the_next_step_after_an_invalid_model_gives_a_valid_result():

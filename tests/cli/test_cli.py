@@ -224,11 +224,11 @@ def test_models_describes_one_model_in_full():
 
 def test_presets_describes_one_preset_in_full():
     text = run("presets", "hip-36").stdout
-    for words in ("head diameter         36 mm", "diametral clearance   0.2 mm", "outer diameter        46.2 mm"):
-        assert words in text
+    for title, value in (("head diameter", "36 mm"), ("diametral clearance", "0.2 mm"), ("outer diameter", "46.2 mm")):
+        assert re.search(rf"^{title} +{value}", text, flags=re.MULTILINE)
     text = run("presets", "UHMWPE").stdout
     assert bs.UHMWPE.source[:30] in text
-    assert "wear factor           1.066e-06 mm³/(N m), range 7e-07 to 1.6e-06" in text
+    assert re.search(r"^wear factor +1.066e-06 mm³/\(N m\), range 7e-07 mm³", text, flags=re.MULTILINE)
     assert "687 (unverified); range: a factor of 1.5 (assumed)" in " ".join(text.split())
     assert "wear factor" not in run("presets", "pom").stdout
     listed = answer("presets")
@@ -355,18 +355,9 @@ def test_an_optimum_of_two_ranges_is_drawn_as_a_map(tmp_path):
     assert (tmp_path / "a.png").stat().st_size > 5000
 
 
-def test_imperial_units_show_inches_and_pounds():
+def test_json_is_metric_in_every_system_of_units():
     words = ("press", "hess-forsbach", "--force", "3 kN", "--model", "exact")
-    shown = run(*words, "--units", "Imperial").stdout.splitlines()
-    first = next(index for index, line in enumerate(shown) if line.startswith("model"))
-    heads, units, numbers = (line.split() for line in shown[first : first + 3])
-    values = dict(zip(heads, [None, *map(float, numbers[1:9])], strict=False))
-    assert units == ["lbf", "mil", "°", "psi", "in²", "kip/in", "lbf", "in", "ksi/in"]
-    contact = bs.Exact().press(bs.joints["hess-forsbach"], force=3000.0)
-    expected = {"F": 3000 / 4.448222, "d": contact.indentation / 0.0254, "pmax": contact.max_pressure / 6.894757e-3}
-    expected |= {"dF/dd": contact.stiffness / 175.1268, "K": contact.foundation_modulus / 0.2714471}
-    assert {name: values[name] for name in expected} == pytest.approx(expected, rel=1e-3)  # four digits are printed
-    assert answer(*words, "--units", "imperial") == answer(*words)
+    assert answer(*words, "--units", "Imperial") == answer(*words)
 
 
 @pytest.mark.parametrize(("distance", "clearance", "text"), [(0.2, 0.0, ".* undecided"), (-9.4, -0.1, "up to the rim")])

@@ -1,4 +1,4 @@
-"""`ballsocket identify`: JSON, figures."""
+"""`ballsocket film` and `ballsocket identify`: JSON, rates, figures."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ import pytest
 import ballsocket as bs
 
 from ..joints import HIP
+from ..places import EXAMPLES
 from .command import answer, run
 
 FORCE = np.array([250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0])
@@ -59,3 +60,36 @@ def test_the_command_writes_figures_and_samples(folder):
     assert (done.returncode, done.stderr) == (0, "")
     assert "R-hat 1.0" in done.stdout
     assert all((folder / name).stat().st_size > 10_000 for name in pictures[1::2])
+
+
+FILM = ("film", f"{EXAMPLES / 'hip.toml'}", "--force", "1500 N")
+
+
+def test_json_has_an_entry_for_each_model():
+    springs, exact = answer(*FILM, "--model", "hess-forsbach", "--model", "exact", "--viscosity", "2.5 mPa s")[
+        "results"
+    ]
+    for result in (springs, exact):
+        assert {"model", "method", "central_nm", "minimum_nm", "lambda", "error", "valid", "notes"} <= set(result)
+        assert result["valid"] is True
+    assert springs["central_nm"] == pytest.approx(191.3, abs=1.0)
+    assert exact["central_nm"] == pytest.approx(160.4, abs=1.5)
+
+
+def test_rates_have_units_and_an_axis():
+    (fast,) = answer(*FILM, "--spin", "180 deg/s", "--method", "Inlet")["results"]
+    assert fast["method"] == "inlet"
+    assert fast["spin_rad_per_s"] == pytest.approx([3.14159, 0.0, 0.0], abs=1e-4)
+    (turned,) = answer(*FILM, "--spin", "1.5", "--spin-axis", "0,2,0", "--method", "inlet")["results"]
+    assert turned["spin_rad_per_s"] == pytest.approx([0.0, 1.5, 0.0])
+    (about_load,) = answer(*FILM, "--spin-axis", "0,0,1")["results"]
+    assert (about_load["central_nm"], about_load["valid"]) == (0.0, False)
+
+
+@pytest.mark.long
+def test_a_tilted_load_turns_the_ball_across_it_and_a_film_is_drawn(tmp_path):
+    (tilted,) = answer(*FILM, "--tilt", "30 deg")["results"]
+    (axial,) = answer(*FILM, "--model", "exact", "--figure", str(tmp_path / "film.svg"))["results"]
+    assert tilted["model"] == "sphere"
+    assert tilted["central_nm"] == pytest.approx(axial["central_nm"], rel=0.05)
+    assert "film thickness" in (tmp_path / "film.svg").read_text("utf-8")

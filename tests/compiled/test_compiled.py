@@ -12,9 +12,7 @@ pytest.importorskip("numba")
 import numba
 
 from ballsocket.compiled import Compiled, compiled_law, overloads, table_kernel
-from ballsocket.compiled.kernels import _angle_polynomial
 from ballsocket.contact.roots import increasing_root
-from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)
 MODULI = (bs.hess_forsbach, bs.spherical_vessel, bs.bonded_layer, bs.polynomial(1.0, 1.2, 0.1), bs.constant(250.0))
@@ -64,11 +62,6 @@ def test_compiled_presses_fail_as_the_python_model():
         fast.press(tight, force=force)
     with pytest.raises(ValueError, match="force = -1|force.0. = -1"):
         fast.press(HIP, force=np.array([-1.0]))
-
-
-def test_angle_polynomial_is_accurate_to_rounding():
-    for versine in np.linspace(0.0, 1.0, 4001):
-        assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
 
 
 @pytest.mark.parametrize("count", [2, 3])

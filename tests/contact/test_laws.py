@@ -101,22 +101,16 @@ def test_a_cup_does_not_change_the_law_of_a_model_without_a_rim(model):
     assert model.in_cup(cup).law(HIP)(0.05) == model.law(HIP)(0.05)
 
 
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
-def test_a_power_law_is_reproduced(exponent):
-    law = fit_curve_law(lambda d: 7.0 * d**exponent, 1e-6, 2.0)
+@pytest.mark.parametrize("n", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("rate", [0.0, 1.0])
+def test_a_power_law_and_a_smooth_law_are_reproduced(n, rate):
+    """F = 7 dⁿ exp(rate d): a power of d alone also below the fitted range."""
+    law = fit_curve_law(lambda d: 7.0 * d**n * np.exp(rate * d), 1e-6, 2.0)
     assert (law.shallowest, law.deepest) == (1e-6, 2.0)
-    for d in (1e-9, 1e-6, 3e-4, 0.1, 1.999, 2.0):
+    for d in [*np.geomspace(1e-6, 2.0, 57).tolist(), *[1e-9] * (rate == 0.0)]:
         force, stiffness = law(d)
-        assert force == pytest.approx(7.0 * d**exponent, rel=1e-10)
-        assert stiffness == pytest.approx(exponent * 7.0 * d ** (exponent - 1), rel=1e-8)
-
-
-def test_a_smooth_law_is_reproduced():
-    law = fit_curve_law(lambda d: 3.0 * d * np.exp(d), 1e-5, 1.0)
-    for d in np.geomspace(1e-5, 1.0, 57):
-        force, stiffness = law(float(d))
-        assert force == pytest.approx(3.0 * d * np.exp(d), rel=1e-10)
-        assert stiffness == pytest.approx(3.0 * (1 + d) * np.exp(d), rel=1e-8)
+        assert force == pytest.approx(7.0 * d**n * exp(rate * d), rel=1e-10)
+        assert stiffness == pytest.approx((n / d + rate) * 7.0 * d**n * exp(rate * d), rel=1e-8)
 
 
 def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():

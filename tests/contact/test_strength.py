@@ -147,6 +147,20 @@ def test_a_hip_at_8_kilonewtons_yields_by_all_accurate_models(model):
     assert 1 < low <= 1.035 <= high
 
 
+def test_bars_of_a_closed_sphere_contain_the_stress_in_a_cup_with_a_free_rim():
+    """Finite elements, 1.3 and 2.3 % above the closed sphere: 99 % by `exact` is undecided, not kept."""
+    cup = bs.Cup(arc_of_cover=np.radians(170.0))
+    for ratio, force in ((1.5, 3000.0), (2.7, 11700.0)):
+        joint = bs.Joint(
+            ball_radius=16.0, clearance=0.08, liner_thickness=16.08 / ratio, liner=joint_with(0.46, 1.0).liner
+        )
+        free = bs.FiniteElement(cup=cup, meshes=1).press(joint, force=force * joint.liner.young / 900.0)
+        for model in (bs.Exact(), bs.Tabulated()):
+            contact = model.in_cup(cup).press(joint, force=free.force)
+            assert contact.von_mises < free.von_mises < error_bar(contact, "von_mises").high < 1.05 * free.von_mises
+            assert contact.max_pressure < free.max_pressure < error_bar(contact, "max_pressure").high
+
+
 def test_bounds_of_the_stress_contain_the_exact_one_in_99_of_100_joints():
     """Random joints in the range of each model; the error that it promises for its pressure comes on top."""
     random, inside = np.random.default_rng(3), []

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from datetime import datetime
 from importlib import import_module
@@ -126,17 +125,15 @@ def test_available_cores_are_those_of_this_process(monkeypatch):
 
 
 class FakePool:
-    """Pool whose pieces are finished at once, and whose process dies at some of them."""
+    """Pool whose pieces are finished at once."""
 
-    def __init__(self, dies_at=(), refuses_at=()):
-        self.submitted, self.dies_at, self.refuses_at = [], dies_at, refuses_at
+    def __init__(self):
+        self.submitted = []
 
     def submit(self, function, number):
-        if number in self.refuses_at:
-            raise BrokenProcessPool
         self.submitted.append(number)
         future = Future()
-        future.set_exception(BrokenProcessPool()) if number in self.dies_at else future.set_result(number)
+        future.set_result(number)
         return future
 
 
@@ -153,18 +150,6 @@ def test_few_pieces_are_submitted_at_a_time(monkeypatch):
     monkeypatch.setattr(module, "_submit_until_worker_dies", submit)
     assert list(Processes(workers=3).run(abs, [1])) == []
     assert limits == [6]  # two for each worker
-
-
-def test_a_broken_pool_leaves_the_other_pieces_pending():
-    pool, pending = FakePool(dies_at={1}), deque(range(9))
-    results = dict(module._submit_until_worker_dies(pool, pending, 3))
-    assert results[1] is module._WORKER_DIED
-    assert sorted(results) == pool.submitted
-    assert pending
-    assert sorted([*results, *pending]) == list(range(9))
-    pool, pending = FakePool(refuses_at={2}), deque(range(4))
-    assert sorted(dict(module._submit_until_worker_dies(pool, pending, 3))) == [0, 1]
-    assert list(pending) == [2, 3]
 
 
 PARENT = """

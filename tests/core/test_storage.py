@@ -1,4 +1,4 @@
-"""Storage: atomic files, named arrays and their cache, fingerprints, and resumable runs of pieces."""
+"""Input files of a server; atomic files, named arrays and their cache, fingerprints, and resumable runs of pieces."""
 
 import os
 import stat
@@ -11,9 +11,12 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors import Serial
+from ballsocket.core.input_files import open_input, record_inputs, resolve_input, resolve_inside, restriction_variables
 from ballsocket.core.storage import atomic_files
 from ballsocket.core.storage.atomic_files import is_draft_folder, make_draft_folder, read_arrays, write_arrays
 from ballsocket.core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
+
+from ..places import symlink_or_skip
 
 
 def names(folder):
@@ -67,8 +70,9 @@ def test_errors_name_the_requested_file_and_those_of_other_files_their_own(tmp_p
     assert error.value.filename == "other"
 
 
-def test_only_old_unlocked_draft_folders_of_the_same_file_are_removed(tmp_path):
-    for name, seconds in (("a.txt.young", 30.0), ("a.txt.old", 90.0), ("b.txt.old", 1e9)):
+def test_only_old_unlocked_draft_folders_of_the_same_file_are_removed(tmp_path, monkeypatch):
+    monkeypatch.setattr(atomic_files, "_MIN_AGE", 6e4)  # no machine is as slow as the difference from this
+    for name, seconds in (("a.txt.young", 3e4), ("a.txt.old", 9e4), ("b.txt.old", 1e9)):
         folder = tmp_path / f".{name}.draft"
         folder.mkdir()
         then = max(os.stat(tmp_path).st_mtime - seconds, 0.0)
@@ -263,3 +267,40 @@ def test_runs_without_a_store_compute_every_piece_and_failed_ones_resume():
     with pytest.raises(ValueError, match="thirteen"):
         list(PieceRun(square, [11, 12, 13, 14], store).compute_missing(Serial()))
     assert PieceRun(square, [11, 12, 13, 14], store).missing == [13, 14]
+
+
+def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):
+    folder = tmp_path / "allowed"
+    folder.mkdir()
+    (folder / "joint.toml").write_text("inside", encoding="utf-8")
+    (tmp_path / "other.toml").write_text("outside", encoding="utf-8")
+    symlink_or_skip(folder / "link.toml", tmp_path / "other.toml")
+    assert resolve_input(tmp_path / "other.toml") == tmp_path / "other.toml"
+    for name, value in restriction_variables([folder]).items():
+        monkeypatch.setenv(name, value)
+    with open_input(folder / "joint.toml") as stream:
+        assert stream.read() == b"inside"
+    for path in (tmp_path / "other.toml", folder / "link.toml", folder / ".." / "other.toml"):
+        with pytest.raises(ValueError, match="lies outside the folder of this server"):
+            open_input(path)
+    with pytest.raises(ValueError, match="is not a regular file"):
+        open_input(folder)
+    with pytest.raises(FileNotFoundError):
+        open_input(folder / "missing.toml")
+    assert resolve_inside((tmp_path.resolve(),), folder, "folder") == folder.resolve()
+
+
+def test_opened_inputs_are_recorded_once(tmp_path):
+    first, second = tmp_path / "a", tmp_path / "b"
+    for path in (first, second):
+        path.write_text("text", encoding="utf-8")
+    with record_inputs() as outer:
+        open_input(first).close()
+        with record_inputs() as inner:
+            open_input(first).close()
+            open_input(second).close()
+            open_input(second).close()
+        assert inner == [first, second]
+    assert outer == [first, second]
+    open_input(first).close()
+    assert outer == [first, second]

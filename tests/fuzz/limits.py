@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, Phase, settings
 
 from ..cli.command import run
 from ..extent import either
+from ..processes import PATIENCE
 
 try:
     import resource
@@ -40,7 +41,7 @@ def inputs(share):
 
 
 class InputTimeout(BaseException):
-    """An input took longer than a minute. No handler of errors swallows it."""
+    """An input took longer than any machine needs. No handler of errors swallows it."""
 
 
 def _peak_memory():
@@ -53,12 +54,12 @@ def _end(number, frame):
 
 @contextmanager
 def within_limits():
-    """Check the processor time and the memory of one input; interrupt it after a minute where alarms are possible."""
+    """Check the processor time and the memory of one input; interrupt it late where alarms are possible."""
     before, start = _peak_memory(), time.process_time()
     alarm = hasattr(signal, "SIGALRM") and threading.current_thread() is threading.main_thread()
     previous = signal.signal(signal.SIGALRM, _end) if alarm else None
     try:
-        signal.alarm(60) if alarm else None
+        signal.alarm(PATIENCE) if alarm else None
         yield
     finally:
         if alarm:

@@ -1,16 +1,10 @@
-"""Registry of unknowns: work of adhesion, friction, errors of a machine, and the cost of a new one."""
+"""Registry of unknowns: work of adhesion, friction, and errors of a machine."""
 
 import copy
-import json
-import os
 import pickle
 import re
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from math import pi, sqrt
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,7 +17,6 @@ from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
 
 from ..extent import some
-from ..places import CONTRIBUTING
 
 HIP = bs.joints["hess-forsbach"]
 FORCE = np.linspace(0.5, 40.0, 12)
@@ -153,64 +146,3 @@ def test_a_machine_has_every_registered_error():
     assert replace(machine, offset=0.3).known_errors()["press.offset"] == 0.3
     with pytest.raises(AttributeError, match="no attribute 'offsett'"):
         _ = Machine().offsett
-
-
-PAGE = (CONTRIBUTING / "unknown.md").read_text("utf-8")
-FILES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-PATHS = re.findall(r"`src/ballsocket/identification/(\w+)\.py`", PAGE)[:2]
-
-SCRIPT = """
-import json
-import numpy as np
-import ballsocket as bs
-from ballsocket.identification import Machine, Measured
-from ballsocket.identification.file import read_identify
-
-hip, force = bs.joints["hess-forsbach"], np.linspace(50.0, 3000.0, 15)
-model = bs.RadialFoundation(modulus=bs.constant(300.0))
-depth = np.asarray(model.press(hip, force=force).indentation) + 0.005 * force / (force + 100.0)
-depths = {"quantity": "indentation", "values": depth, "uncertainty": 1e-5, "force": force}
-machine = Machine(seating=(0.0, 0.02))
-press = Measured(**depths, machine=machine)
-by_depth = Measured(quantity="force", values=force, uncertainty=0.1, indentation=depth, machine=machine)
-free = {"foundation_modulus": (100.0, 800.0)}
-points = [bs.identify(bs.HessForsbach(), hip, data, free).point for data in (press, by_depth)]
-known = bs.identify(bs.HessForsbach(), hip, Measured(**{**depths, "uncertainty": 1e-4}), free)
-open("data.toml", "w").write(
-    'model = "hess-forsbach"\\njoint = "hess-forsbach"\\n[free]\\nfoundation_modulus = "100..800 MPa/mm"\\n'
-    '[machine.frame]\\nseating = "0..20 um"\\n'
-    f'[[data]]\\nquantity = "indentation"\\nvalues = {depth.tolist()}\\nforce = {force.tolist()}\\n'
-    'uncertainty = "0.01 um"\\nmachine = "frame"\\n'
-)
-from_file = read_identify("data.toml").identify_unknowns()
-summary = [from_file.point, from_file["foundation_modulus"].unit]
-print(json.dumps([*points, *summary, known.notes]))
-"""
-
-
-@pytest.mark.long
-def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(tmp_path):
-    """In a copy of the package with the two files of the page, by loads of both kinds, and from a file."""
-    room = tmp_path / "ballsocket" / "identification"
-    shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
-    registry = (room / "registry.py").read_text("utf-8")
-    for name, text, tuple_name in zip(PATHS, FILES, ("_MODEL_NUMBERS", "_MACHINE_ERRORS"), strict=True):
-        (room / f"{name}.py").write_text(text, "utf-8")
-        start = f"{tuple_name} = (\n"
-        assert start in registry
-        registry = registry.replace(start, f"from .{name} import {name.upper()}\n\n{start}    {name.upper()},\n")
-    (room / "registry.py").write_text(registry, "utf-8")
-    (tmp_path / "script.py").write_text(SCRIPT, "utf-8")
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    environment |= {"PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
-    completed = subprocess.run(
-        [sys.executable, "script.py"], cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", check=False
-    )
-    assert completed.returncode == 0, completed.stderr
-    by_force, by_depth, from_file, unit, notes = json.loads(completed.stdout)
-    truth = {"foundation_modulus": 300.0, "machine.seating": 0.005}
-    assert by_force == pytest.approx(truth, rel=1e-3)
-    assert by_depth == pytest.approx(truth, rel=1e-3)
-    assert from_file == pytest.approx({"foundation_modulus": 300.0, "frame.seating": 0.005}, rel=1e-3)
-    assert unit == "MPa/mm"
-    assert any(note.startswith("a seating of 1 µm would move foundation_modulus by") for note in notes)

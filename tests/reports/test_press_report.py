@@ -16,9 +16,9 @@ import pytest
 import ballsocket as bs
 from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number
 from ballsocket.core.unit_systems import Units
+from ballsocket.design_checks import checks_at, checks_of, verdict_of, wear_check
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
-from ballsocket.reports.check_table import checks_at, checks_html, checks_of, verdict_of, wear_check
-from ballsocket.reports.pages import table, write_page
+from ballsocket.reports.pages import checks_html, table, write_page
 from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_sections
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.studies import tolerance
@@ -157,6 +157,7 @@ def test_the_report_of_a_tilted_cup_has_its_head_the_place_of_the_contact_and_to
     assert "in which the ball pushes into the cup, in the body: straight up" in unescape(text)
     assert "From 3 presses by sphere" in text
     assert "largest over allowable pressure pmax/pa" in text
+    assert numbers["verdict"]["reason"].partition(";")[0] in unescape(text)
 
 
 @pytest.mark.long

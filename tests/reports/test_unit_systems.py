@@ -41,26 +41,6 @@ def test_the_name_of_a_joint_stays():
     assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(joint_sentence(joint))
 
 
-STUDY = """
-model = "tabulated"
-joint = {ball_radius = "14 mm", clearance = "0.1 mm", liner_thickness = "8 mm"}
-liner = {material = "uhmwpe"}
-[axes]
-clearance = ["0.05 mm", "0.2 mm"]
-force = ["4.4482216152605 N", "2 kN"]
-"""
-
-
-@pytest.mark.long
-def test_a_study_prints_and_draws_in_inches_and_pounds(tmp_path):
-    (tmp_path / "study.toml").write_text(STUDY)
-    done = run("study", "study.toml", "--units", "imperial", "--figure", "study.svg", folder=tmp_path)
-    assert (done.returncode, re.findall(METRIC, done.stdout)) == (0, []), done.stderr
-    assert re.search(r"F 1\s", done.stdout)
-    refused = run("hip", "hip.toml", "--units", "imperial", "--report", "hip.html", folder=tmp_path)
-    assert refused.returncode == 2
-
-
 @pytest.mark.long
 def test_orientations_print_and_draw_in_inches_and_pounds(tmp_path):
     angles = ("--inclination", "40..50", "--anteversion", "10..20", "--step", "10 deg", "--ring-width", "6 deg")

@@ -29,6 +29,7 @@ from ballsocket.studies.task import Blocks
 
 from ..cli.command import run
 from ..places import symlink_or_skip
+from ..processes import PATIENCE
 from .servers import cluster
 
 HIP = bs.joints["hess-forsbach"]
@@ -270,11 +271,11 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
     """`dask scheduler` and two of `dask worker`, which share the blocks: the CSV is that of one process."""
     from distributed import Client
 
-    several = "force = { from = '0.1 kN', to = '3 kN', count = 10 }"  # exact presses: several blocks
+    several = "force = { from = '0.1 kN', to = '3 kN', count = 4 }"  # exact presses: several blocks
     text = f"model = 'exact'\n{ORDERED.replace('force = 3000', several)}"
     with cluster(tmp_path, 2, DEVNULL) as (_, address):
         with Client(address) as client:
-            client.wait_for_workers(2, timeout=600)
+            client.wait_for_workers(2, timeout=PATIENCE)
         for name, engine in (("here", ""), ("there", f"[engine]\nkind = 'dask'\naddress = '{address}'\n")):
             (tmp_path / f"{name}.toml").write_text(text.replace("[axes]", f"{engine}[axes]"), encoding="utf-8")
             told = run("study", f"{name}.toml", "--store", f"{name}.zarr", "--out", f"{name}.csv", folder=tmp_path)

@@ -33,15 +33,7 @@ from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
 from ..version import __version__
 from .model_file import requested_model
-from .options import (
-    GapName,
-    JointName,
-    JointOptions,
-    ModelName,
-    OutputOptions,
-    expand_groups,
-    needed_load,
-)
+from .options import GapName, JointName, JointOptions, ModelName, OutputOptions, expand_groups, needed_load
 from .root import app, print_message
 
 _POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."

@@ -27,14 +27,7 @@ from ..reports.terminal import print_answer
 from ..version import __version__
 from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model
-from .options import (
-    GapName,
-    JointName,
-    JointOptions,
-    OutputOptions,
-    expand_groups,
-    needed_load,
-)
+from .options import GapName, JointName, JointOptions, OutputOptions, expand_groups, needed_load
 from .root import app, fail
 
 
@@ -110,12 +103,7 @@ def film(
     output.check()
     file = joint_options.read(joint)
     films = [
-        compute_film(
-            contact,
-            spin=inputs.spin_of(contact),
-            lubricant=inputs.lubricant(),
-            method=inputs.method,
-        )
+        compute_film(contact, spin=inputs.spin_of(contact), lubricant=inputs.lubricant(), method=inputs.method)
         for contact in _contacts(model, gap, file, rings)
     ]
     output.print(
@@ -135,9 +123,7 @@ def _contacts(names: list[str] | None, gap: str | None, file: JointFile, rings: 
     """
     load = needed_load(file)
     question = PressQuestion(
-        file=file,
-        models={model.name: model for model in map(requested_model, names or ())},
-        sphere=rings.model(),
+        file=file, models={model.name: model for model in map(requested_model, names or ())}, sphere=rings.model()
     )
     contacts = []
     for chosen in question.chosen.values():

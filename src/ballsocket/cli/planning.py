@@ -132,13 +132,7 @@ class PlanInputs(Table, frozen=True, kw_only=True):
 
 @app.command()
 @expand_groups
-def planning(
-    *,
-    files: PlanFiles,
-    inputs: PlanInputs,
-    units: UnitSystem = Units.SI,
-    as_json: AsJson = False,
-) -> None:
+def planning(*, files: PlanFiles, inputs: PlanInputs, units: UnitSystem = Units.SI, as_json: AsJson = False) -> None:
     """Read landmarks, liner, head and worn bore of a hip.
 
     Landmarks give the pelvic frame, the side, and the radiographic angles of the cup from points on its rim. Meshes

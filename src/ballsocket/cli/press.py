@@ -23,7 +23,7 @@ from ..core.validity import Status
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
-from ..press_answer import describe_curve, press_remarks
+from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_answer, print_press
 from ..version import __version__
@@ -169,10 +169,15 @@ class PressedJoint:
         for result in summary["results"] if friction.friction is not None else ():
             contact = comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
-        pull_out = None if pulled is None else pulled.summary()
-        preload = {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth}
-        further = {"assumptions": list(self.answer.assumptions), "preload": preload, "orientation": self.orientation}
-        return {**summary, **{key: part for key, part in {**further, "pull_out": pull_out}.items() if part}}
+        verdict, reason = design_verdict(self.answer)
+        further = {
+            "verdict": {"model": self.answer.leading, "verdict": verdict.word, "reason": reason},
+            "assumptions": list(self.answer.assumptions),
+            "preload": {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth},
+            "orientation": self.orientation,
+            "pull_out": None if pulled is None else pulled.summary(),
+        }
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:

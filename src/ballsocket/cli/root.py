@@ -55,22 +55,20 @@ class PlainCommand(TyperCommand):
 def _pass_plain_values(parameter: Any) -> Any:
     """Let a parameter pass texts and defaults unchecked: pydantic, which checks them, takes 0.2 s to import."""
     annotation = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
-    if annotation is not None and not parameter.required and "process_value" not in vars(parameter):
-        parameter.process_value = _with_plain_values(parameter, annotation, parameter.process_value)
-    return parameter
-
-
-def _with_plain_values(parameter: Any, annotation: Any, process_value: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that passes values of the annotated type, and processes other values as typer does."""
+    if annotation is None or parameter.required or "process_value" in vars(parameter):
+        return parameter
+    process_value = parameter.process_value
 
     def process(ctx: Any, value: Any) -> Any:
+        """Pass a value of the annotated type, and process another value as typer does."""
         if annotation == list[str] and all(isinstance(text, str) for text in value or ()):
             value = list(value or ())
         elif not isinstance(annotation, type) or not (value is None or isinstance(value, annotation)):
             return process_value(ctx, value)
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
 
-    return process
+    parameter.process_value = process
+    return parameter
 
 
 class Program(typer.Typer):

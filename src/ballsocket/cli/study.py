@@ -124,9 +124,9 @@ def _progress_bar(store: str | Path | None) -> Iterator[Listener]:
     def update(state: StudyProgress) -> None:
         """Update the bar, which starts with the first finished block."""
         progress.start()
-        progress.update(
-            task, description="pressing", completed=state.n_done, total=state.n_points, state=_progress_text(state)
-        )
+        remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
+        text = f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"
+        progress.update(task, description="pressing", completed=state.n_done, total=state.n_points, state=text)
         latest[:] = [state]
 
     try:
@@ -146,8 +146,3 @@ def _stop(progress: Progress) -> None:
     """Stop a progress bar that started; one that never started would print an empty line."""
     if progress.live.is_started:
         progress.stop()
-
-
-def _progress_text(state: StudyProgress) -> str:
-    remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
-    return f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"

@@ -38,7 +38,7 @@ def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple
 
 @cache
 def foundation_kernel(formula: Formula, motion: Kinematics) -> Any:
-    """Return the compiled loop over contacts for one modulus and one kinematics; inputs are numbers or arrays."""
+    """Return the compiled loop over contacts for one modulus and one kinematics. Each input is a number or an array."""
     modulus = inline_formula(formula)
     indentation = inline_formula(motion.indentation)
     force_law = inline_formula(motion.force)

@@ -218,7 +218,7 @@ for _tabulated_formula in (
 
 @cache
 def _tabulated_kernel(kind: str) -> Any:
-    """Return the compiled loop of `Tabulated` for given forces or indentations; inputs are numbers or arrays."""
+    """Return the compiled loop over contacts of `Tabulated` for one kind of load; inputs are numbers or arrays."""
     formulas = _VECTOR_FORMULAS
     residual = formulas[inverse.INVERSES[kind].residual.__name__]
     log_share = formulas[inverse.INVERSES[kind].log_share.__name__]

@@ -361,7 +361,6 @@ class Contact(Outcome):
 
     @staticmethod
     def _check_friction(coefficient: Array, axis_angle: float) -> Array:
-        """Check a coefficient of friction and the angle of an axis in rad, and return the coefficient."""
         if isinstance(coefficient, tuple | list):
             raise TypeError(
                 f"coefficient must be a number or an array, got the {type(coefficient).__name__} {shown(coefficient)}"

@@ -147,7 +147,6 @@ def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, hig
 
 @cache
 def _chebyshev_to_power_matrix() -> Numbers:
-    """Compute the matrix that converts coefficients of Chebyshev polynomials to those of powers of x."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])

@@ -106,7 +106,8 @@ class Model(PressModel):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        if self._can_press_with_floats(joint, value):
+        all_plain = all(map(arrays.is_plain_number, (*joint.numbers(), value)))
+        if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
             try:
                 return self._press_with_floats(joint, kind, float(value))
             except ArithmeticError:
@@ -117,12 +118,6 @@ class Model(PressModel):
             result = self._solve(array_joint, kind, load)
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
-
-    def _can_press_with_floats(self, joint: Joint, load: Array) -> bool:
-        """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""
-        plain_parameters = (type(number) in (float, int) for number in self.parameters)
-        all_numbers_plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
-        return self.accepts_floats and all_numbers_plain and all(plain_parameters)
 
     def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact:
         """Compute the contact of a joint of Python floats, which is faster than arrays."""

@@ -27,6 +27,9 @@ class ModelInfo(ABC):
     planar: ClassVar[bool] = False
     """True if the contact is a flat circle whose pressure has one direction, False if it acts along the radius."""
 
+    is_closed_sphere: ClassVar[bool] = False
+    """True for an accurate model of a closed sphere: a cup with a free rim is softer, and its stress may be higher."""
+
     @property
     @abstractmethod
     def name(self) -> str:
@@ -106,7 +109,6 @@ class Outcome(ABC):
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
-        """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property

@@ -11,16 +11,7 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import (
-    Array,
-    all_true,
-    logical_not,
-    namespace,
-    safe_divisor,
-    stop_gradient,
-    where,
-    without_gradients,
-)
+from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where, without_gradients
 
 Increasing = Callable[..., tuple[Array, Array]]
 """Increasing function: x, ... -> (value, slope), both of the shape of x."""

@@ -154,15 +154,15 @@ class Grid(NamedTuple):
 
 def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
     """Write the cells of a table up to a rank in a system of units."""
-    columns = [column for column in table.columns if column.rank <= most_rank]
+    shown = [index for index, column in enumerate(table.columns) if column.rank <= most_rank]
+    columns = [table.columns[index] for index in shown]
     written = [units.written(column.unit or PLAIN) for column in columns]
     rows = [row for row in table.rows if row.rank <= most_rank]
     lines = [(cells, row.verdict) for row in rows for cells in (row.cells, *row.below)]
     texts = [
         [
-            _text(cell, column, units)
-            for cell, column in zip(cells, table.columns, strict=True)
-            if column.rank <= most_rank
+            _text(cells[index], column, unit.factor, units)
+            for index, column, unit in zip(shown, columns, written, strict=True)
         ]
         for cells, _ in lines
     ]
@@ -170,14 +170,14 @@ def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
     return Grid(columns, heads, unit_texts, texts, [verdict for _, verdict in lines])
 
 
-def _text(cell: Cell, column: Column, units: Units) -> str:
+def _text(cell: Cell, column: Column, factor: float, units: Units) -> str:
+    """Write a cell; `factor` leads from the internal unit to the shown one."""
     if cell is None or isinstance(cell, bool):
         return "-" if cell is None else "yes" if cell else "no"
     if isinstance(cell, str):
         return units.sentence(cell)
     if isinstance(cell, Amount):
         return units.amount(cell)
-    factor = units.written(column.unit or PLAIN).factor
     ends = cell if isinstance(cell, tuple) else (cell,)
     return " to ".join("-" if end != end else plain_number(end * factor, column.digits) for end in ends)
 

@@ -134,7 +134,6 @@ def _has_real_numbers(value: Any) -> bool:
 
 
 def _format_type_error(name: str, value: Any) -> str:
-    """Format the message for a value that is neither a number nor an array of real numbers."""
     text = f"an array of {value.dtype}" if getattr(value, "shape", ()) and hasattr(value, "dtype") else shown(value)
     for kind in type(value).__mro__:
         text = _REJECTED_ARRAYS.get(kind.__name__, text)

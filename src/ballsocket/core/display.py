@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
 from math import isfinite
+from pkgutil import resolve_name
 from typing import Any
 
 
@@ -73,42 +74,35 @@ def plain_number(value: float, digits: int = 4) -> str:
     return f"{value:.0f}" if large else f"{value + 0.0:.{digits}g}"
 
 
+_LEFT = " style='text-align:left'"
+
+
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return an HTML table of texts, the first column on the left."""
-    align = " style='text-align:left'"
-    cells = "".join(f"<th{'' if number else align}>{escape(text)}</th>" for number, text in enumerate(heads))
-    body = "".join(
-        "<tr>"
-        + "".join(f"<td{'' if number else align}>{escape(text)}</td>" for number, text in enumerate(row))
-        + "</tr>"
-        for row in rows
-    )
-    return f"<table><tr>{cells}</tr>{body}</table>"
+
+    def row(tag: str, texts: Sequence[str]) -> str:
+        cells = (f"<{tag}{'' if number else _LEFT}>{escape(text)}</{tag}>" for number, text in enumerate(texts))
+        return f"<tr>{''.join(cells)}</tr>"
+
+    return f"<table>{row('th', heads)}{''.join(row('td', texts) for texts in rows)}</table>"
 
 
 def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     """Return names and values in two columns below a title, as HTML."""
-    align = "style='text-align:left'"
-    body = "".join(f"<tr><td {align}>{escape(name)}</td><td {align}>{escape(text)}</td></tr>" for name, text in rows)
+    body = "".join(f"<tr><td{_LEFT}>{escape(name)}</td><td{_LEFT}>{escape(text)}</td></tr>" for name, text in rows)
     return f"<b>{escape(title)}</b><table>{body}</table>"
 
 
-Plot = Callable[..., Any]  # a function that returns a matplotlib figure
-
-_LOADERS: dict[str, Callable[[], Plot]] = {}
-
-
-def register_plot(name: str, loader: Callable[[], Plot]) -> None:
-    """Register a loader of a plot function by name, so that matplotlib is imported only when a plot is made."""
-    _LOADERS[name] = loader
+PLOTS: dict[str, str] = {}
+"""Plot functions, such as "ballsocket.reports.press_plots:plot", by name; the room of reports adds them."""
 
 
-def load_plot(name: str) -> Plot:
-    """Import and return the plot function registered under a name.
+def load_plot(name: str) -> Callable[..., Any]:
+    """Import and return a function of `PLOTS` that draws a matplotlib figure, when a plot is made.
 
     Raises LookupError: a name that no room has registered.
     """
-    if name not in _LOADERS:
-        known = ", ".join(sorted(_LOADERS)) or "none"
-        raise LookupError(f"plot {name!r} is not registered; registered plots: {known}")
-    return _LOADERS[name]()
+    if name not in PLOTS:
+        raise LookupError(f"plot {name!r} is not registered; registered plots: {', '.join(sorted(PLOTS)) or 'none'}")
+    plot: Callable[..., Any] = resolve_name(PLOTS[name])
+    return plot

@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING or sys.version_info >= (3, 12):
-    from functools import cached_property
+    from functools import cached_property as cached_property
 else:
 
     class cached_property(functools.cached_property):  # noqa: N801 - the name of the standard library
@@ -42,6 +42,3 @@ def imported_names(package: str, names_by_module: Mapping[str, str]) -> Callable
         return value
 
     return get_name
-
-
-__all__ = ["cached_property", "imported_names"]

@@ -27,6 +27,3 @@ else:
 
         def __init__(self, function: Callable[[Any], Any]) -> None:
             super().__init__(wraps(function)(lambda instance: arrays.read_only(function(instance))))
-
-
-__all__ = ["Record", "cached_array"]

@@ -138,22 +138,13 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
-    """Measured accuracy of a model relative to the elastic solution at equal force.
-
-    It applies inside the validity of the model.
+    """Measured accuracy of a model relative to the elastic solution at equal force, inside its validity.
 
     `ballsocket.evidence.validity` measures it: 99 % of the points lie within it, and all within 1.3 times as much.
-
-    Parameters
-    ----------
-    within : float
-        Largest relative difference.
-    quantities : tuple of str
-        Names of the attributes of a `Contact`.
     """
 
-    within: float
-    quantities: tuple[str, ...] = ("indentation", "max_pressure")
+    within: float  # largest relative difference
+    quantities: tuple[str, ...] = ("indentation", "max_pressure")  # names of the attributes of a `Contact`
 
     def __str__(self) -> str:
         return f"within {100 * self.within:g} % in {' and '.join(QUANTITIES[name].symbol for name in self.quantities)}"
@@ -211,11 +202,7 @@ SMALL_STRAIN = Range(
     quantity="depth_ratio", symbol="d/L", high=0.1, why="small strains: the indentation is a tenth of the liner"
 )
 RIGID_BALL = Range(quantity="joint.modulus_ratio", high=0.02, why="the model takes the ball as rigid")
-RIGID_BACKING = Range(
-    quantity="joint.backing_ratio",
-    high=0.01,
-    why="the model takes the liner's backing as rigid",
-)
+RIGID_BACKING = Range(quantity="joint.backing_ratio", high=0.01, why="the model takes the liner's backing as rigid")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -264,22 +251,17 @@ def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
     )
 
 
-def _largest_young(contact: Any) -> Array:
-    """Return the largest Young's modulus of liner, ball and backing in MPa."""
-    return _largest(contact.joint, "young")
-
-
-def largest_poisson(contact: Any) -> Array:
-    """Return the largest Poisson's ratio of liner, ball and backing."""
-    return _largest(contact.joint, "poisson")
-
-
-def _largest(joint: Any, name: str) -> Array:
+def _largest(name: str, contact: Any) -> Array:
+    """Return the largest elastic constant of liner, ball and backing: "young" in MPa, or "poisson"."""
+    joint = contact.joint
     largest = getattr(joint.liner, name)
     for part in (joint.ball, *(layer.material for layer in joint.backing)):
         if part is not None:
             largest = where(getattr(part, name) > largest, getattr(part, name), largest)
     return largest
+
+
+largest_poisson = partial(_largest, "poisson")  # of liner, ball and backing of a contact
 
 
 def _largest_strength(contact: Any) -> Array:
@@ -297,7 +279,7 @@ UNIT_REMARKS = (
         why="R1 is below 0.1 mm, as if lengths were in metres: give lengths in mm, moduli in MPa and forces in N",
     ),
     Remark(
-        quantity=_largest_young,
+        quantity=partial(_largest, "young"),
         symbol="E",
         high=2e6,
         why="a Young's modulus is above 2 million MPa, as if it were in pascals (diamond has 1.1 million MPa): give "

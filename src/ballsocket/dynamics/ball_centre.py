@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
 
-Vector = tuple[Array, Array, Array]
-"""Components of a vector."""
+Vector = tuple[Array, Array, Array]  # components of a vector
 
 
 class Constants(NamedTuple):

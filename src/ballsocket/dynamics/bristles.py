@@ -114,10 +114,15 @@ def bristle_forces(
         bristles.stiffness * bend + damping * change + bristles.viscous * slip_rate
         for bend, change, slip_rate in states
     )
+
+    def dot_product(first: Deflections, second: Deflections) -> Array:
+        x, *others = (a * b for a, b in zip(first, second, strict=True))
+        return sum(others, x)
+
     dissipated = (
-        bristles.stiffness * _dot_product(losses, tangential_deflection)
-        + damping * _dot_product(deflection_rates, slip_components)
-        + bristles.viscous * _dot_product(slip_components, slip_components)
+        bristles.stiffness * dot_product(losses, tangential_deflection)
+        + damping * dot_product(deflection_rates, slip_components)
+        + bristles.viscous * dot_product(slip_components, slip_components)
     )
     touching = slip.normal > 0.0
     released_rate = tuple(
@@ -153,11 +158,4 @@ def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array,
         sqrt(squared_speed),
         (by_slip_and_tilt, by_slip_and_tilt, by_slip_and_tilt, by_spin),
         where(by_slip_and_tilt < by_spin, by_slip_and_tilt, by_spin),
-    )
-
-
-def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
-    return sum(
-        (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
-        first_deflection[0] * second_deflection[0],
     )

@@ -120,8 +120,7 @@ Gonthier = _damping_constructor(relations.gonthier)
 Restitution = _damping_constructor(relations.exact)
 
 
-GRAVITY = 9806.65
-"""Acceleration of gravity in mm/s²."""
+GRAVITY = 9806.65  # acceleration of gravity in mm/s²
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

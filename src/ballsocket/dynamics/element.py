@@ -292,10 +292,7 @@ def components(value: Any, name: str = "a state") -> Vector:
 
 
 def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vector, Vector]:
-    """Split states of a ball, arrays (..., 3), into components in arrays of the position's library.
-
-    Raises ValueError: a vector without three components.
-    """
+    """Split states of a ball, arrays (..., 3), into components in arrays of the position's library."""
     position = check_vectors("position", position, "x, y, z (mm)")
     vectors = [position]
     for name, axes, value in (("velocity", "x, y, z (mm/s)", velocity), ("spin", "x, y, z (rad/s)", spin)):

@@ -131,14 +131,9 @@ def rolling_slip_ratio(versine: Array) -> Array:
 SLIP_FIT = (0.40815, 0.01064, -0.08503, 0.66324, 1.29028)
 """Numbers α0 + α1 m + α2 m², β and θ of `effective_slip`; m is the versine."""
 
-TURN_FIT = (0.47204, -0.15697, 0.48267, 2.85234)
-"""Numbers τ0 + τ1 m + τ2 m² and ν of `effective_slip`."""
-
-DRILL_FIT = (1.54279, 0.61077, 2.43054, 0.65760)
-"""Numbers η0 + η1 m and λ0 + λ1 m of `effective_slip`."""
-
-ROLL_FIT = (0.40882, 0.62470)
-"""Numbers γ and ζ of `effective_slip`."""
+TURN_FIT = (0.47204, -0.15697, 0.48267, 2.85234)  # numbers τ0 + τ1 m + τ2 m² and ν of `effective_slip`
+DRILL_FIT = (1.54279, 0.61077, 2.43054, 0.65760)  # numbers η0 + η1 m and λ0 + λ1 m of `effective_slip`
+ROLL_FIT = (0.40882, 0.62470)  # numbers γ and ζ of `effective_slip`
 
 
 def effective_slip(

@@ -68,19 +68,13 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     drilling_axis = xp.concat([0.0 * direction, direction], axis=-1)[..., None, :]
     normal_axis = xp.concat([direction, 0.0 * direction], axis=-1)[..., None, :]
     turning_rows = xp.concat([zero_block, tangential], axis=-1)
-    directions = normal_axis, mean_rows, drilling_axis, turning_rows
-    return contact_matrix + _film_matrix(centre, _normal_speed(centre, velocity), directions, constants)
-
-
-def _film_matrix(centre: BallCentre, speed: Array, directions: tuple[Array, ...], constants: Constants) -> Array:
-    """Compute the damping matrix (..., 6, 6) of the film, from its rows along, across, drilling and turning."""
     damping = film_damping(centre, constants)
-    coefficients = squeeze_damping(damping, speed, constants)[1], damping.across, damping.drilling, damping.turning
-    terms = [
-        coefficient[..., None, None] * _sum_outer_products(rows, rows)
-        for coefficient, rows in zip(coefficients, directions, strict=True)
-    ]
-    return terms[0] + terms[1] + terms[2] + terms[3]
+    along = squeeze_damping(damping, _normal_speed(centre, velocity), constants)[1]
+    film_matrix = along[..., None, None] * _sum_outer_products(normal_axis, normal_axis)
+    film_matrix = film_matrix + damping.across[..., None, None] * _sum_outer_products(mean_rows, mean_rows)
+    film_matrix = film_matrix + damping.drilling[..., None, None] * _sum_outer_products(drilling_axis, drilling_axis)
+    film_matrix = film_matrix + damping.turning[..., None, None] * _sum_outer_products(turning_rows, turning_rows)
+    return contact_matrix + film_matrix
 
 
 def _damping_coefficients(

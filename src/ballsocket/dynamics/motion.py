@@ -13,8 +13,7 @@ from ..core.sources import Source
 from .element import ForceElement
 from .load import Load
 
-TONNE = 1e-3
-"""Tonnes in a kilogram: N, mm, s and t form a consistent system."""
+TONNE = 1e-3  # tonnes in a kilogram: N, mm, s and t form a consistent system
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

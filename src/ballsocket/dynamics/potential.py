@@ -19,8 +19,7 @@ from ..models.closed_form import ClosedForm, ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..problem import Joint
 
-Slopes = tuple[Array, Array, Array]
-"""Energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm."""
+Slopes = tuple[Array, Array, Array]  # energy U in N mm, force F = dU/dd in N, and stiffness k = dF/dd in N/mm
 
 
 class Potential(Protocol):
@@ -143,10 +142,7 @@ def energy_derivatives_of_array(indentation: Array, curve: CurveLaw) -> Slopes:
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law.
-
-    Raises TypeError, ValueError: the errors of `model.law(joint)`.
-    """
+    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law."""
     law = model.law(joint)
     if isinstance(law, FoundationLaw):
         return SpringPotential(springs=law)

@@ -33,8 +33,7 @@ from .load import ContactState, describe_load, is_finite_state, tangent_matrix, 
 from .matrices import join_vector
 from .potential import CurvePotential
 
-NODES = 7
-"""Number of tabulated directions, from the dome to the opening."""
+NODES = 7  # number of tabulated directions, from the dome to the opening
 
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
@@ -103,10 +102,7 @@ class PreloadTable:
 
 
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
-    """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
-
-    Raises ValueError: a joint without an interference; a socket that does not hold its ball.
-    """
+    """Solve the contacts of a preloaded joint in seven directions, fit curves to them, and check the force."""
     equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:
         raise ValueError(f"the preloaded ball has no equilibrium in its socket: {'; '.join(equilibrium.notes)}")

@@ -121,5 +121,4 @@ flores = Relation(
 )
 """h = 8 (1 - e)/(5 e)."""
 
-relations = (hunt_crossley, lankarani_nikravesh, flores, gonthier, exact)
-"""All relations."""
+relations = (hunt_crossley, lankarani_nikravesh, flores, gonthier, exact)  # all relations

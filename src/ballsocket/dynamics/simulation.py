@@ -218,10 +218,7 @@ class StatefulIntegrator:
     pull: Callable[[float], Vector]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """Integrate the motion of a ball from an initial state, with steps of at most `step` seconds.
-
-        `times` increase; the initial state is that at the first time.
-        """
+        """Integrate the motion from an initial state at the first time, with steps of at most `step` seconds."""
         state = numpy.zeros(_STATE_SIZE)
         state[:9] = initial
         states, attachments, failure = [state], [self._is_touching(state)], None

@@ -20,8 +20,7 @@ from . import film
 from .ball_centre import BallCentre, Constants, Vector, ball_centre_at, dome_angle
 from .reaction import Elastic, dissipation, elastic_contact, force_and_moment, normal_force, sliding_state
 
-MAX_ITERATIONS = 60
-"""Largest number of iterations of a step."""
+MAX_ITERATIONS = 60  # largest number of iterations of a step
 
 
 class BallState(NamedTuple):

@@ -34,6 +34,7 @@ BEYOND = {
     "stop": ContactState.THROUGH_WALL.sentence,
 }
 """What an exported element says of an indentation beyond the range of its law, by what it does there."""
+
 Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
 
 
@@ -346,7 +347,6 @@ def first_load_distance(constants: Constants) -> float:
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:
-    """Return the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if is_positive else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'

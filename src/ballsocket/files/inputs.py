@@ -105,8 +105,9 @@ _NOT_IN_FILES = ("orientation", "pelvic_tilt")
 
 _PREFIXES = {"ball": "ball_", "shell": "shell_"}  # beginnings of the names of options by table
 
+_LENGTHS = {name: canonical(name) for name in LENGTHS}
 _RIVALS = (
-    *([name for name in LENGTHS if canonical(name) == length] for length in dict.fromkeys(map(canonical, LENGTHS))),
+    *([name for name in LENGTHS if _LENGTHS[name] == length] for length in dict.fromkeys(_LENGTHS.values())),
     tuple(LOADS),
     ("tilt", "direction"),
 )
@@ -181,7 +182,7 @@ class Input:
         """Words that the key allows, or the names that it knows; empty for other keys."""
         return choices_in(self.type)
 
-    @property
+    @cached_property
     def meaning(self) -> str:
         """Meaning of the key."""
         return meaning_of(self.key, self.type)

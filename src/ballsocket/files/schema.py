@@ -55,6 +55,10 @@ class Value(ABC):
     schema: ClassVar[Mapping[str, Any]] = {}
     """JSON schema of the accepted values."""
 
+    def __init_subclass__(cls, kind: Kind | None = None) -> None:
+        super().__init_subclass__()
+        cls.kind = kind or cls.kind
+
     @classmethod
     @abstractmethod
     def read(cls, name: str, value: Any) -> Self:
@@ -66,7 +70,7 @@ class Value(ABC):
     @classmethod
     def of(cls, kind: Kind) -> type[Self]:
         """Return the type of such values with numbers of a physical kind."""
-        return type(cls.__name__, (cls,), {"kind": kind, "__doc__": cls.__doc__})
+        return type(cls.__name__, (cls,), {"__doc__": cls.__doc__}, kind=kind)
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -203,52 +207,36 @@ class PlainNumber(QuantityValue):
     """Plain number without a unit."""
 
 
-class Length(QuantityValue):
+class Length(QuantityValue, kind=Kind.LENGTH):
     """Length in mm."""
 
-    kind = Kind.LENGTH
 
-
-class Force(QuantityValue):
+class Force(QuantityValue, kind=Kind.FORCE):
     """Force in N."""
 
-    kind = Kind.FORCE
 
-
-class Pressure(QuantityValue):
+class Pressure(QuantityValue, kind=Kind.MODULUS):
     """Modulus, stress or pressure in MPa."""
 
-    kind = Kind.MODULUS
 
-
-class Viscosity(QuantityValue):
+class Viscosity(QuantityValue, kind=Kind.VISCOSITY):
     """Dynamic viscosity in Pa s."""
 
-    kind = Kind.VISCOSITY
 
-
-class RotationRate(QuantityValue):
+class RotationRate(QuantityValue, kind=Kind.ROTATION_RATE):
     """Rotation rate in rad/s."""
 
-    kind = Kind.ROTATION_RATE
 
-
-class Duration(QuantityValue):
+class Duration(QuantityValue, kind=Kind.DURATION):
     """Time in s."""
 
-    kind = Kind.DURATION
 
-
-class Speed(QuantityValue):
+class Speed(QuantityValue, kind=Kind.SPEED):
     """Speed in mm/s."""
 
-    kind = Kind.SPEED
 
-
-class Angle(QuantityValue):
+class Angle(QuantityValue, kind=Kind.ANGLE):
     """Angle in rad; a bare number of a file is in degrees."""
-
-    kind = Kind.ANGLE
 
 
 class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):

@@ -25,8 +25,7 @@ from .variability import (
 )
 from .wear_law import COEFFICIENT, coefficient_field
 
-CONVERTED = ("volume", "depth", "penetration")
-"""Results that are converted to shared coefficients."""
+CONVERTED = ("volume", "depth", "penetration")  # results that are converted to shared coefficients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from math import inf, isnan
@@ -18,8 +18,7 @@ from ..studies.sensitivity_answer import IndexEntry, share_table
 from .bands import Bands
 from .variability import INFLUENCED_RESULTS
 
-_ANY = "any"
-"""Wear coefficient of a row that holds for all coefficients."""
+_ANY = "any"  # wear coefficient of a row that holds for all coefficients
 
 
 def describe_bands(bands: Bands) -> Answer:
@@ -67,15 +66,12 @@ def band_table(bands: Bands) -> Table:
         if shared is not None:
             rows += [row(report, name, partial(shared.quantile, name), None) for name in shared.values]
         rows.append(row(report, _ANY, bands.quantile, bands.edge_loaded_fraction(report)))
-    return Table("bands", "Bands of different patients", columns, rows, [*_rim_lines(bands), _contact_line(bands)])
-
-
-def _rim_lines(bands: Bands) -> Iterator[Sentence]:
-    """Describe the shares with a contact at the rim."""
-    for report, count in enumerate(bands.counts):
-        share = Amount(bands.edge_loading(report), PERCENT, 3)
-        after = Amount(count, MILLIONS)
-        yield Sentence("contact at the rim, worn to it or edge loading: {} after {} cycles", share, after)
+    text = "contact at the rim, worn to it or edge loading: {} after {} cycles"
+    lines = [
+        Sentence(text, Amount(bands.edge_loading(report), PERCENT, 3), Amount(count, MILLIONS))
+        for report, count in enumerate(bands.counts)
+    ]
+    return Table("bands", "Bands of different patients", columns, rows, [*lines, _contact_line(bands)])
 
 
 def _contact_line(bands: Bands) -> str:

@@ -18,17 +18,9 @@ from ..core.storage.pieces import PieceRun, check_worker_code, fingerprint, hash
 from ..studies.axes import SampleAxis
 from .cup_frame import ANGLES
 from .simulation import make_checkpoint
-from .variability import (
-    RESULT_UNITS,
-    CohortResult,
-    PatientVariability,
-    contact_table,
-    join_results,
-    result_table,
-)
+from .variability import RESULT_UNITS, CohortResult, PatientVariability, contact_table, join_results, result_table
 
-PATIENTS_PER_PIECE = 16
-"""Patients of one piece of work: about half a second."""
+PATIENTS_PER_PIECE = 16  # patients of one piece of work: about half a second
 
 _MAX_PATIENTS = 1_000_000
 _COPIES = 4  # copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band
@@ -37,8 +29,7 @@ _LABEL_NAME = "patients.json"  # name of the file with the identity of a stored 
 _SERIAL = Serial()
 _SUFFIXES = {"clearance": "_mm", "body_weight": "_N", **dict.fromkeys(ANGLES, "_deg")}  # units in the table's columns
 
-ProgressCallback = Callable[[int], None]
-"""Function that is called with the number of finished patients."""
+ProgressCallback = Callable[[int], None]  # function that is called with the number of finished patients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,10 +54,7 @@ class CohortRun:
         return range(piece * PATIENTS_PER_PIECE, min((piece + 1) * PATIENTS_PER_PIECE, len(self)))
 
     def __call__(self, piece: int) -> CohortResult:
-        """Simulate the patients of one piece (group of patients).
-
-        Raises ValueError: this worker has another version of the package than the process that started the run.
-        """
+        """Simulate the patients of one piece (group of patients)."""
         check_worker_code(self.code)
         tables, contacts, errors = zip(
             *(self._simulate_patient(patient_index) for patient_index in self.patient_numbers(piece)), strict=True
@@ -91,10 +79,7 @@ class CohortRun:
         store: CohortStore | None = None,
         progress: ProgressCallback = lambda finished: None,
     ) -> CohortResult:
-        """Simulate all patients of the cohort, except those whose results are stored.
-
-        Raises OSError: the store is not writable or the disk is full.
-        """
+        """Simulate all patients of the cohort, except those whose results are stored."""
         if store is not None:
             store.create()
         coarse = replace(self, variability=replace(self.variability, use=self.variability.coarse_simulation))
@@ -145,7 +130,6 @@ class CohortStore(ArrayPieceStore):
             return None
 
     def to_arrays(self, result: CohortResult) -> dict[str, Numbers]:
-        """Return the arrays of a result by name."""
         return {array.name: getattr(result, array.name) for array in fields(result)}
 
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> CohortResult | None:
@@ -191,10 +175,7 @@ def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> Non
 
 
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
-    """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`.
-
-    Raises ValueError: fewer than one patient, too many, or a negative seed.
-    """
+    """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`."""
     require("patients", count, 1 <= count <= _MAX_PATIENTS, f"it must be 1 to {_MAX_PATIENTS}")
     require("seed", seed, seed >= 0, "it must be at least 0")
     return SampleAxis(count=count, distributions=tuple(variability.distributions.items()), seed=seed).values
@@ -213,10 +194,7 @@ def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, N
 
 
 def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
-    """Write the patient table to a CSV file, local or remote, one row for each patient, and return its path.
-
-    Raises OSError: the folder is not writable or the disk is full.
-    """
+    """Write the patient table to a CSV file, local or remote, one row for each patient, and return its path."""
     names, columns = zip(*table_columns(run, result), strict=True)
     folder_at(path.parent).write_blocks(path.name, _csv_blocks(names, columns))
     return path

@@ -31,8 +31,7 @@ from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
 from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, CohortResult
 
-N_HELD_OUT = 64
-"""Number of patients that are simulated to estimate the error of a series: the first of the cohort."""
+N_HELD_OUT = 64  # number of patients that are simulated to estimate the error of a series: the first of the cohort
 
 _REFERENCE_COUNT = 65_536  # number of samples that set the ranges of a series, for a cohort of any size
 _FIRST_DEGREES = (0, 12, 10, 7, 6)  # degree of the first series by the number of its variables besides the clearance
@@ -50,8 +49,7 @@ _LEAST_WIDTH = 1e-9  # relative width below which a range is one number
 _MAX_CUT = 1e-3  # largest fraction of patients outside the covered orientations for which Sobol indices are computed
 _SOBOL_COUNT = 4096  # samples in each set of the Sobol indices
 
-METHODS = ("series", "runs")
-"""Methods of a cohort: a series of polynomials, or a simulation of each patient."""
+METHODS = ("series", "runs")  # methods of a cohort: a series of polynomials, or a simulation of each patient
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,7 +123,6 @@ class CohortSeries:
 
     @property
     def first_degree(self) -> int:
-        """Degree of the first series."""
         return _FIRST_DEGREES[len(set(self.family.box.axes) - {CLEARANCE})]
 
     @property

@@ -264,10 +264,7 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 
 
 def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
-    """Return the foundation of the socket by its name in files, with the model of its springs.
-
-    Raises ValueError: a model without springs, or next to another foundation.
-    """
+    """Return the foundation of the socket by its name in files, with the model of its springs."""
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
         if model is not None:
@@ -347,7 +344,15 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
     }
     count = int(table.count)
     require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
-    weight = _body_weight(tables) if "body_weight" in distributions else None
+    weight = None
+    if "body_weight" in distributions:  # the one that the forces refer to
+        cycles = [tables.cycle] if tables.cycle is not None else tables.activity or []
+        weights = {one.body_weight for one in (tables, *cycles) if one.body_weight is not None}
+        if len(weights) > 1:
+            raise ValueError(
+                "body_weight has several values, but patients need one: give it once, at the top of the file"
+            )
+        weight = float(weights.pop()) if weights else None
     variability = PatientVariability(
         use=use, distributions=distributions, body_weight=weight, surface=_ELASTIC_SURFACES[table.contact]
     )
@@ -355,12 +360,3 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
         if name in distributions:
             check_nominal(name, float(value), distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
     return UncertaintySettings(variability=variability, count=count, seed=int(table.seed))
-
-
-def _body_weight(tables: HipTable) -> float | None:
-    """Return the body weight in N that the forces refer to; None if the file states no body weight."""
-    cycles = [tables.cycle] if tables.cycle is not None else tables.activity or []
-    stated = {table.body_weight for table in (tables, *cycles) if table.body_weight is not None}
-    if len(stated) > 1:
-        raise ValueError("body_weight has several values, but patients need one: give it once, at the top of the file")
-    return float(stated.pop()) if stated else None

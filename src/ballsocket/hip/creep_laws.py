@@ -126,11 +126,7 @@ CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 
 
 def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
-    """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio.
-
-    Raises ValueError: an unknown law or confinement, a missing key, a key of another law, or a value that is not
-    allowed.
-    """
+    """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio."""
     name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
     law = select_law_class(table, CREEP_LAWS, "creep law")
     return read_law(table, CREEP_LAWS, law, confinement=CONFINEMENTS[name](poisson))

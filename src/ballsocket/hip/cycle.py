@@ -16,8 +16,7 @@ from ..core.checks import check_whole_number, require
 from ..core.kinds import Kind
 from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
 
-DEFAULT_STEPS = 100
-"""Number of time steps of a cycle, unless another is set."""
+DEFAULT_STEPS = 100  # number of time steps of a cycle, unless another is set
 
 MIN_STEPS, MAX_STEPS = 8, 10_000
 _PEAK_SAMPLES = 10_000  # number of intervals in which the largest force of a cycle is searched
@@ -198,21 +197,18 @@ class Cycle:
 
     def mirrored(self) -> Cycle:
         """Return this cycle for the other side of the body: lateral forces and rotations change sign."""
+
+        def mirrored_force(phases: Numbers) -> Numbers:
+            force = numpy.asarray(self.force(phases), dtype=float)
+            return force if force.ndim == 1 or self.frame is Frame.CUP else _MIRRORED_FORCE * force
+
         # M Rx(a) Ry(b) Rz(c) M = Rx(a) Ry(-b) Rz(-c), M = diag(-1, 1, 1)
         spring = self.spring
         if spring is not None and self.frame is Frame.BODY:
             spring = replace(spring, mismatch=-spring.mismatch)
         return replace(
-            self,
-            force=self._mirrored_force,
-            angles=lambda phases: _MIRRORED_ANGLES * self.angles(phases),
-            spring=spring,
+            self, force=mirrored_force, angles=lambda phases: _MIRRORED_ANGLES * self.angles(phases), spring=spring
         )
-
-    def _mirrored_force(self, phases: Numbers) -> Numbers:
-        """Compute the forces in N of the mirrored cycle at phases from 0 to 1."""
-        force = numpy.asarray(self.force(phases), dtype=float)
-        return force if force.ndim == 1 or self.frame is Frame.CUP else _MIRRORED_FORCE * force
 
     def scaled(self, factor: float) -> Cycle:
         """Return this cycle with all forces multiplied by a factor."""

@@ -231,11 +231,7 @@ def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
 
 
 def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:
-    """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
-
-    Raises ValueError: a key, name or value is not allowed; the message suggests the closest one.
-    Raises OSError: a table cannot be read.
-    """
+    """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables."""
     weight = None if tables.body_weight is None else check_body_weight(float(tables.body_weight))
     if tables.activity is None:
         return _create_cycle(tables.cycle or CycleKeys(), folder, weight, "[cycle]")

@@ -115,24 +115,15 @@ def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     reactions: set[tuple[str, str]] = set()
     for head in names:
         if (angle := _OPENSIM_ANGLE.fullmatch(head)) and angle[2] == letter:
-            columns[angle[1]] = _angle_factor(table) * table.numbers(head)
+            if table.in_degrees is None:
+                raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")
+            columns[angle[1]] = (pi / 180 if table.in_degrees else 1.0) * table.numbers(head)
         elif (force := _OPENSIM_REACTION.fullmatch(head)) and force[1] == letter:
             reactions.add((force[2], force[3]))
             columns[_OPENSIM_AXES[force[4]]] = table.numbers(head)
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")
-    return _with_reaction_frame(columns, reactions)
-
-
-def _angle_factor(table: NumberTable) -> float:
-    """Return the factor that converts the angles of an OpenSim table to rad."""
-    if table.in_degrees is None:
-        raise ValueError("the header does not state the unit of angles: it needs inDegrees=yes or inDegrees=no")
-    return pi / 180 if table.in_degrees else 1.0
-
-
-def _with_reaction_frame(columns: dict[str, Numbers], reactions: set[tuple[str, str]]) -> HipColumns:
     if not reactions:
         return HipColumns(columns=columns)
     if len(reactions) > 1:
@@ -158,8 +149,7 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
     return replace(reaction, columns=columns)
 
 
-DEFAULT_CLOSURE = 0.01
-"""Largest difference between the ends of a column, as a share of its range."""
+DEFAULT_CLOSURE = 0.01  # largest difference between the ends of a column, as a share of its range
 
 _MAX_STEP_RATIO = 3.0  # longest time step as a multiple of the median step; a longer one is a gap
 _TIME_TOLERANCE = 1e-6  # difference by which two tables may end apart, as a share of the duration

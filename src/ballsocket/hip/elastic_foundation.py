@@ -101,7 +101,6 @@ class ElasticFoundation(SocketFoundation):
 
     @property
     def grid(self) -> Grid:
-        """Grid of the bore."""
         return self.compliance.grid
 
     @cached_property

@@ -35,8 +35,7 @@ CONFORMITY_NOTE = (
 )
 """Note on the film thickness of a conforming joint."""
 
-METHODS = ("wave", "hamrock-dowson")
-"""Names of the methods; the first is the default."""
+METHODS = ("wave", "hamrock-dowson")  # names of the methods; the first is the default
 
 _SMALL_SHARE = 0.01  # share of a contact without fresh lubricant up to which it is not noted
 _MAX_ERROR = 0.1  # largest estimated error of a valid film
@@ -198,7 +197,8 @@ class Film(Record):
             "heat_J_per_cycle": self.heat,
         }
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
-        return {
+        carried = self.carried
+        summary: dict[str, Any] = {
             **{name: finite_or_none(value) for name, value in values.items()},
             "moment_on_cup_Nmm": largest_moment,
             "central_nm": _mean_nm(self.central),
@@ -207,25 +207,20 @@ class Film(Record):
             "method": self.method,
             "valid": self.valid,
             "error": None if self.error is None else float(self.error.max(initial=0.0)),
-            **self._regions_summary(),
         }
-
-    def _regions_summary(self) -> dict[str, Any]:
-        """Return the refreshed part and the core of the contact for JSON; empty without the wave."""
-        carried = self.carried
-        if carried is None:
-            return {}
-        return {
-            "refreshed_share_least": 1 - self.unreached,
-            "refreshed_mean_nm": _mean_nm(carried.joined("refreshed_mean")),
-            "core_mean_nm": _mean_nm(carried.joined("core_mean")),
-            "drift_deg_per_cycle": max(degrees(film.drift) for film in carried.films),
-            "cycles": carried.films[0].cycles,
-            "change_per_cycle": max(film.change for film in carried.films),
-            "settled": self.settled,
-            "smallest_settled": self.smallest_settled,
-            "refreshed_mean_error": self.refreshed_mean_error,
-        }
+        if carried is not None:
+            summary |= {
+                "refreshed_share_least": 1 - self.unreached,
+                "refreshed_mean_nm": _mean_nm(carried.joined("refreshed_mean")),
+                "core_mean_nm": _mean_nm(carried.joined("core_mean")),
+                "drift_deg_per_cycle": max(degrees(film.drift) for film in carried.films),
+                "cycles": carried.films[0].cycles,
+                "change_per_cycle": max(film.change for film in carried.films),
+                "settled": self.settled,
+                "smallest_settled": self.smallest_settled,
+                "refreshed_mean_error": self.refreshed_mean_error,
+            }
+        return summary
 
     def plot(self) -> Any:
         """Plot the film over the cycle, and maps of it over the bore; return the matplotlib figure."""
@@ -301,10 +296,7 @@ def _moment(foundation: SocketFoundation, sliding: SurfaceSliding, shear: Number
     """
     directions, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
     weight = numpy.divide(
-        shear * foundation.areas * sliding.radius**2,
-        distances,
-        out=numpy.zeros_like(distances),
-        where=distances > 0,
+        shear * foundation.areas * sliding.radius**2, distances, out=numpy.zeros_like(distances), where=distances > 0
     )
     normal_part = weight * (rotations @ directions)
     return rotations * weight.sum(axis=1)[:, None] - normal_part @ directions.T

@@ -12,8 +12,7 @@ from ..core.checks import check_number, require
 from ..core.display import finite_or_none
 from ..lubrication import Lubricant
 
-CYCLES = 300
-"""Default number of uninterrupted cycles from a flooded bore."""
+CYCLES = 300  # default number of uninterrupted cycles from a flooded bore
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +59,13 @@ class FilmLimit:
         directions : array (3, cells)
             Unit vectors to the cells.
         """
-        film = _spread_to_all_cells(thickness, directions)
+        from scipy.spatial import cKDTree  # slow to import
+
+        film = numpy.zeros_like(thickness)  # 0 in instants without any film; outside a contact that of the nearest cell
+        for row, values in zip(film, thickness, strict=True):
+            inside = numpy.isfinite(values)
+            if inside.any():
+                row[:] = values[inside][cKDTree(directions[:, inside].T).query(directions.T)[1]]
         return ~(film >= self.ratio * self.lubricant.roughness)
 
     def note(self, excluded_share: float) -> str:
@@ -73,16 +78,3 @@ class FilmLimit:
     def summary(self, excluded_share: float) -> dict[str, Any]:
         """Return the limit and the share of the sliding work without wear for JSON; an infinite limit is null."""
         return {"lambda": finite_or_none(self.ratio), "excluded_work_share": excluded_share}
-
-
-def _spread_to_all_cells(thickness: Numbers, directions: Numbers) -> Numbers:
-    """Give the cells outside a contact the film of the nearest cell in it; 0 in instants without any film."""
-    from scipy.spatial import cKDTree  # slow to import
-
-    film = numpy.zeros_like(thickness)
-    for row, values in zip(film, thickness, strict=True):
-        inside = numpy.isfinite(values)
-        if inside.any():
-            nearest = cKDTree(directions[:, inside].T).query(directions.T)[1]
-            row[:] = values[inside][nearest]
-    return film

@@ -38,8 +38,7 @@ from .rim import RimDistance, rim_distance
 from .socket_foundation import CycleEquilibrium, SocketFoundation, spring_foundation
 from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 
-MIN_RING_WIDTH = radians(0.5)
-"""Smallest ring width in rad."""
+MIN_RING_WIDTH = radians(0.5)  # smallest ring width in rad
 
 _MAX_RING_WIDTH = radians(10.0)  # largest ring width in rad
 _DIAMETERS = 1.0, 1000.0  # allowed diameters of head and bore in mm

@@ -128,30 +128,21 @@ def _utilisation_text(check: ContactCheck) -> str:
 def film_table(film: Film) -> Table:
     """List film thicknesses and the film ratio over the cycle, with regime, friction and lubricant."""
     columns = [Column.of_words("film", "film over the cycle"), *map(Column.of_number, ("least", "mean", "largest"))]
-    rows = [
-        Row([name, *(Amount(number, unit, 3) for number in (known.min(), known.mean(), known.max()))])
-        for name, values, unit in _film_courses(film)
-        if len(known := values[numpy.isfinite(values)])
-    ]
-    return Table("film", "Film and friction", columns, rows, list(_film_lines(film)))
-
-
-def _film_courses(film: Film) -> Sequence[tuple[str, Numbers, Unit]]:
-    """Return the names of the rows of the film table, their values over the cycle, and their units."""
-    parts: list[tuple[str, Numbers, Unit]] = []
-    if film.refreshed_mean is not None and film.core_mean is not None and film.refreshed_share is not None:
-        parts = [
-            ("mean of the refreshed part", film.refreshed_mean, NANOMETRES),
-            ("mean of the core", film.core_mean, NANOMETRES),
-            ("refreshed share of the contact", film.refreshed_share, PERCENT),
-        ]
-    return [
+    courses: list[tuple[str, Numbers | None, Unit]] = [
         ("smallest", film.least, NANOMETRES),
         ("at the load", film.central, NANOMETRES),
-        *parts,
+        ("mean of the refreshed part", film.refreshed_mean, NANOMETRES),
+        ("mean of the core", film.core_mean, NANOMETRES),
+        ("refreshed share of the contact", film.refreshed_share, PERCENT),
         ("λ, smallest film over roughness", film.ratio, PLAIN),
         ("Hamrock-Dowson, smallest", film.comparison, NANOMETRES),
     ]
+    rows = [
+        Row([name, *(Amount(number, unit, 3) for number in (known.min(), known.mean(), known.max()))])
+        for name, values, unit in courses
+        if values is not None and len(known := values[numpy.isfinite(values)])
+    ]
+    return Table("film", "Film and friction", columns, rows, list(_film_lines(film)))
 
 
 _STATED = "viscosity", "ball_roughness", "cup_roughness"
@@ -215,18 +206,20 @@ def _comparison_table(runs: Sequence[HipRun]) -> Table:
                     cells: list[Cell] = [cycles, run.name, *(float(getattr(report, name)) for name in _COMPARED)]
                     cells += [bool(report.edge_loaded.any()), *(_band(run, name, number) for name in _BANDED)]
                     rows.append(Row(cells[: len(columns)]))
-    return Table("hips", "Wear", columns, rows, list(_comparison_lines(runs)))
+    lines = [
+        Sentence(
+            "{}: contact {}; estimated numerical error of the volume {}",
+            run.name,
+            "valid" if run.history.valid else "NOT VALID, see its notes",
+            Amount(run.history.error.volume, PERCENT, 2),
+        )
+        for run in runs
+    ]
+    return Table("hips", "Wear", columns, rows, lines)
 
 
 def _band(run: HipRun, name: str, report: int) -> Cell:
     return None if run.bands is None else tuple(float(end[report]) for end in run.bands.band(name))
-
-
-def _comparison_lines(runs: Sequence[HipRun]) -> Iterator[Sentence]:
-    for run in runs:
-        validity = "valid" if run.history.valid else "NOT VALID, see its notes"
-        error = Amount(run.history.error.volume, PERCENT, 2)
-        yield Sentence("{}: contact {}; estimated numerical error of the volume {}", run.name, validity, error)
 
 
 def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[Sentence]:

@@ -20,10 +20,7 @@ _AXIS_NAMES = {
 
 
 def parse_rotation_order(text: Any) -> str:
-    """Convert an order of rotations, such as "flexion, adduction, rotation", to axis letters such as "xyz".
-
-    Raises ValueError: the text does not name the three rotations once each.
-    """
+    """Convert an order of rotations, such as "flexion, adduction, rotation", to axis letters such as "xyz"."""
     words = text if isinstance(text, list | tuple) else []
     if isinstance(text, str):
         words = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()

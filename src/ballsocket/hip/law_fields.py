@@ -53,11 +53,8 @@ def list_unit(text: str, suffix: str) -> LawUnit:
     return LawUnit(text=text, typed=text, suffix=suffix, read=read_numbers)
 
 
-NUMBER = kind_unit(Kind.NUMBER)
-"""Unit of a plain number."""
-
-PRESSURE = kind_unit(Kind.MODULUS)
-"""Unit of a pressure: MPa."""
+NUMBER = kind_unit(Kind.NUMBER)  # unit of a plain number
+PRESSURE = kind_unit(Kind.MODULUS)  # unit of a pressure: MPa
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,8 +184,6 @@ def read_law(
 
     `laws` is the registry, `keys` has other keys of this table by the usual key, and `values` are those of fields that
     files do not have.
-
-    Raises ValueError: a missing key, a key of another law, or a value that is not allowed.
     """
     fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):

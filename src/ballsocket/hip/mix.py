@@ -73,7 +73,6 @@ class Mix:
 
     @property
     def activity_cycles(self) -> tuple[Cycle, ...]:
-        """Cycle of each activity."""
         return tuple(activity.cycle for activity in self.activities)
 
     @property

@@ -18,8 +18,7 @@ from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
 from .simulation import MAX_WORN_LINERS
 from .variability import RESULT_UNITS, CohortResult
 
-MEMBERS_PER_PIECE = 8
-"""Simulations of one piece of work: about half a second."""
+MEMBERS_PER_PIECE = 8  # simulations of one piece of work: about half a second
 
 _NODES_PER_UNIT = 1.5  # interpolation points per unit of the logarithm of the exposure
 _MAX_NODES = 24  # largest number of interpolation points of the exposure
@@ -52,10 +51,7 @@ class FamilyRun:
         return 1 if high == low else min(2 + ceil(_NODES_PER_UNIT * (high - low)), _MAX_NODES)
 
     def __call__(self, piece: int) -> dict[str, Numbers]:
-        """Simulate the members of a piece; those without a result are NaN.
-
-        Raises ValueError: this worker has another version of the package than the process that started the run.
-        """
+        """Simulate the members of a piece; those without a result are NaN."""
         check_worker_code(self.code)
         first = piece * MEMBERS_PER_PIECE
         members = [self._simulate(numbers) for numbers in self.box.sample(first + MEMBERS_PER_PIECE)[first:]]
@@ -80,7 +76,6 @@ class FamilyStore(ArrayPieceStore):
     prefix: str = "series"
 
     def to_arrays(self, result: dict[str, Numbers]) -> dict[str, Numbers]:
-        """Return the arrays of a piece."""
         return result
 
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:
@@ -138,17 +133,14 @@ class PatientSeries:
         low, high = self.family.log_exposures
         weights = partial(interpolation_weights, low=low, high=high, count=self.family.n_nodes)
         stages = [numpy.matmul(weights(exposure + log(count))[:, None, :], at_nodes)[:, 0] for count in counts]
-        inside = box.contains(numbers) & self._wears_allowed_depth(unworn[:, 0] + exposure + log(counts[-1]), values)
+        # clearly below the largest allowed wear, by the logarithm of depth over clearance
+        clearance, log_depth = similarity.clearances(values), unworn[:, 0] + exposure + log(counts[-1])
+        thickness = numpy.minimum(float(similarity.setup.joint.liner_thickness), similarity.socket_radius(clearance))
+        inside = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
+        inside &= box.contains(numbers)
         for count in (counts[0], counts[-1]):
             inside &= (exposure + log(count) >= low - _ROUNDING) & (exposure + log(count) <= high + _ROUNDING)
         return self._table(stages, values), self._contacts(unworn, stages, values), inside
-
-    def _wears_allowed_depth(self, log_depth: Numbers, values: Mapping[str, Numbers]) -> Numbers:
-        """Return the mask of the patients clearly below the largest allowed wear, by ln of depth over c."""
-        joint, clearance = self.family.similarity.setup.joint, self.family.similarity.clearances(values)
-        thickness = numpy.minimum(float(joint.liner_thickness), self.family.similarity.socket_radius(clearance))
-        mask: Numbers = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
-        return mask
 
     def _table(self, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:
         """Convert the numbers of worn bores (patients, numbers) to results: (patients, reports, results)."""
@@ -187,10 +179,7 @@ class PatientSeries:
 
 
 def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:
-    """Fit polynomials of a degree to the simulated members of a family by least squares.
-
-    Raises NoSeriesError: too many members have no result.
-    """
+    """Fit polynomials of a degree to the simulated members of a family by least squares."""
     unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))
     points, exponents = family.box.sample(len(known)), _exponents(family.box, degree)

@@ -182,10 +182,7 @@ class Similarity:
         return {"volume": clearance * radius**2, **lengths, "max_pressure": pressure, "edge_distance": radius}
 
     def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> FamilyMember:
-        """Simulate the family member with given numbers up to each of several logarithms of exposures.
-
-        Raises ValueError: a contact did not balance its load.
-        """
+        """Simulate the family member with given numbers up to each of several logarithms of exposures."""
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)
         clearance, worn, converged = float(use.joint.clearance), [], True

@@ -25,13 +25,12 @@ from .rim import mask_edge_loading
 from .socket_foundation import CycleEquilibrium
 from .wear_integrator import WearIntegrator
 
-MAX_WORN_LINERS = 10.0
-"""Largest wear by the rate of the first cycle, in liner thicknesses."""
+MAX_WORN_LINERS = 10.0  # largest wear by the rate of the first cycle, in liner thicknesses
 
 _VERSION = 7  # version of the file's format
 _FILE_NAME = "hip_in_use.npz"
 _REPORT_FIELDS = fields(Report)
-_CONVERTERS = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
+_CONVERTERS: Mapping[str, Any] = {"float": float, "bool": bool}  # by the type of a report's field; others are arrays
 
 _ERROR_RATIO = 1 / (1 - 2**-1.5)
 """Ratio of the error to the difference from half the step: 1 / (1 - 2^-p) for errors of order p = 1.5.
@@ -50,14 +49,10 @@ class Checkpoint:
 
     @property
     def path(self) -> Path:
-        """Path of the checkpoint file."""
         return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
-        """Write the state of a simulation and its reports so far to the file.
-
-        Raises OSError: the folder is not writable or the disk is full.
-        """
+        """Write the state of a simulation and its reports so far to the file."""
         make_folder(self.folder)
         report_arrays = {
             f"report_{number}_{field.name}": getattr(report, field.name)
@@ -67,17 +62,24 @@ class Checkpoint:
         write_arrays(self.path, identity=self.identity, count=len(reports), **state, **report_arrays)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
-        """Read the stored state and reports; return None if the file does not exist.
-
-        Raises ValueError: the file belongs to another run, or is damaged.
-        """
+        """Read the stored state and reports; return None if the file does not exist."""
         if not self.path.exists():
             return None
         try:
             arrays = read_arrays(self.path)
             identity, n_reports = str(arrays.pop("identity")), int(arrays.pop("count"))
             if identity == self.identity:
-                reports = tuple(_read_report(arrays, f"report_{number}_") for number in range(n_reports))
+                reports = tuple(
+                    Report(
+                        **{
+                            field.name: _CONVERTERS.get(str(field.type), numpy.asarray)(
+                                arrays[f"report_{n}_{field.name}"]
+                            )
+                            for field in _REPORT_FIELDS
+                        }
+                    )
+                    for n in range(n_reports)
+                )
         except (OSError, ValueError, KeyError) as error:
             raise ValueError(f"{self.path} is not a checkpoint of a run; delete it to start again") from error
         if identity != self.identity:
@@ -88,19 +90,8 @@ class Checkpoint:
         return {name: array for name, array in arrays.items() if not name.startswith("report_")}, reports
 
 
-def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    values: dict[str, Any] = {}
-    for field in _REPORT_FIELDS:
-        convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
-        values[field.name] = convert_value(arrays[prefix + field.name])
-    return Report(**values)
-
-
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written.
-
-    Raises ValueError: a wear law by a function, which has no fingerprint.
-    """
+    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written."""
     for law in (use.wear, use.ball_wear):
         if not getattr(law, "storable", True):
             raise ValueError(f"runs with a {type(law).__name__} cannot be stored: its function has no fingerprint")
@@ -298,10 +289,7 @@ class HipSimulation(HipSetup):
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end.
-
-    Raises ValueError: a total count that is not positive and finite, or a report beyond it.
-    """
+    """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end."""
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
     rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
     for count in report_at:

@@ -37,7 +37,6 @@ def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
 
 
 def _iso_14242_1_force(phases: Numbers) -> Numbers:
-    """Compute the force of ISO 14242-1 in N."""
     return half_cosines(phases, *_ISO_FORCE)
 
 

@@ -14,8 +14,7 @@ from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.grid import Grid
 from .spring_equilibrium import SpringContact, load_blocks, spring_solver
 
-NO_LATERAL_SPRING = numpy.zeros((3, 3))
-"""Stiffness matrix (N/mm) for a ball without a lateral spring."""
+NO_LATERAL_SPRING = numpy.zeros((3, 3))  # stiffness matrix (N/mm) for a ball without a lateral spring
 
 _CONTACT_STEP = 1e-3  # step of a ball without contact beyond the clearance, relative to the socket's radius
 
@@ -96,8 +95,21 @@ class SocketFoundation(ABC):
         """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
-        return contact_shares(self.edge_field(equilibrium, depth), self.neighbours, self.edge_inset)
+        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells).
+
+        Linear interpolation of the edge field between two cells gives its zero. The edge lies inside that zero by
+        `edge_inset`, a fraction of a cell's width; see `off_axis.edges`.
+        """
+        level = self.edge_field(equilibrium, depth)
+        positive, span = level > 0, numpy.zeros_like(level)
+        for pair in self.neighbours:
+            level_differences = [
+                numpy.where(positive[:, cells] != positive, abs(level - level[:, cells]), 0.0) for cells in pair
+            ]
+            span += numpy.maximum(*level_differences)
+        edge_steps = numpy.divide(level, span, out=numpy.where(positive, 1.0, -1.0), where=span > 0)
+        cell_shares: Numbers = numpy.clip(0.5 - self.edge_inset + edge_steps, 0.0, 1.0)
+        return cell_shares
 
 
 def foundation_cells(grid: Grid, socket_radius: float) -> dict[str, Numbers]:
@@ -203,20 +215,3 @@ def neighbours_in_subset(neighbours: Numbers, cells: Numbers) -> Numbers:
     subset_indices[cells] = numpy.arange(len(cells))
     subset_neighbour_indices = subset_indices[neighbours[..., cells]]
     return numpy.where(subset_neighbour_indices < 0, numpy.arange(len(cells)), subset_neighbour_indices)
-
-
-def contact_shares(level: Numbers, neighbours: Numbers, inset: float) -> Numbers:
-    """Compute the fraction of each cell in contact (loads, cells) from a field (loads, cells) that is positive inside.
-
-    Linear interpolation of the field between two cells gives its zero. The edge lies by `inset`, a fraction of a cell's
-    width, inside that zero; see `off_axis.edges`.
-    """
-    positive, span = level > 0, numpy.zeros_like(level)
-    for pair in neighbours:
-        level_differences = [
-            numpy.where(positive[:, cells] != positive, abs(level - level[:, cells]), 0.0) for cells in pair
-        ]
-        span += numpy.maximum(*level_differences)
-    edge_steps = numpy.divide(level, span, out=numpy.where(positive, 1.0, -1.0), where=span > 0)
-    cell_shares: Numbers = numpy.clip(0.5 - inset + edge_steps, 0.0, 1.0)
-    return cell_shares

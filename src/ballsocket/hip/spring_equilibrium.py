@@ -15,14 +15,9 @@ import numpy
 
 from ..core.arrays import Numbers
 
-MAX_ITERATIONS = 60
-"""Number of Newton steps after which an equilibrium counts as not converged."""
-
-FORCE_TOLERANCE = 1e-8
-"""Allowed error of the force balance, relative to the load."""
-
-REGULARISATION = 1e-12
-"""Stiffness added to the tangent stiffness, relative to its trace."""
+MAX_ITERATIONS = 60  # number of Newton steps after which an equilibrium counts as not converged
+FORCE_TOLERANCE = 1e-8  # allowed error of the force balance, relative to the load
+REGULARISATION = 1e-12  # stiffness added to the tangent stiffness, relative to its trace
 
 _BLOCK_SIZE = 131_072  # values (loads times cells) computed together, which stay in the processor's cache
 
@@ -111,20 +106,16 @@ def _solve_block(
         unbalanced = ~(numpy.linalg.norm(residual, axis=1) <= FORCE_TOLERANCE * magnitude)
         if not unbalanced.any():
             return True
-        step = _displacement_step(contact, in_contact @ to_stiffness, residual, magnitude)
+        tangent = in_contact @ to_stiffness
+        trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
+        separated = trace <= 0
+        tangent += contact.lateral_stiffness[numpy.triu_indices(3)]
+        tangent[:, [0, 3, 5]] += numpy.where(separated, 1.0, REGULARISATION * trace)[:, None]
+        step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
+        # a ball without contact moves along its load towards the bore
+        step = numpy.where(separated[:, None], contact.approach * loads / magnitude[:, None], step)
         displacement += numpy.where(unbalanced[:, None], step, 0.0)
     return False
-
-
-def _displacement_step(contact: SpringContact, tangent: Numbers, residual: Numbers, magnitude: Numbers) -> Numbers:
-    """Compute the Newton step (loads, 3) in mm; a ball without contact moves along its load towards the bore."""
-    trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
-    separated = trace <= 0
-    regularisation = numpy.where(separated, 1.0, REGULARISATION * trace)
-    tangent = tangent + contact.lateral_stiffness[numpy.triu_indices(3)]
-    tangent[:, [0, 3, 5]] += regularisation[:, None]
-    step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
-    return numpy.where(separated[:, None], contact.approach * contact.loads / magnitude[:, None], step)
 
 
 @cache

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy
 
 from ..core.checks import check_text, shown
 from ..files.cells import Cell, count_words
-from ..files.columns import CellTable, Head, HeadChoice, read_cells
+from ..files.columns import CellTable, HeadChoice, read_cells
 from ..files.head_names import count_factor
 
 _STATION = "station"
@@ -63,7 +62,15 @@ def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> Statio
     elif twice := next((name for name in names if names.count(name) > 1), None):
         raise ValueError(f"the column {shown(twice)} appears twice: keep one, or name them after their stations")
     numbers = table.numbers([*counts, *columns])
-    cycles = _cycle_factor(counts) * numbers.columns[0] if counts else numpy.ones(len(numbers))
+    cycles = numpy.ones(len(numbers))
+    if counts:
+        text, unit_of_counts = shown(counts[0].text), counts[0].unit
+        if len(counts) > 1:
+            raise ValueError(f"the cycles are in two columns, {text} and {shown(counts[1].text)}: skip one")
+        factor = count_factor(unit_of_counts)
+        if factor is None:
+            raise ValueError(f"the unit {unit_of_counts} of {text} is not known; allowed are cycles, Mc and 10^6")
+        cycles = _CYCLES[counts[0].name] * factor * numbers.columns[0]
     readings: list[tuple[str, str, float]] = []
     unused = set()
     for head, name, values in zip(columns, names, numbers.columns[len(counts) :], strict=True):
@@ -92,14 +99,3 @@ def _parse_readings(table: CellTable, quantity: str, unit: str | None) -> Statio
     labels, stated, ends = zip(*readings, strict=True)
     remark = numbers.remark({"at 0 cycles": len(unused)})
     return StationReadings(stations=labels, values=stated, cycles=ends if counts else (), remark=remark)
-
-
-def _cycle_factor(counts: Sequence[Head]) -> float:
-    """Return the number of cycles for which 1 stands in the column of cycles."""
-    head, *others = counts
-    if others:
-        raise ValueError(f"the cycles are in two columns, {shown(head.text)} and {shown(others[0].text)}: skip one")
-    factor = count_factor(head.unit)
-    if factor is None:
-        raise ValueError(f"the unit {head.unit} of {shown(head.text)} is not known; allowed are cycles, Mc and 10^6")
-    return _CYCLES[head.name] * factor

@@ -36,15 +36,13 @@ SAMPLED_QUANTITIES = (
 )
 """Quantities that may differ between patients: mm³/(N m), mm, rad, rad, rad, N, and a number."""
 
-DEFAULT_COUNT = 64
-"""Default number of samples in each sample set of an uncertainty analysis."""
+DEFAULT_COUNT = 64  # default number of samples in each sample set of an uncertainty analysis
 
 _COARSE_RINGS = radians(8.0)  # least ring width of a patient on springs; its error is below the variability
 _COARSE_ELASTIC_RINGS = radians(6.0)  # ring width of a patient with full elasticity, the largest of `Sphere`
 _COARSE_INSTANTS = 32  # largest number of instants of a cycle in a patient's simulation
 
-DEFAULT_LEVEL = 0.95
-"""Default fraction of the predictions within a band."""
+DEFAULT_LEVEL = 0.95  # default fraction of the predictions within a band
 
 INFLUENCED_RESULTS = ("volume", "depth", "penetration")
 """Results whose variance is divided among the sampled quantities."""
@@ -211,10 +209,7 @@ class Patient:
     cycle_ratio: float  # ratio of the patient's cycles to those of the nominal patient in the same time
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
-        """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts.
-
-        Raises ValueError: a contact did not balance its load, or the liner would be worn through many times.
-        """
+        """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts."""
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
         integrator = WearIntegrator(setup=self.use)
         reports = tuple(

@@ -162,7 +162,7 @@ class MeasuredWear:
         return [counts[:index].count(count) for index, count in enumerate(counts)]
 
     def standard_uncertainty(self, fitted: Numbers) -> Numbers:
-        """Compute the standard uncertainty of each value from its fitted value; the fitted value itself if unknown."""
+        """Compute the standard uncertainty of each value from its fitted value, which it is itself if unknown."""
         if self.uncertainty is not None:
             return numpy.asarray(self.uncertainty)
         return fitted if self.relative_uncertainty is None else self.relative_uncertainty * fitted
@@ -264,11 +264,6 @@ class WearFit:
     widening: float
     readings: Mapping[str, float]
     specimens: Mapping[str, Numbers]
-
-    @property
-    def law_name(self) -> str:
-        """Name of the wear law, such as "archard"."""
-        return str(getattr(self.simulation.wear, "name", type(self.simulation.wear).__name__))
 
     @property
     def unit(self) -> str:

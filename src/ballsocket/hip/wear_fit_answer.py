@@ -14,9 +14,10 @@ from .wear_fit import WearFit
 def describe_wear_fit(fit: WearFit) -> Answer:
     """Describe a fitted wear coefficient."""
     use = fit.simulation
+    law = str(getattr(use.wear, "name", type(use.wear).__name__))
     title = "{}; {}: coefficient of the wear law {}"
     return Answer(
-        title=Sentence(title, joint_sentence(use.joint), use.cycle.name, repr(fit.law_name)),
+        title=Sentence(title, joint_sentence(use.joint), use.cycle.name, repr(law)),
         tables=[_coefficients(fit), *([_readings(fit)] if fit.readings else []), _measured(fit)],
         notes=fit.notes,
     )

@@ -72,7 +72,6 @@ class WearIntegrator:
 
     @property
     def ball_volume(self) -> float:
-        """Worn volume of the ball in mm³."""
         return float(self.ball @ self.setup.ball_areas) if len(self.ball) else 0.0
 
     @property
@@ -112,14 +111,10 @@ class WearIntegrator:
         )
         wear_per_cycle = active.foundation.smooth(self.setup.wear.depth(self._wearing_exposure))
         work_per_cycle = float(self._exposure.work @ active.foundation.areas)
-        return numpy.concatenate([wear_per_cycle, self._ball_wear_per_cycle, [work_per_cycle]])
-
-    @property
-    def _ball_wear_per_cycle(self) -> Numbers:
-        counterface, law = self._active.counterface, self.setup.ball_wear
-        if counterface is None or law is None:
-            return numpy.zeros(0)
-        return law.depth(counterface.ball_exposure(self._wearing_exposure))
+        ball_wear_per_cycle = numpy.zeros(0)
+        if active.counterface is not None and self.setup.ball_wear is not None:
+            ball_wear_per_cycle = self.setup.ball_wear.depth(active.counterface.ball_exposure(self._wearing_exposure))
+        return numpy.concatenate([wear_per_cycle, ball_wear_per_cycle, [work_per_cycle]])
 
     @property
     def _wearing_exposure(self) -> CycleExposure:
@@ -142,9 +137,17 @@ class WearIntegrator:
 
         A resumed run equals an uninterrupted run bit by bit.
         """
-        numbers = {name: getattr(self, name) for name in _STATE}
-        cells = {"cells": self._active.cells, "rate": self._rate}
-        return {**numbers, **cells, **_equilibrium_arrays(self.equilibrium)}
+        equilibrium, numbers = self.equilibrium, {name: getattr(self, name) for name in _STATE}
+        arrays = {
+            "cells": self._active.cells,
+            "rate": self._rate,
+            "equilibrium_displacement": equilibrium.displacement,
+            "equilibrium_pressure": equilibrium.pressure,
+            "equilibrium_converged": equilibrium.converged,
+        }
+        if equilibrium.levels is not None:
+            arrays["level_displacement"], arrays["level_pressure"] = equilibrium.levels
+        return {**numbers, **arrays}
 
     def resume(self, state: Mapping[str, Numbers]) -> None:
         """Restore a stored state with its contacts, without solving the contacts again."""
@@ -153,7 +156,13 @@ class WearIntegrator:
         self._active = select_active_cells(self.setup, state["cells"])
         self._active_creep = self.creep_depth[state["cells"]]
         self._rate = state["rate"]
-        self.equilibrium = _read_equilibrium(state)
+        has_levels = "level_displacement" in state
+        self.equilibrium = CycleEquilibrium(
+            displacement=state["equilibrium_displacement"],
+            pressure=state["equilibrium_pressure"],
+            converged=bool(state["equilibrium_converged"]),
+            levels=(state["level_displacement"], state["level_pressure"]) if has_levels else None,
+        )
         self._exposure = CycleExposure(pressure=self.equilibrium.pressure, sliding=self._active.sliding)
 
     def run_until(self, count: float, progress: Callable[[float], None]) -> WearIntegrator:
@@ -188,7 +197,10 @@ class WearIntegrator:
             if relative_error <= 1:
                 break
         self.volume_error += abs(float(block.error[:-1] @ self._active.areas))
-        self._store_state_vector(block.values)
+        active, socket_cell_count = self._active, len(self._active.cells)
+        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(block.values[-1])
+        self.depth[active.cells] = block.values[:socket_cell_count]
+        self.ball[active.ball_cells] = block.values[socket_cell_count:-1]
         self.steps, self._rate = self.steps + 1, block.rate
         self.cycles = count if length == remaining else self.cycles + length
         if self.setup.creep is not None:
@@ -196,13 +208,6 @@ class WearIntegrator:
         depth = self.depth + self.creep_depth
         if self.setup.creep is not None or self._reaches_inactive_cells(depth, self.margin / 2):
             self._update_active_cells()
-
-    def _store_state_vector(self, state_vector: Numbers) -> None:
-        """Copy the state vector back to the depths of socket and ball and the friction work."""
-        active, socket_cell_count = self._active, len(self._active.cells)
-        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(state_vector[-1])
-        self.depth[active.cells] = state_vector[:socket_cell_count]
-        self.ball[active.ball_cells] = state_vector[socket_cell_count:-1]
 
     def _advance_creep_strain(self, creep: CreepLaw, seconds: float) -> None:
         """Advance the creep strains by a time in s under the mean pressures of a cycle, which creep decreases."""
@@ -257,24 +262,3 @@ _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
     }
 )
 """Types of the attributes in a stored state."""
-
-
-def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
-    arrays = {
-        "equilibrium_displacement": equilibrium.displacement,
-        "equilibrium_pressure": equilibrium.pressure,
-        "equilibrium_converged": equilibrium.converged,
-    }
-    if equilibrium.levels is not None:
-        arrays["level_displacement"], arrays["level_pressure"] = equilibrium.levels
-    return arrays
-
-
-def _read_equilibrium(state: Mapping[str, Numbers]) -> CycleEquilibrium:
-    has_levels = "level_displacement" in state
-    return CycleEquilibrium(
-        displacement=state["equilibrium_displacement"],
-        pressure=state["equilibrium_pressure"],
-        converged=bool(state["equilibrium_converged"]),
-        levels=(state["level_displacement"], state["level_pressure"]) if has_levels else None,
-    )

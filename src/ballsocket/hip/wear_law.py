@@ -19,11 +19,8 @@ from ..files.units import convert, parse, parse_units, split_quantity
 from .kinematics import SurfaceSliding
 from .law_fields import Law, LawField, LawUnit
 
-METRE = 1e-3
-"""Wear factor per millimetre of sliding over wear factor per metre."""
-
-COEFFICIENT = "coefficient"
-"""Key of the wear coefficient in files and among sampled quantities."""
+METRE = 1e-3  # wear factor per millimetre of sliding over wear factor per metre
+COEFFICIENT = "coefficient"  # key of the wear coefficient in files and among sampled quantities
 
 _NO_COEFFICIENT = "coefficient cannot be sampled: the wear law has no coefficient"
 _PRESSURE_STEP = 1e-6  # step of the pressure for the sensitivity of a law, relative to the largest pressure

@@ -296,19 +296,14 @@ _WEAR_LAWS: tuple[type[WearLaw], ...] = (
 WEAR_LAWS: Mapping[str, type[WearLaw]] = NamedItems("wear law", {law.name: law for law in _WEAR_LAWS})
 """Registry of the wear laws by their names in files; the first one is the default."""
 
-BALL_COEFFICIENT = "ball_coefficient"
-"""Key of the wear coefficient of a ball that wears too."""
+BALL_COEFFICIENT = "ball_coefficient"  # key of the wear coefficient of a ball that wears too
 
 
-MATERIAL = "material"
-"""Key of the material whose published wear factor is used."""
+MATERIAL = "material"  # key of the material whose published wear factor is used
 
 
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
-    """Read the wear law of the socket from the table [wear] of a file.
-
-    Raises ValueError: an unknown law, a missing key, a key of another law, or a value that is not allowed.
-    """
+    """Read the wear law of the socket from the table [wear] of a file."""
     law = select_law_class(table, WEAR_LAWS, "law")
     if MATERIAL not in table:
         return read_law(table, WEAR_LAWS, law)
@@ -320,10 +315,7 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
-    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear.
-
-    Raises ValueError: a law that does not wear balls, or as `read_wear_law`.
-    """
+    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear."""
     law = select_law_class(table, WEAR_LAWS, "law")
     if BALL_COEFFICIENT not in table:
         return None

@@ -32,19 +32,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     The factor is Birge's ratio, the root of χ² over the degrees of freedom, if above 1. Student's quantile
     replaces the normal quantile if the probability of the scatter is below 5 %.
 
-    Parameters
-    ----------
-    misfit : Misfit
-        Misfit with the stated uncertainties.
-    best : FitResult
-
-    Returns
-    -------
-    misfit : Misfit
-        Misfit with the widened uncertainties.
-    best : FitResult
-        Best point for them.
-    information : Information
+    Returns the misfit with the widened uncertainties, the best point for them, and the information there.
 
     References
     ----------
@@ -147,15 +135,8 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
 
     All ends are computed together: an iteration needs one array call of the model.
 
-    Parameters
-    ----------
-    misfit : Misfit
-    starts : sequence of array (unknowns,)
-        Best point, and other points with nearly the same misfit.
-    cost : float
-        Misfit of the best point, half of χ².
-    rises : sequence of float
-        Limits on the rise of χ² above that of the best point.
+    The `starts` (unknowns,) are the best point and others with nearly the same misfit; `cost` is the misfit of the best
+    point, half of χ², and `rises` are limits on the rise of χ² above it.
 
     References
     ----------

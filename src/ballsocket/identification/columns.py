@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from enum import Enum
 from math import inf
 from pathlib import Path
@@ -72,10 +72,6 @@ def read_measured(
     heads : HeadChoice
         Columns of the file that get another name, or that are not used.
 
-    Returns
-    -------
-    tuple of Measured
-
     Raises
     ------
     ValueError
@@ -86,7 +82,9 @@ def read_measured(
     path = Path(path)
     table = read_columns(path, _KINDS, heads)
     columns = table.in_units(_KINDS)
-    kind = _choose_load(columns, load, path.name)
+    kind = load or next((name for name in _LOADS if name in columns), "")  # empty without a load
+    if load and (load not in LOADS or load not in columns):
+        raise ValueError(f"{path.name} has no load {shown(load)}: it needs a column of {', '.join(_LOADS)}")
     chosen = list(quantities) or [name for name in columns if name in MEASURED and name != kind]
     if not chosen:
         raise ValueError(f"{path.name} has no column of a measured quantity{f' besides {kind}' if kind else ''}")
@@ -116,15 +114,6 @@ def read_measured(
             )
         )
     return tuple(sets)
-
-
-def _choose_load(columns: Mapping[str, Numbers], load: str, title: str) -> str:
-    """Choose the load column: the stated one, or the first load with a column; empty without a load."""
-    if load:
-        if load not in LOADS or load not in columns:
-            raise ValueError(f"{title} has no load {shown(load)}: it needs a column of {', '.join(_LOADS)}")
-        return load
-    return next((name for name in _LOADS if name in columns), "")
 
 
 def _complete_rows(table: NumberTable, columns: dict[str, Numbers], gaps: Gaps) -> tuple[dict[str, Numbers], Numbers]:

@@ -27,27 +27,13 @@ _DEFAULT_FORCE = 2000.0  # largest load in N for data without forces
 
 @dataclass(frozen=True)
 class Candidate:
-    """Possible next measurement: quantity, load and uncertainty.
+    """Possible next measurement: quantity, load and uncertainty."""
 
-    Attributes
-    ----------
-    quantity : str
-        One of `ballsocket.identification.MEASURED`.
-    uncertainty : float
-        Standard uncertainty in the unit of the quantity.
-    force : float or None
-        Load in N; None for a number of the joint.
-    machine : Machine
-        Machine that would read an indentation.
-    order : float
-        Number of the reading, for a machine with a drifting zero.
-    """
-
-    quantity: str
-    uncertainty: float
-    force: float | None = None
-    machine: Machine = IDEAL_MACHINE
-    order: float = 0.0
+    quantity: str  #: one of `ballsocket.identification.MEASURED`
+    uncertainty: float  #: standard uncertainty in the unit of the quantity
+    force: float | None = None  #: load in N; None for a number of the joint
+    machine: Machine = IDEAL_MACHINE  #: machine that would read an indentation
+    order: float = 0.0  #: number of the reading, for a machine with a drifting zero
 
     def measured(self, value: float) -> Measured:
         """Return a data set for this candidate, with an assumed measured value."""
@@ -64,23 +50,13 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Gain:
-    """Expected information gain of a candidate measurement.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    bits : float
-        Half log2 of the growth of the information's determinant (D-optimal).
-    uncertainty_ratio : dict of str to float
-        Uncertainty of each unknown after the measurement over its present uncertainty.
-    identifies : tuple of str
-        Unknowns that this measurement would make identifiable.
-    """
+    """Expected information gain of a candidate measurement."""
 
     candidate: Candidate
-    bits: float
+    bits: float  #: half log2 of the growth of the information's determinant (D-optimal)
+    #: uncertainty of each unknown after the measurement over its present uncertainty
     uncertainty_ratio: dict[str, float]
-    identifies: tuple[str, ...]
+    identifies: tuple[str, ...]  #: unknowns that this measurement would make identifiable
 
     def summary(self) -> dict[str, Any]:
         """Return the information gain of the candidate as a dictionary for JSON."""
@@ -95,17 +71,10 @@ class Gain:
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """Candidates for the next measurement, in descending order of their information gain.
-
-    Attributes
-    ----------
-    gains : tuple of Gain
-    unidentifiable : tuple of str
-        Unknowns that are unidentifiable at present.
-    """
+    """Candidates for the next measurement, in descending order of their information gain."""
 
     gains: tuple[Gain, ...]
-    unidentifiable: tuple[str, ...]
+    unidentifiable: tuple[str, ...]  #: unknowns that are unidentifiable at present
 
     @property
     def best(self) -> Gain:
@@ -143,10 +112,6 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
     candidates : iterable of Candidate
         By default the standard quantities at loads up to one and a half times those of the data. Their uncertainties
         are those of the data, or 2 % for a new quantity.
-
-    Returns
-    -------
-    Experiment
 
     References
     ----------

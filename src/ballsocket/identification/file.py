@@ -61,7 +61,6 @@ class Numbers(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> numpy.ndarray:
-        """Convert a number or a list of numbers to an array."""
         return numpy.array(
             [parse(name, number, cls.kind) for number in (value if isinstance(value, list) else [value])]
         )
@@ -86,7 +85,6 @@ class PriorValue(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> Prior:
-        """Convert the prior of an unknown."""
         if isinstance(value, str):
             return parse_ends(name, value, cls.kind)
         if not isinstance(value, Mapping):
@@ -103,7 +101,6 @@ class ErrorSize(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> NumberOrRange:
-        """Convert the size of an error of a machine."""
         is_range = isinstance(value, str) and ".." in value
         return parse_ends(name, value, cls.kind) if is_range else parse(name, value, cls.kind)
 
@@ -313,7 +310,6 @@ def _parse_observable(name: str, table: DataTable) -> CustomObservable | None:
 
 
 def _parse_load_uncertainty(table: DataTable, load: str) -> float:
-    """Return the uncertainty of the loads; 0 by default."""
     if table.load_uncertainty is None:
         return 0.0
     return parse("load_uncertainty", table.load_uncertainty.value, LOADS[load].kind)

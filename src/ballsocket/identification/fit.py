@@ -96,21 +96,11 @@ def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedModel:
-    """Contact model fitted to measured data, with estimates and residuals.
+    """Contact model fitted to measured data, with estimates and residuals."""
 
-    Attributes
-    ----------
-    misfit : Misfit
-        Data, model and unknowns.
-    best : FitResult
-        Point of the smallest misfit.
-    information : Information
-        Information at that point, and profile intervals of the unknowns.
-    """
-
-    misfit: Misfit
-    best: FitResult
-    information: Information
+    misfit: Misfit  #: data, model and unknowns
+    best: FitResult  #: point of the smallest misfit
+    information: Information  #: information at that point, and profile intervals of the unknowns
 
     @property
     def model(self) -> Model:
@@ -170,21 +160,8 @@ class FittedModel:
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
         """Compute model results at equally spaced loads over the load range of a data set.
 
-        The data set has no angles.
-
-        Parameters
-        ----------
-        index : int
-            Index of the data set.
-        count : int
-            Number of points.
-
-        Returns
-        -------
-        loads : array (count,)
-            Loads from the least to the largest of the data set.
-        results : array (count,)
-            Results of the model at the best point.
+        The data set has no angles. Returns the loads, from the least to the largest, and the results of the model at
+        the best point, both of shape (count,).
         """
         measured = self.data[index]
         loads = numpy.linspace(measured.loads.min(), measured.loads.max(), count)

@@ -25,10 +25,7 @@ _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance i
 
 
 def split_joint_and_model_values(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Split values of unknowns by name into numbers of the joint and numbers of the contact model.
-
-    Errors of a machine are in neither.
-    """
+    """Split values by name into numbers of the joint and of the model; errors of a machine are in neither."""
     joint_values = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
     return joint_values, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 

@@ -31,27 +31,15 @@ _MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directi
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated value of one unknown with its 95 % band.
-
-    Attributes
-    ----------
-    name, unit : str
-    value : float
-        NaN for an unidentifiable unknown without a stated distribution.
-    low, high : float
-        Band of 95 % from the profile likelihood within the ranges of all unknowns.
-    width_ratio : float
-        Width of the band over the prior range.
-    limited_by : tuple of str
-        Unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
-    """
+    """Estimated value of one unknown with its 95 % band."""
 
     name: str
     unit: str
-    value: float
-    low: float
+    value: float  #: NaN for an unidentifiable unknown without a stated distribution
+    low: float  #: lower end of the band of 95 %, from the profile likelihood within the ranges of all unknowns
     high: float
-    width_ratio: float
+    width_ratio: float  #: width of the band over the prior range
+    #: unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
     limited_by: tuple[str, ...] = ()
 
     @property
@@ -76,21 +64,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Product:
-    """Identifiable product of powers of unknowns that are not identifiable separately.
+    """Identifiable product of powers of unknowns that are not identifiable separately."""
 
-    Attributes
-    ----------
-    exponents : dict of str to float
-        Power of each unknown.
-    unit : str
-    value, low, high : float
-        Value of the product, and its band of 95 %.
-    """
-
-    exponents: dict[str, float]
+    exponents: dict[str, float]  #: power of each unknown
     unit: str
     value: float
-    low: float
+    low: float  #: lower end of the band of 95 %
     high: float
 
     @property
@@ -129,25 +108,13 @@ class Interval:
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Fisher information of the data about the unknowns, with identifiability and covariance.
-
-    Attributes
-    ----------
-    transform : ParameterTransform
-    theta : array (unknowns,)
-        Best point, in standard deviations of the priors.
-    matrix : array (unknowns, unknowns)
-        Fisher information of the data there; 1 is the information of the prior.
-    intervals : tuple of Interval
-        Profile intervals over the ranges of the unknowns; `matrix` is local.
-    quantile : float
-        Standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large.
-    """
+    """Fisher information of the data about the unknowns, with identifiability and covariance."""
 
     transform: ParameterTransform
-    theta: Numbers
-    matrix: Numbers
-    intervals: tuple[Interval, ...]
+    theta: Numbers  #: (unknowns,), best point, in standard deviations of the priors
+    matrix: Numbers  #: (unknowns, unknowns), Fisher information of the data there; 1 is the information of the prior
+    intervals: tuple[Interval, ...]  #: profile intervals over the ranges of the unknowns; `matrix` is local
+    #: standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large
     quantile: float = QUANTILE_95
 
     @cached_property

@@ -65,10 +65,6 @@ def identify(
     seed : int
         Seed of the search for a start.
 
-    Returns
-    -------
-    IdentificationResult
-
     Raises
     ------
     ValueError

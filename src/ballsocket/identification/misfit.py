@@ -56,27 +56,11 @@ def _replace_missing_neighbours(
 def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
     """Compute model results and their derivatives with respect to theta by JAX.
 
-    The first call for a set of data compiles the model, which takes seconds.
+    Theta has the shape (..., unknowns), results (..., data), derivatives (..., data, unknowns). The first call for a
+    set of data compiles the model, which takes seconds.
 
-    Parameters
-    ----------
-    forward : ForwardModel
-    transform : ParameterTransform
-    theta : array (..., unknowns)
-        Scaled parameters.
-
-    Returns
-    -------
-    results : array (..., data)
-    derivatives : array (..., data, unknowns)
-        Derivatives with respect to theta.
-
-    Raises
-    ------
-    ValueError
-        A model that JAX cannot trace.
-    ImportError
-        JAX is not installed.
+    Raises ValueError: a model that JAX cannot trace.
+    Raises ImportError: JAX is not installed.
     """
     if not forward.model.differentiable:
         raise ValueError(f"{forward.model.name} cannot be traced by JAX: use by_differences")

@@ -23,29 +23,14 @@ CONVERGED = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Samples of the posterior distribution of the unknowns, with convergence measures.
-
-    Attributes
-    ----------
-    names : tuple of str
-    samples : array (samples, unknowns)
-        Values in mm, N, MPa, rad.
-    acceptance : float
-        Fraction of accepted proposals.
-    autocorrelation : dict of str to float
-        Integrated autocorrelation time in steps, by unknown.
-    effective : dict of str to float
-        Effective number of independent samples, by unknown.
-    r_hat : dict of str to float
-        Split R-hat of independent ensembles, by unknown; 1 for converged chains.
-    """
+    """Samples of the posterior distribution of the unknowns, with convergence measures."""
 
     names: tuple[str, ...]
-    samples: Numbers
-    acceptance: float
-    autocorrelation: dict[str, float]
-    effective: dict[str, float]
-    r_hat: dict[str, float]
+    samples: Numbers  #: (samples, unknowns), values in mm, N, MPa, rad
+    acceptance: float  #: fraction of accepted proposals
+    autocorrelation: dict[str, float]  #: integrated autocorrelation time in steps, by unknown
+    effective: dict[str, float]  #: effective number of independent samples, by unknown
+    r_hat: dict[str, float]  #: split R-hat of independent ensembles, by unknown; 1 for converged chains
 
     @property
     def converged(self) -> bool:
@@ -90,10 +75,6 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
     samples : int
         Number of independent samples, 100 or more.
     seed : int
-
-    Returns
-    -------
-    Posterior
 
     Raises
     ------

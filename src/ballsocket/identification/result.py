@@ -71,12 +71,7 @@ class IdentificationResult(FittedModel):
         return posterior(self, samples, seed)
 
     def plot(self) -> Any:
-        """Plot measured values beside the fitted model, and the residuals.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Plot measured values beside the fitted model, and the residuals; return the figure of matplotlib."""
         return load_plot("identification")(self)
 
     def summary(self) -> dict[str, Any]:
@@ -246,14 +241,7 @@ def von_neumann_ratio(axis: Numbers, residuals: Numbers) -> tuple[float, float]:
     The ratio is the sum of squared successive differences over the sum of squared deviations from the mean, about 2
     for independent residuals and small for a trend of any shape. Residuals at equal values of the axis are averaged.
 
-    Parameters
-    ----------
-    axis, residuals : array (data,)
-
-    Returns
-    -------
-    ratio, probability : float
-        The probability is the share of random orders with as small a ratio; 1 for fewer than five values of the axis.
+    The probability is the share of random orders with as small a ratio; 1 for fewer than five values of the axis.
 
     References
     ----------

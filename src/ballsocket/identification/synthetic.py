@@ -17,21 +17,12 @@ from .measured import Measured
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Estimates and bands from repeated identifications of synthetic data.
-
-    Attributes
-    ----------
-    names : tuple of str
-    truth : array (unknowns,)
-        True values in standard deviations of the priors, as all that follows.
-    middle, low, high : array (trials, unknowns)
-        Estimates, and the ends of their bands of 95 %.
-    """
+    """Estimates and bands from repeated identifications of synthetic data."""
 
     names: tuple[str, ...]
-    truth: Numbers
-    middle: Numbers
-    low: Numbers
+    truth: Numbers  #: (unknowns,), true values in standard deviations of the priors, as all that follows
+    middle: Numbers  #: (trials, unknowns), estimates
+    low: Numbers  #: (trials, unknowns), lower ends of their bands of 95 %
     high: Numbers
 
     @property
@@ -62,10 +53,6 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     count : int
         Sets of data, 1 or more.
     seed : int
-
-    Returns
-    -------
-    Trials
 
     Raises
     ------

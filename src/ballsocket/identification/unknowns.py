@@ -81,16 +81,10 @@ class Unknown:
 def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
     """List all unknowns of an identification: free numbers, and machine errors with ranges.
 
-    Parameters
-    ----------
-    free : mapping of str to two ends or a distribution
-        Names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
-    machines : iterable of Machine
-    model : Model
-        Model that must have the free numbers of a model.
+    Free are names of `registry.FREE_NUMBERS`; "liner.young" is the same as "liner_young".
 
     Raises ValueError: a name that is not known or is stated twice; a number that the model does not have; ends that are
-    not allowed.
+    not allowed; two machines with the same name.
     """
     priors = {name.replace(".", "_"): prior for name, prior in free.items()}
     if len(priors) < len(free):
@@ -101,21 +95,17 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
             models = ", ".join(key for key, known in catalogue.items() if MODEL_NUMBERS[name].belongs_to(known))
             raise ValueError(f"{name} is not a number of the model {model.name}; models that have it: {models}")
     number_unknowns = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
-    return (*number_unknowns, *_collect_machine_errors(machines))
-
-
-def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
-    """List the unknown errors of all machines; ValueError if two machines have the same name."""
     machines_by_name: dict[str, Machine] = {}
     for machine in machines:
         if machines_by_name.setdefault(machine.name, machine) != machine:
             raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
-    return [
+    machine_unknowns = [
         _make_unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
         for machine in machines_by_name.values()
         for error, size in machine.errors
         if isinstance(size, tuple)
     ]
+    return (*number_unknowns, *machine_unknowns)
 
 
 def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine: bool = False) -> Unknown:

@@ -20,11 +20,8 @@ from .film_core import CycleInstant, FilmMotion
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-REPEAT_TOLERANCE = 0.01
-"""Largest mean change of the film from one cycle to the next, relative to the mean film."""
-
-SETTLED_CHANGE = 0.1
-"""Largest relative change of a settled film of the core while the number of cycles doubles."""
+REPEAT_TOLERANCE = 0.01  # largest mean change of the film from one cycle to the next, relative to the mean film
+SETTLED_CHANGE = 0.1  # largest relative change of a settled film of the core while the number of cycles doubles
 
 _MARCHED, _MOST_MARCHED = 3, 10
 """Least and largest number of cycles that are followed instant by instant: one before the core's drift."""

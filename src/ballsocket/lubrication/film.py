@@ -20,11 +20,8 @@ from .film_problem import check_reynolds, make_contact_film
 from .lubricant import Lubricant
 from .wave import FilmWave
 
-CELL_WIDTH = radians(2.0)
-"""Default width of the cells of the wave in rad."""
-
-MAX_ERROR = 0.1
-"""Largest estimated error of a valid film."""
+CELL_WIDTH = radians(2.0)  # default width of the cells of the wave in rad
+MAX_ERROR = 0.1  # largest estimated error of a valid film
 
 _MAX_RATE = 1e6  # largest rotation rate about an axis in rad/s
 _THINNEST = 1e-6  # film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid

@@ -77,7 +77,6 @@ class FilmMotion:
 
     @property
     def duration(self) -> float:
-        """Duration of the cycle in s."""
         return sum(instant.duration for instant in self.instants)
 
     @cached_property

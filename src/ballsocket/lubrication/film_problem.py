@@ -22,8 +22,7 @@ from .reynolds import FilmProblem, FilmState, develop_film, solve_steady
 if TYPE_CHECKING:
     from ..elasticity.off_axis.surfaces import Surface
 
-ELASTIC_MODELS = ("exact", "tabulated")
-"""Models of axial contacts whose elastic operator Reynolds' equation has."""
+ELASTIC_MODELS = ("exact", "tabulated")  # models of axial contacts whose elastic operator Reynolds' equation has
 
 
 @dataclass(frozen=True, kw_only=True)

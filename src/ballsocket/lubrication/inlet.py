@@ -103,5 +103,4 @@ class ElasticEdge:
         return float((self.inlet_length(viscosity, numpy.asarray(speed)) / radius) ** (2 / 3))
 
 
-Edge = SpringEdge | ElasticEdge
-"""Edge of a dry contact, which sets the film."""
+Edge = SpringEdge | ElasticEdge  # edge of a dry contact, which sets the film

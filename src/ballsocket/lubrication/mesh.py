@@ -38,7 +38,6 @@ class FilmMesh:
 
     @property
     def cells(self) -> int:
-        """Number of cells."""
         return len(self.area)
 
     def in_frame(self, frame: Numbers) -> FilmMesh:

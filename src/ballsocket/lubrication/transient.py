@@ -90,12 +90,7 @@ def _solve_step(problem: FilmProblem, start: FilmState, before: LoadStep, step: 
             current = replace(problem, force=piece.force, spin=piece.spin, central_share=central_share)
             volume = problem.thickness(state) * (1 - state.void)
             state = advance(
-                current,
-                state,
-                volume=volume,
-                step=piece.duration,
-                tolerance=_TOLERANCE,
-                max_steps=_MAX_ITERATIONS,
+                current, state, volume=volume, step=piece.duration, tolerance=_TOLERANCE, max_steps=_MAX_ITERATIONS
             )
             iterations += state.iterations
             if not state.converged:

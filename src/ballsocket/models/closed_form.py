@@ -112,7 +112,6 @@ class ClosedForm(Model):
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve contacts for given forces, indentations or half angles, and mark those without a solution."""
         if kind == "force":
             d = self.indentation(joint, load)
             F = load
@@ -136,7 +135,6 @@ class ClosedForm(Model):
         )
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the force law of a joint in closed form."""
         return ClosedLaw(model=self, joint=joint)
 
 

@@ -133,7 +133,6 @@ class RadialFoundation(ClosedForm):
         return where(inside, self.modulus.evaluate(joint) * u, 0.0)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the force law of a joint from the formulas of its kinematics."""
         R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.evaluate(joint))
         return FoundationLaw(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 

@@ -26,10 +26,8 @@ class Liner(NamedTuple):
     """
 
     poisson: Array
-    growth: Array
-    """ln b"""
-    shrink: Array
-    """b^-2"""
+    growth: Array  # ln b
+    shrink: Array  # b^-2
     numerator: tuple[Array, ...]
     denominator: tuple[Array, ...]
 

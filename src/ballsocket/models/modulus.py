@@ -163,17 +163,15 @@ def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Arra
 
 
 def _poisson_range(low: float, high: float, why: str) -> Range:
-    """Make a validity range of the liner's Poisson's ratio."""
     return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
 def _relative_contact_width(contact: Any) -> Array:
-    """Compute a (1/L + 1/R2), the contact radius over the smaller of liner thickness and radius, rounded off."""
     return contact.width_ratio + sin(contact.half_angle)
 
 
 def _relative_width_range(low: float) -> Range:
-    """Make a validity range with a smallest contact radius, measured by liner thickness and socket radius."""
+    """Make a validity range of the contact radius over the smaller of liner thickness and radius, rounded off."""
     why = "a contact narrower than the liner is thick feels a half-space, not springs"
     return Range(quantity=_relative_contact_width, symbol="a (1/L + 1/R2)", low=low, why=why)
 
@@ -181,10 +179,7 @@ def _relative_width_range(low: float) -> Range:
 _SPRINGS = Promise(within=0.15)
 _COMPRESSIBLE = _poisson_range(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
 _FINITE_LAYER = Range(
-    quantity="joint.liner_thickness",
-    low=0.0,
-    high=inf,
-    why="a layer of infinite thickness has no stiffness",
+    quantity="joint.liner_thickness", low=0.0, high=inf, why="a layer of infinite thickness has no stiffness"
 )
 
 spherical_vessel = Modulus(

@@ -64,11 +64,7 @@ class PlaneLayer(Model):
     sources: ClassVar[tuple[Source, ...]] = (Source("jin2000"),)
     planar: ClassVar[bool] = True
     domain: ClassVar[tuple[Range, ...]] = (
-        Range(
-            quantity="joint.clearance",
-            low=0.0,
-            why="the effective radius R1 R2/c is infinite without clearance",
-        ),
+        Range(quantity="joint.clearance", low=0.0, why="the effective radius R1 R2/c is infinite without clearance"),
         Range(
             quantity="joint.liner_thickness",
             low=0.0,
@@ -100,7 +96,6 @@ class PlaneLayer(Model):
     promise: ClassVar[Promise] = Promise(within=0.15)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve contacts for given forces, indentations or half angles, and mark those that did not converge."""
         solution = _solve_width(joint, kind, load)
         force, indentation = solution.force_and_indentation
         reached = indentation if kind == "indentation" else force

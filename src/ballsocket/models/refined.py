@@ -44,6 +44,7 @@ class Refined(Model):
     """
 
     seconds_a_press: ClassVar[float] = 6e-6
+    is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "refined"
     title: ClassVar[str] = "closed form from the liner's own compliance, 23 coefficients"
@@ -89,7 +90,6 @@ class Refined(Model):
     promise: ClassVar[Promise] = Promise(within=0.02)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve contacts for given forces, indentations or half angles."""
         c, spring = joint.clearance, joint.liner.young * joint.socket_radius
         liner, numbers = _joint_liner(joint), (load, *joint.numbers())
         if kind == "half_angle":
@@ -149,14 +149,10 @@ FIT: dict[str, list[float]] = tomllib.loads((files("ballsocket") / "data" / "ref
 class ScaledContact(NamedTuple):
     """Dimensionless contact of half angle ε; slopes are derivatives by ln ε."""
 
-    share: Pair
-    """Value S = sin²(ε/2) and its slope."""
-    gap: Pair
-    """Value cos ε - λ and its slope; it is 0 at the perfect fit, where d is infinite."""
-    compliance: Array
-    """Scaled compliance χ = d E/(p0 R2)."""
-    secant: Pair
-    """Scaled secant stiffness F/(E R2 d), and the slope of its logarithm."""
+    share: Pair  # S = sin²(ε/2) and its slope
+    gap: Pair  # cos ε - λ and its slope; it is 0 at the perfect fit, where d is infinite
+    compliance: Array  # scaled compliance χ = d E/(p0 R2)
+    secant: Pair  # scaled secant stiffness F/(E R2 d), and the slope of its logarithm
 
     @property
     def indentation(self) -> Array:

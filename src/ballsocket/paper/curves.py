@@ -148,7 +148,6 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
 
 
 def _scaled_modulus(model: Model, joint: Joint, force: Numbers) -> Numbers:
-    """Compute the dimensionless modulus of a model at forces in N."""
     contact = model.press(joint, force=force)
     return cases.scaled_modulus(contact.max_pressure, contact.indentation, joint.socket_radius)
 

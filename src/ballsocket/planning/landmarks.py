@@ -50,26 +50,15 @@ ROLES = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Landmarks:
-    """Named points of a patient.
+    """Named points of a patient."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        Names as in the file; several points may have one name.
-    points : array (n, 3)
-        Coordinates in mm: to the right, to the front, upwards (RAS).
-    """
-
-    names: tuple[str, ...]
-    points: Numbers
+    names: tuple[str, ...]  #: names as in the file; several points may have one name
+    points: Numbers  #: (n, 3), coordinates in mm: to the right, to the front, upwards (RAS)
 
     def find(self, role: str) -> Numbers | None:
         """Return the point (3,) of a role, such as "right_asis"; None without one.
 
-        Raises
-        ------
-        ValueError
-            Several points have the role.
+        Raises ValueError: several points have the role.
         """
         allowed = (_squeeze(role), *ROLES[role])
         indices = [index for index, name in enumerate(self.names) if _squeeze(name) in allowed]
@@ -84,10 +73,7 @@ class Landmarks:
         Points of the rim have names that begin with "rim", after "cup", "liner" or "acetabular" and a side if needed:
         "rim-1", "cup rim 2", "left rim 3".
 
-        Raises
-        ------
-        ValueError
-            Points of both sides without `side`.
+        Raises ValueError: points of both sides without `side`.
         """
         sides: dict[int, str | None] = {}
         for index, name in enumerate(map(_squeeze, self.names)):

@@ -26,29 +26,16 @@ _MAX_TILT = radians(60.0)  # largest angle of the vertical from the pelvic plane
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PelvicFrame:
-    """Frame of the anterior pelvic plane: x to the right, y to the front, z upwards, origin between both spines.
+    """Frame of the anterior pelvic plane: x to the right, y to the front, z upwards, origin between both spines."""
 
-    Attributes
-    ----------
-    origin : array (3,)
-        Middle of both anterior superior iliac spines in mm, RAS.
-    axes : array (3, 3)
-        Unit vectors x, y, z as rows, in RAS.
-    asis_distance, height : float
-        Distance of the spines, and of the pubis from their line, in mm.
-    tubercle_offset : float or None
-        Distance in mm of the two pubic tubercles across the direction of the line of the spines, 0 if both lines are
-        parallel; None without tubercles.
-    vertical : array (3,) or None
-        Direction upwards in the pelvic frame; None if it is not known.
-    """
-
-    origin: Numbers
-    axes: Numbers
-    asis_distance: float
-    height: float
+    origin: Numbers  #: (3,), middle of both anterior superior iliac spines in mm, RAS
+    axes: Numbers  #: (3, 3), unit vectors x, y, z as rows, in RAS
+    asis_distance: float  #: distance of the spines in mm
+    height: float  #: distance of the pubis from their line in mm
+    #: distance in mm of the two pubic tubercles across the direction of the line of the spines, 0 if both lines are
+    #: parallel; None without tubercles
     tubercle_offset: float | None = None
-    vertical: Numbers | None = None
+    vertical: Numbers | None = None  #: (3,), direction upwards in the pelvic frame; None if it is not known
 
     def convert(self, points: Numbers) -> Numbers:
         """Convert points (..., 3) in mm from RAS to the pelvic frame."""
@@ -177,45 +164,24 @@ def _vertical(axes: Numbers, vertical: Any, pelvic_tilt: float | None) -> Number
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CupOrientation:
-    """Orientation of a cup in the pelvis.
+    """Orientation of a cup in the pelvis."""
 
-    Attributes
-    ----------
-    axis : array (3,)
-        Unit vector out of the opening, in the pelvic frame.
-    centre : array (3,)
-        Centre of the rim's points, or of the bore, in mm in the pelvic frame.
-    side : Side
-        Side of the body.
-    frame : PelvicFrame
-    points : int
-        Number of points of the rim; 0 for the axis of a mesh.
-    residual : float or None
-        Root mean square distance in mm of the points from their plane; None without points.
-    angle_error : float or None
-        Standard error of the axis in rad; None if it is not known.
-    largest_deviation : tuple of str and float, or None
-        Name and distance in mm of the point farthest from the plane.
-    """
-
-    axis: Numbers
-    centre: Numbers
-    side: Side
+    axis: Numbers  #: (3,), unit vector out of the opening, in the pelvic frame
+    centre: Numbers  #: (3,), centre of the rim's points, or of the bore, in mm in the pelvic frame
+    side: Side  #: side of the body
     frame: PelvicFrame
-    points: int = 0
+    points: int = 0  #: number of points of the rim; 0 for the axis of a mesh
+    #: root mean square distance in mm of the points from their plane; None without points
     residual: float | None = None
-    angle_error: float | None = None
-    largest_deviation: tuple[str, float] | None = None
+    angle_error: float | None = None  #: standard error of the axis in rad; None if it is not known
+    largest_deviation: tuple[str, float] | None = None  #: name and distance in mm of the point farthest from the plane
 
     def cup(self, upright: bool = True, **attributes: Any) -> Cup:
         """Create the cup with its radiographic angles in the upright body, or in the pelvic frame.
 
         Without a vertical, both are equal.
 
-        Raises
-        ------
-        ValueError
-            A cup that opens upwards or to the middle of the body.
+        Raises ValueError: a cup that opens upwards or to the middle of the body.
         """
         lateral, front, up = (self.frame.body_axes if upright else numpy.eye(3)) @ self.axis
         lateral = lateral if self.side is Side.RIGHT else -lateral
@@ -279,10 +245,7 @@ def orientation_of_axis(
 
     Without `signed`, the axis has either sign: a cup opens downwards and to the side. The side follows from the centre.
 
-    Raises
-    ------
-    ValueError
-        A centre in the middle of the pelvis, or on the other side than stated.
+    Raises ValueError: a centre in the middle of the pelvis, or on the other side than stated.
     """
     lies = Side.RIGHT if centre[0] > 0 else Side.LEFT
     clear = abs(centre[0]) >= _MIN_SIDE_DISTANCE

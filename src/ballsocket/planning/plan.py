@@ -35,17 +35,7 @@ _LPS = numpy.diag([-1.0, -1.0, 1.0])
 class HipPlan:
     """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
 
-    Attributes
-    ----------
-    frame : PelvicFrame or None
-    orientation : CupOrientation or None
-    liner, head : ImplantFit or None
-    worn : WornBore or None
-
-    Raises
-    ------
-    ValueError
-        A head that does not belong to the bore.
+    Raises ValueError: a head that does not belong to the bore.
     """
 
     frame: PelvicFrame | None = None

@@ -34,21 +34,11 @@ _MIN_END = 0.75  # least share of the end of an outer surface that lies in a pla
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RimPlane:
-    """Plane in which a part of the rim lies.
+    """Plane in which a part of the rim lies."""
 
-    Attributes
-    ----------
-    normal : array (3,)
-        Unit normal out of the opening, in the coordinates of the file.
-    height : float
-        Distance in mm from the centre of the bore, positive out of the opening.
-    share : float
-        Share of the circumference whose rim lies in the plane.
-    """
-
-    normal: Numbers
-    height: float
-    share: float
+    normal: Numbers  #: (3,), unit normal out of the opening, in the coordinates of the file
+    height: float  #: distance in mm from the centre of the bore, positive out of the opening
+    share: float  #: share of the circumference whose rim lies in the plane
 
 
 def fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float, float]:
@@ -56,14 +46,8 @@ def fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float,
 
     The facets are relative to the centre, in radii. Points on the edges count: the edges of a rim lie in its plane.
 
-    Returns
-    -------
-    axis : array (3,)
-        Unit vector out of the opening.
-    angle : float
-        Polar angle in rad of the rim from the pole.
-    deviation : float
-        Largest angle in rad of the rim from the plane.
+    Returns the unit vector (3,) out of the opening, the polar angle in rad of the rim from the pole, and the largest
+    angle in rad of the rim from the plane.
     """
     points, dome = edge_points(corners), pole / numpy.linalg.norm(pole)
     for _ in range(8):

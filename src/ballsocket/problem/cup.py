@@ -176,7 +176,7 @@ class Cup:
         pelvic_tilt: float = 0.0,
         **attributes: Any,
     ) -> Self:
-        """Create a cup from angles of any definition, in a pelvis that may be tilted in the body.
+        """Create a cup with its radiographic angles in the body from angles of any definition, in a tilted pelvis.
 
         Parameters
         ----------
@@ -189,11 +189,6 @@ class Cup:
             to the front. It reduces the operative anteversion by its own size.
         **attributes
             Further attributes of the cup.
-
-        Returns
-        -------
-        Cup
-            Cup with the radiographic angles in the body.
 
         Raises
         ------
@@ -293,9 +288,7 @@ class Cup:
     def frame(self) -> tuple[Direction, Direction, Direction]:
         """Unit vectors x, y, z of the cup frame, in the body frame.
 
-        x points up in the plane of the rim, z to the dome.
-
-        In an inclined cup, a vertical load lies between x and z.
+        x points up in the plane of the rim, z to the dome. In an inclined cup, a vertical load lies between x and z.
         """
         return cup_axes(float(self.inclination), float(self.anteversion), self.side)
 
@@ -315,22 +308,11 @@ class Cup:
         return float(self.tilt(direction)) if tilt is None else float(tilt)
 
     def tilt(self, direction: Array) -> Array:
-        """Compute the angle γ in rad between a direction and the axis of the cup.
+        """Compute the angle γ in rad between directions (..., 3) and the axis of the cup, from 0 (to the dome) to π.
 
-        Parameters
-        ----------
-        direction : array, (..., 3)
-            Direction of any length, for example of the force on the cup.
+        A direction, for example of the force on the cup, has any length.
 
-        Returns
-        -------
-        float or array
-            Angle from 0 (along the axis, to the dome) to π.
-
-        Raises
-        ------
-        ValueError
-            Not three components, or a direction without a length.
+        Raises ValueError: not three components, or a direction without a length.
         """
         vector = check_numeric("direction", direction)
         if tuple(getattr(vector, "shape", ()))[-1:] != (3,):
@@ -346,23 +328,11 @@ class Cup:
     def edge_distance(self, radius: Array, half_angle: Array, direction: Array = UP) -> Array:
         """Compute the arc length in mm from the edge of a contact to the rim.
 
-        It is the shortest arc, and negative where the rim cuts the contact.
+        It is the shortest arc, and negative where the rim cuts the contact: the contact-patch-to-rim distance
+        R (β/2 - γ - ε). With ε = 0 it is the distance of the contact's centre.
 
-        It is the contact-patch-to-rim distance R (β/2 - γ - ε). With ε = 0 it is the distance of the contact's centre.
-
-        Parameters
-        ----------
-        radius : float or array
-            Radius in mm of the sphere of the arc, for example of the socket.
-        half_angle : float or array
-            Half angle ε of the contact in rad.
-        direction : array, (..., 3)
-            Direction of the force on the cup, of any length; upwards by default.
-
-        Returns
-        -------
-        float or array
-            Distance in mm.
+        The radius R in mm is that of the sphere of the arc, for example of the socket; ε is the half angle of the
+        contact in rad. Directions (..., 3) of the force on the cup have any length, and point upwards by default.
         """
         return (self.rim - self.tilt(direction) - half_angle) * radius
 

@@ -75,9 +75,12 @@ _BACK = 0.08  # thickness of a rigid backing, relative to the bore's radius
 
 def draw_section(axes: Axes, contact: OffAxisContact, units: Units = Units.SI) -> None:
     """Draw a section with ball, liner and backing, the pressure as a band on the bore, the rim and the load."""
+    from matplotlib.patches import Circle
+
     joint, radius = contact.joint, float(contact.joint.socket_radius)
     outer = _draw_socket(axes, contact, radius)
-    _draw_ball(axes, contact)
+    middle = float(contact.displacement @ lateral(contact)), float(contact.displacement[2])
+    axes.add_patch(Circle(middle, float(joint.ball_radius), facecolor=_BALL, edgecolor=INK, linewidth=0.9))
     _draw_pressure(axes, contact, radius)
     _draw_margin(axes, contact, radius, units)
     _draw_load(axes, contact, float(joint.ball_radius))
@@ -140,13 +143,6 @@ def _draw_socket(axes: Axes, contact: OffAxisContact, radius: float) -> float:
 def _corner(radius: float, angle: float) -> Numbers:
     """Return the point (1, 2) at a radius (mm) and a polar angle (rad)."""
     return radius * numpy.array([[sin(angle), cos(angle)]])
-
-
-def _draw_ball(axes: Axes, contact: OffAxisContact) -> None:
-    from matplotlib.patches import Circle
-
-    middle = float(contact.displacement @ lateral(contact)), float(contact.displacement[2])
-    axes.add_patch(Circle(middle, float(contact.joint.ball_radius), facecolor=_BALL, edgecolor=INK, linewidth=0.9))
 
 
 def _draw_pressure(axes: Axes, contact: OffAxisContact, radius: float) -> None:

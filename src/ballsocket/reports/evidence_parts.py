@@ -163,7 +163,6 @@ def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
 
 
 def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
-    """Label the cells of both sides with the values of their axes."""
     for side, set_ticks, set_label in (
         (across, axes.set_xticks, axes.set_xlabel),
         (down, axes.set_yticks, axes.set_ylabel),
@@ -215,7 +214,10 @@ def methods_figure(record: Record) -> Figure:
     axes.axvline(0.0, color=INK, linewidth=0.8)
     axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
     axes.set_ylim(len(keys) - 0.4, -0.6)
-    _legend(axes)
+    handles, labels = axes.get_legend_handles_labels()
+    if labels:
+        once = dict(zip(labels, handles, strict=True))
+        axes.legend(once.values(), once.keys(), **LEGEND)
     finish(axes, f"deviation from {pieces[0]['methods'][0]['name']} [%] (grey: required accuracy)", "")
     return figure
 
@@ -227,13 +229,6 @@ def _dots(axes: Axes, keys: Sequence[str], names: Sequence[str], method: Record,
     up = [keys.index(key) + 0.12 * (index - (len(names) - 1) / 2) for key in common]
     style: Any = {"color": numbered(index).colour, "marker": "osD^vP"[index % 6], "linestyle": "", "markersize": 5}
     axes.plot(off, up, **style, label=method["name"])
-
-
-def _legend(axes: Axes) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    once = dict(zip(labels, handles, strict=True))
-    if once:
-        axes.legend(once.values(), once.keys(), **LEGEND)
 
 
 def bands_figure(record: Record) -> Figure:

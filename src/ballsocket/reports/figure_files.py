@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
-from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.display import Plot, register_plot
+from ..core.display import PLOTS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,26 +69,19 @@ def default_style() -> Iterator[None]:
 
 
 _PLOTS = {
-    "band_figure": ("study_plots", "band_figure"),
-    "contacts": ("press_plots", "plot"),
-    "cycle_film": ("film_results", "cycle_film_figure"),
-    "design_map": ("study_plots", "design_map"),
-    "film": ("film_results", "film_figure"),
-    "front_figure": ("study_plots", "front_figure"),
-    "identification": ("identify_results", "fit_figure"),
-    "sensitivity_figure": ("study_plots", "sensitivity_figure"),
-    "wear": ("hip_comparison", "wear_figure"),
+    "band_figure": "study_plots:band_figure",
+    "contacts": "press_plots:plot",
+    "cycle_film": "film_results:cycle_film_figure",
+    "design_map": "study_plots:design_map",
+    "film": "film_results:film_figure",
+    "front_figure": "study_plots:front_figure",
+    "identification": "identify_results:fit_figure",
+    "sensitivity_figure": "study_plots:sensitivity_figure",
+    "wear": "hip_comparison:wear_figure",
 }
 """Module and function of each registered plot by its name."""
 
 
 def register_plots() -> None:
     """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
-    for name, (module, function) in _PLOTS.items():
-        register_plot(name, partial(_load_plot, module, function))
-
-
-def _load_plot(module: str, function: str) -> Plot:
-    """Import a module of this room, and return one of its functions."""
-    plot: Plot = getattr(import_module(f"{__package__}.{module}"), function)
-    return plot
+    PLOTS.update((name, f"{__package__}.{function}") for name, function in _PLOTS.items())

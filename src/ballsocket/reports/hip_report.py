@@ -87,16 +87,11 @@ def _figures(history: History, bands: Bands | None) -> dict[str, tuple[str, Call
         figures["film_course"] = ("Film over the cycle", lambda run: hip_plots.film_figure(run.use, film), caption)
     if bands is not None:
         curve = partial(hip_plots.penetration_curve, bands=bands)
-        figures["penetration"] = ("Penetration", curve, _band_caption(bands))
+        caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
+        if bands.shared is not None:
+            caption += ", the dark band the same share of the patients at the median coefficient"
+        figures["penetration"] = ("Penetration", curve, f"{caption}.")
         if bands.indices is not None:
             caption = "Sobol's indices with 95 % intervals."
             figures["matters"] = ("Sensitivity", lambda _: hip_plots.share_figure(bands), caption)
     return figures
-
-
-def _band_caption(bands: Bands) -> str:
-    caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
-    shared = (
-        "." if bands.shared is None else ", the dark band the same share of the patients at the median coefficient."
-    )
-    return caption + shared

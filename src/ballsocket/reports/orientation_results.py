@@ -147,7 +147,6 @@ def _draw_rim(axes: Axes, orientations: Orientations, x: Numbers, y: Numbers) ->
 
 
 def _hatch(axes: Axes, x: Numbers, y: Numbers, where: Numbers, hatch: str, label: str) -> None:
-    """Hatch all cells at the points of a mask."""
     from matplotlib.patches import Rectangle
 
     if not where.any():

@@ -6,15 +6,17 @@ A page needs no other file: its style and its pictures are inside. The templates
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import date
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.answers import Answer, Table, grid
+from ..contact.verdict import bar_text, percent
+from ..core.answers import Answer, Check, Table, grid
 from ..core.checks import needs
 from ..core.input_files import open_input
+from ..core.quantities import QUANTITIES, Quantity
 from ..core.storage.atomic_files import check_ending, write_atomically
 from ..core.unit_systems import Units
 from ..files.joint_file import ReportDetails
@@ -23,6 +25,9 @@ from .figure_files import figure_bytes
 if TYPE_CHECKING:
     from jinja2 import Environment
     from matplotlib.figure import Figure
+
+Writer = Callable[[Quantity, float], str]
+"""Function that writes a number in internal units with its unit: `Units.text_of`, or `Reading.with_unit`."""
 
 Sections = Mapping[str, tuple[str, str | None]]
 """Title and HTML of each section by its id; the template has a block of that id where the HTML is None."""
@@ -176,6 +181,26 @@ def answer_lede(answer: Answer, units: Units = Units.SI) -> str:
     """Render title, first sentences and notes of a description as HTML."""
     lines, notes = ([units.sentence(line) for line in lines] for lines in ((answer.title, *answer.lines), answer.notes))
     return render_part("parts.html", "lede", lines, notes)
+
+
+def checks_html(rows: Sequence[Check], write: Writer) -> str:
+    """Render checks as a table in HTML, with sign, word and style of each result; narrow pages stack its cells."""
+    return render_part("parts.html", "checks", [_cells(row, write) for row in rows])
+
+
+def _cells(row: Check, write: Writer) -> dict[str, Any]:
+    quantity, ratio = QUANTITIES[row.quantity], row.ratio
+    return {
+        "title": row.title,
+        "demand": write(quantity, row.demand.value),
+        "bar": bar_text(row.demand, lambda value: write(quantity, value)),
+        "capacity": "–" if row.capacity is None else f"{write(quantity, row.capacity)} ({row.limit})",
+        "ratio": "–" if ratio is None else f"{percent(ratio.value)} %",
+        "width": f"{min(100.0, 100 * ratio.value) if ratio else 0.0:.1f}",
+        "state": "unknown" if ratio is None else row.verdict.word,
+        "result": row.result,
+        "source": row.source,
+    }
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:

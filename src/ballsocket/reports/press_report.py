@@ -12,9 +12,10 @@ from pathlib import Path
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
-from ..core.answers import grid
+from ..core.answers import Check, grid
 from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.unit_systems import Units, joint_sentence
+from ..design_checks import checks_of, unchecked_text, verdict_of
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..files.joint_file import JointFile, ReportDetails
@@ -28,10 +29,10 @@ from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
 from .pages import (
     HEAD_TEXTS,
     answer_table,
+    checks_html,
     letterhead,
     logo_address,
     render_page,

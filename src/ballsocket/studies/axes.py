@@ -58,10 +58,7 @@ class Axis(ABC):
 class GridAxis(Axis):
     """Axis of one parameter with listed values.
 
-    Raises
-    ------
-    ValueError
-        The same value twice.
+    Raises ValueError: the same value twice.
     """
 
     name: str
@@ -132,10 +129,7 @@ class MaterialAxis(Axis):
 
     An unknown yield stress is NaN.
 
-    Raises
-    ------
-    ValueError
-        No material, or the same material twice.
+    Raises ValueError: no material, or the same material twice.
     """
 
     name: str
@@ -238,20 +232,9 @@ def parameter_values(
 ) -> Numbers:
     """Convert the values of a parameter to float64, and check that they are finite or an allowed infinity.
 
-    Parameters
-    ----------
-    name : str
-        Name of the parameter.
-    values : array of shape (length,)
-    position : str
-        Text for the number of a value in a message.
-    numbering : sequence of int, optional
-        Numbers of the values; indices by default.
+    A message has the `position` of a value by its number: its index, or that of the `numbering`.
 
-    Raises
-    ------
-    ValueError
-        Other shapes or types, no values, or a value that is not finite.
+    Raises ValueError: other shapes or types, no values, or a value that is not finite.
     """
     if values.ndim != 1 or values.dtype.kind not in "iuf":
         raise ValueError(f"{name} must be a row of numbers, got {values.dtype} of shape {values.shape}")

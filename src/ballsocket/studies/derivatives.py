@@ -113,12 +113,8 @@ def jax_derivatives(
 
     The first call compiles. Parameters and results are those of `finite_differences`.
 
-    Raises
-    ------
-    ValueError
-        A model that JAX cannot trace; an unknown name; no load.
-    ImportError
-        JAX is not installed.
+    Raises ValueError: a model that JAX cannot trace; an unknown name; no load.
+    Raises ImportError: JAX is not installed.
     """
     names = _check_arguments(quantities, at)
     if not model.differentiable:
@@ -214,21 +210,11 @@ def local_uncertainty(
 ) -> LocalUncertainty:
     """Compute the elasticities of a contact, and its bands for tolerances.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of plain numbers.
-    cup : Cup
-        Rim of the socket.
-    load : mapping of str to float
-        One of force (N), indentation (mm), half_angle (rad), above 0.
-    tolerances : mapping of str to Rectangular, Normal or LogNormal
-        Independent distributions, by parameter.
+    The joint has plain numbers; the load is one of force (N), indentation (mm), half_angle (rad), above 0. Tolerances
+    are independent distributions, by parameter.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, a load of 0, joints without a result, or a joint or load outside its own tolerances.
+    Raises ValueError: an unknown name, a load of 0, joints without a result, or a joint or load outside its own
+    tolerances.
     """
     model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
     check_aims(model, tolerances)
@@ -237,7 +223,18 @@ def local_uncertainty(
     numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
     point = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
-    bands = _compute_bands(joint, cup, load, tolerances) if tolerances else {}
+    if not tolerances:
+        return LocalUncertainty(model=model.name, changes=changes, band={})
+    design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
+    check_values(design)
+    samples = design.values_in([slice(None)])
+    fixed = {} if set(samples) & set(load) else dict(load)
+    ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
+    scattered = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
+    results = press_quantities(scattered, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
+    if not all(numpy.isfinite(values).all() for values in results.values()):
+        raise ValueError(_NO_RESULT)
+    bands = {name: _ends(values) for name, values in results.items()}
     return LocalUncertainty(model=model.name, changes=changes, band=bands)
 
 
@@ -253,23 +250,11 @@ def off_axis_uncertainty(
     Each quantity is a sum of quadratics, one of each toleranced parameter through three presses. Interactions of the
     parameters are neglected. `band` also has the edge distance.
 
-    Parameters
-    ----------
-    joint : Joint
-        Joint of plain numbers.
-    model : OffAxisContactModel
-        Model with its cup and the direction of the load.
-    load : mapping of str to float
-        One of force (N), indentation (mm), half_angle (rad), above 0.
-    tolerances : mapping of str to Rectangular, Normal or LogNormal
-        Independent distributions of parameters of the joint, of the load, or of its direction; at least one.
-    tilt : float, optional
-        Angle (rad) between load and cup's axis, if it sets the direction of the load.
+    Joint, load and tolerances are those of `local_uncertainty`, with at least one tolerance: of the joint, of the load,
+    or of its direction. The model has its cup and the direction of the load, unless the `tilt` (rad) between load and
+    cup's axis sets it.
 
-    Raises
-    ------
-    ValueError
-        An unknown name, joints without a result, or a number outside its own tolerances.
+    Raises ValueError: an unknown name, joints without a result, or a number outside its own tolerances.
     """
     angles = {name: getattr(model.cup, name) for name in _ORIENTATION} if tilt is None else {"tilt": tilt}
     for name in tolerances:
@@ -308,16 +293,3 @@ def _check_nominal_values(joint: Joint, stated: Mapping[str, float], tolerances:
 
 def _ends(values: Numbers) -> tuple[float, ...]:
     return tuple(float(end) for end in numpy.quantile(values, _BAND_PROBABILITIES))
-
-
-def _compute_bands(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances: Mapping[str, Distribution]) -> Bands:
-    design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
-    check_values(design)
-    samples = design.values_in([slice(None)])
-    fixed = {} if set(samples) & set(load) else dict(load)
-    ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
-    model = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
-    results = press_quantities(model, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
-    if not all(numpy.isfinite(values).all() for values in results.values()):
-        raise ValueError(_NO_RESULT)
-    return {name: _ends(values) for name, values in results.items()}

@@ -36,22 +36,12 @@ from .sampling import MAX_SOBOL_COUNT, Method
 class Design:
     """Points of a study: all combinations of its axes, with fixed parameters.
 
-    Attributes
-    ----------
-    axes : tuple of Axis
-    fixed : mapping of str to float
-    held : mapping of str to float
-        Lengths of the joint that stay while others vary, see `holding`.
-
-    Raises
-    ------
-    ValueError
-        An unknown parameter, one that varies twice, or parameters that contradict each other.
+    Raises ValueError: an unknown parameter, one that varies twice, or parameters that contradict each other.
     """
 
     axes: tuple[Axis, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
-    held: Mapping[str, float] = field(default_factory=dict)
+    held: Mapping[str, float] = field(default_factory=dict)  #: lengths that stay while others vary, see `holding`
 
     def __post_init__(self) -> None:
         names = self.names
@@ -101,17 +91,9 @@ class Design:
         return (*(name for axis in self.axes for name in axis.names), *self.constants)
 
     def values_in(self, box: Sequence[slice]) -> dict[str, Numbers]:
-        """Return the values of all parameters in a box of points.
+        """Return the values of all parameters in a box of points, given by its range along each axis.
 
-        Parameters
-        ----------
-        box : sequence of slice
-            Range along each axis.
-
-        Returns
-        -------
-        dict of str to array
-            Arrays with one dimension per axis, which broadcast against each other.
+        The arrays have one dimension per axis, and broadcast against each other.
         """
         arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.constants.items()}
         for dimension, (axis, section) in enumerate(zip(self.axes, box, strict=True)):
@@ -161,10 +143,7 @@ def check_values(design: Design) -> None:
 
     Of a span only the ends are checked.
 
-    Raises
-    ------
-    ValueError
-        A value is not allowed; the message has the first one.
+    Raises ValueError: a value is not allowed; the message has the first one.
     """
     for axis in design.axes:
         if isinstance(axis, MaterialAxis):  # checked when they were made

@@ -18,10 +18,7 @@ from ..core.kinds import Unit
 class Rectangular:
     """Uniform distribution from `low` to `high`.
 
-    Raises
-    ------
-    ValueError
-        An end that is not finite, or `low` not below `high`.
+    Raises ValueError: an end that is not finite, or `low` not below `high`.
     """
 
     low: float
@@ -126,10 +123,7 @@ _ROUNDING = 1e-9  # rounding error of a nominal value relative to the ends of it
 def check_nominal(name: str, nominal: float, distribution: Distribution, unit: Unit) -> None:
     """Check that a nominal value lies in the distribution of its quantity; otherwise its result lies outside the band.
 
-    Raises
-    ------
-    ValueError
-        The value lies outside; the message shows it in `unit`.
+    Raises ValueError: the value lies outside; the message shows it in `unit`.
     """
     bounded = all(abs(float(end)) < inf for end in distribution.frozen.support())
     probabilities = (0.0, 1.0) if bounded else (_TAIL_PROBABILITY, 1 - _TAIL_PROBABILITY)

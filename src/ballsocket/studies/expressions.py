@@ -149,10 +149,7 @@ DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
 def distribution_of(name: str, content: Any, read: Read) -> Distribution:
     """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
 
-    Raises
-    ------
-    ValueError
-        Other keys, or numbers that are not allowed.
+    Raises ValueError: other keys, or numbers that are not allowed.
     """
     for keys, make in _DISTRIBUTIONS:
         if isinstance(content, Mapping) and set(content) == set(keys):

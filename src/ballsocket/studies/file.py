@@ -49,7 +49,6 @@ class ScatteredNumber(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> Distribution:
-        """Convert a distribution."""
         return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
 
 
@@ -92,7 +91,6 @@ class AxisValues(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> float | list[float] | Span:
-        """Convert the values of an axis."""
         if isinstance(value, list):
             return [parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)]
         if isinstance(value, str) and ".." in value:
@@ -118,7 +116,6 @@ class AxisMaterials(Parsed):
 
     @classmethod
     def parse(cls, name: str, value: Any) -> list[Any]:
-        """Convert the names of materials."""
         return [named_material(name, material) for material in (value if isinstance(value, list) else [value])]
 
 

@@ -117,10 +117,7 @@ class Limit:
 def joint_dimension(study: xarray.Dataset, name: str) -> Any:
     """Return a dimension (mm) or material property of the joints of a study: varied, fixed, or derived from others.
 
-    Raises
-    ------
-    ValueError
-        The joint has no such number, such as the modulus of a rigid ball.
+    Raises ValueError: the joint has no such number, such as the modulus of a rigid ball.
     """
     if name in study.coords:
         return study[name]
@@ -149,11 +146,8 @@ def relative_margins(
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
     """Compute the smallest margin of all limits on a plane, each relative to its largest value, between -1 and 1.
 
-    Returns
-    -------
-    worst, best : array (y, x)
-        Margins of the worse and of the better end of the error bar: negative, the first where a limit is not kept, and
-        the second where one is exceeded.
+    Returns the margins (y, x) of the worse and of the better end of the error bar: negative, the first where a limit is
+    not kept, and the second where one is exceeded.
     """
     worst, best = numpy.ones((2, study.sizes[y_axis], study.sizes[x_axis]))
     for limit in limits:
@@ -204,14 +198,8 @@ def undecided_reason(study: xarray.Dataset, limits: Iterable[Limit]) -> str:
 def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
     """Describe the reason why no point of a study is allowed: limits, or a model without a result.
 
-    Parameters
-    ----------
-    study : xarray.Dataset
-    limits : iterable of Limit
-    refused : str
-        Beginning of the sentence for limits, such as "no point is allowed".
-    place : str
-        End of the sentence for a model without a result, such as "at any point".
+    `refused` begins the sentence for limits, such as "no point is allowed"; `place` ends that for a model without a
+    result, such as "at any point".
     """
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):

@@ -38,25 +38,11 @@ def vary_joint(joint: Joint, values: Mapping[str, Array]) -> tuple[Joint, Array]
     The joint keeps the lengths that it was made from, see `hold`. A combination without a ball, clearance or thickness
     of the liner is impossible; it gets placeholder dimensions.
 
-    Parameters
-    ----------
-    joint : Joint
-        Values of the parameters that do not vary.
-    values : mapping of str to array
-        Values by names of `PARAMETERS` without the loads, in mm, MPa; arrays broadcast against each other.
+    The values by names of `PARAMETERS`, without the loads, are in mm and MPa; arrays broadcast against each other.
+    Returns the joint of arrays, and a bool array that is False for an impossible joint.
 
-    Returns
-    -------
-    joint : Joint
-        Joint of arrays.
-    possible : bool array
-        False for an impossible joint.
-
-    Raises
-    ------
-    ValueError
-        A number outside its range, names that contradict each other, lengths of which several could stay, or a
-        property of a rigid ball or of a missing shell.
+    Raises ValueError: a number outside its range, names that contradict each other, lengths of which several could
+    stay, or a property of a rigid ball or of a missing shell.
     """
     check_contradictions(values)
     ball_names = [name for name in PARTS if name.startswith("ball_") and name in values]
@@ -78,10 +64,7 @@ def hold(joint: Joint, names: Iterable[str]) -> dict[str, float]:
 
     Three lengths determine a joint. It keeps those that it was made from, as far as the varied ones allow.
 
-    Raises
-    ------
-    ValueError
-        Several of them could stay.
+    Raises ValueError: several of them could stay.
     """
     varied = [name for name in names if name in (*LENGTHS, *SHELL)]
     if "shell_thickness" in varied and not joint.shell:

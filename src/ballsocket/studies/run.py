@@ -54,24 +54,12 @@ _MANY_HOURS = 100.0  # number of hours that is written without digits after the 
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a study.
+    """Progress of a study."""
 
-    Attributes
-    ----------
-    n_done : int
-        Number of points with a result.
-    n_points : int
-        Total number of points.
-    n_stored : int
-        Number of points with a stored result at the start.
-    seconds : float
-        Time since the start in s.
-    """
-
-    n_done: int
-    n_points: int
-    n_stored: int
-    seconds: float
+    n_done: int  #: number of points with a result
+    n_points: int  #: total number of points
+    n_stored: int  #: number of points with a stored result at the start
+    seconds: float  #: time since the start in s
 
     @property
     def rate(self) -> float:

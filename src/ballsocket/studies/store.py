@@ -52,12 +52,8 @@ def check_store(path: str | Path) -> None:
 def read(path: str | Path) -> xarray.Dataset:
     """Open a stored study at a path or an address; its numbers are read when they are used.
 
-    Raises
-    ------
-    OSError
-        The store does not exist or does not respond.
-    ValueError
-        The path is not a study.
+    Raises OSError: the store does not exist or does not respond.
+    Raises ValueError: the path is not a study.
     """
     import xarray
 

@@ -144,10 +144,7 @@ class Task:
     def __call__(self, number: int) -> dict[str, Numbers]:
         """Compute the variables of one block, each of the block's shape.
 
-        Raises
-        ------
-        ValueError
-            This process has another version of the package than the process that started the study.
+        Raises ValueError: this process has another version of the package than the process that started the study.
         """
         check_worker_code(self.code)
         box = self.blocks[number]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import combinations
 from math import comb
 
@@ -91,8 +91,11 @@ def sobol_indices(
     for name, values in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
         arrays[f"first_order{name}"] = values[:, :dimension]
         arrays[f"total_order{name}"] = values[:, dimension : 2 * dimension]
-        if second_order:
-            arrays[f"second_order{name}"] = _symmetric(values[:, 2 * dimension :], pairs, dimension)
+        if second_order:  # a symmetric matrix for each quantity, with NaN on its diagonal
+            matrix = numpy.full((len(values), dimension, dimension), numpy.nan)
+            for k, (i, j) in enumerate(pairs):
+                matrix[:, i, j] = matrix[:, j, i] = values[:, 2 * dimension + k]
+            arrays[f"second_order{name}"] = matrix
     return arrays
 
 
@@ -169,7 +172,14 @@ def shapley_effects(
         explained |= {(): 0 * unexplained[..., 0], tuple(range(dimension)): 1 + 0 * unexplained[..., 0]}
         rows = [explained[(index,)] for index in range(dimension)]
         rows += [1 - explained[_without(range(dimension), index)] for index in range(dimension)]
-        return numpy.stack([*rows, *_shapley_values(explained, dimension)], axis=-1)
+        for index in range(dimension):  # Shapley effects
+            gains = [
+                (share - explained[_without(subset, index)]) / (dimension * comb(dimension - 1, len(subset) - 1))
+                for subset, share in explained.items()
+                if index in subset
+            ]
+            rows.append(numpy.sum(gains, axis=0))
+        return numpy.stack(rows, axis=-1)
 
     arrays: dict[str, Numbers] = {}
     for name, results in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
@@ -181,18 +191,6 @@ def shapley_effects(
 
 def _without(indices: Sequence[int], removed: int) -> tuple[int, ...]:
     return tuple(index for index in indices if index != removed)
-
-
-def _shapley_values(explained: dict[tuple[int, ...], Numbers], dimension: int) -> Iterator[Numbers]:
-    for index in range(dimension):
-        yield numpy.sum(
-            [
-                (share - explained[_without(subset, index)]) / (dimension * comb(dimension - 1, len(subset) - 1))
-                for subset, share in explained.items()
-                if index in subset
-            ],
-            axis=0,
-        )
 
 
 def _two_sets(dimension: int, count: int, seed: int) -> Numbers:
@@ -215,27 +213,15 @@ def _evaluate_mixed(evaluate: SampledFunction, base: Numbers, other: Numbers) ->
     return numpy.ascontiguousarray(numpy.moveaxis(results.reshape(-1, dimension, count), 1, 0))
 
 
-def _symmetric(values: Numbers, pairs: Sequence[tuple[int, int]], dimension: int) -> Numbers:
-    """Arrange the values of pairs in a symmetric matrix for each quantity, with NaN on its diagonal."""
-    matrix = numpy.full((len(values), dimension, dimension), numpy.nan)
-    for k, (i, j) in enumerate(pairs):
-        matrix[:, i, j] = matrix[:, j, i] = values[:, k]
-    return matrix
-
-
 def _with_intervals(
     terms: Numbers, statistic: Callable[[Numbers], Numbers], confidence: float | None, seed: int
 ) -> dict[str, Numbers]:
     """Compute a statistic of the means of terms, and the ends of its interval by the BCa bootstrap.
 
-    Resamples are drawn in chunks, so that the memory grows only linearly with the number of points. The jackknife of
-    means is computed directly.
-
-    The terms have the shape (n_terms, n_quantities, n_points); the statistic maps means (..., n_quantities, n_terms)
-    to values (..., n_quantities, n_values). The result has the statistic under "", and the ends under "_low" and
-    "_high", each (n_quantities, n_values).
-
-    Efron & Tibshirani 1993, An Introduction to the Bootstrap, section 14.3.
+    Resamples are drawn in chunks: the memory grows only linearly with the number of points. The terms have the shape
+    (n_terms, n_quantities, n_points); the statistic maps means (..., n_quantities, n_terms) to values (...,
+    n_quantities, n_values). The result has the statistic under "", and the ends under "_low" and "_high", each
+    (n_quantities, n_values). Efron & Tibshirani 1993, An Introduction to the Bootstrap, section 14.3.
     """
     from scipy.special import ndtr, ndtri
 

@@ -15,9 +15,9 @@ from scipy.interpolate import RectBivariateSpline
 from ...contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
 from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES
 from ...core.validity import Status
+from ...design_checks import checks_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...problem.cup import Cup
-from ...reports.check_table import checks_of
 from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table

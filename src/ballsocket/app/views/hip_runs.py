@@ -9,6 +9,8 @@ from typing import Any
 import numpy
 
 from ...contact.verdict import EDGE_DISTANCE, Bounded, exact_number
+from ...core.answers import Check
+from ...design_checks import checks_at, sorted_checks, wear_check
 from ...elasticity.off_axis.grid import Grid
 from ...files.joint_file import JointFile
 from ...hip import HipSimulation, History, Lubricant, PatientVariability, population
@@ -16,7 +18,6 @@ from ...hip.ball_wear import interpolation_at
 from ...hip.contact_checks import ContactCheck, largest_utilisation, list_check_notes
 from ...hip.cycle_registry import CYCLES
 from ...problem.cup import Cup
-from ...reports.check_table import Check, checks_at, sorted_checks, wear_check
 from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import penetration_curve
 from ...studies.distributions import LogNormal

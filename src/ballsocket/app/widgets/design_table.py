@@ -10,10 +10,11 @@ from math import isnan, nan
 from ...comparison import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...contact.verdict import Verdict, range_text
+from ...core.answers import Check
 from ...core.quantities import CONTACT, JOINT
+from ...design_checks import checks_of, verdict_of
 from ...files.joint_file import JointFile
 from ...question import real_cup_reason
-from ...reports.check_table import Check, checks_of, verdict_of
 from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen

@@ -12,13 +12,15 @@ from ...comparison import Comparison, relative_deviation
 from ...contact import Contact
 from ...contact.describe import values_of
 from ...contact.verdict import Verdict
+from ...core.answers import Check
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, HEADLINE, Quantity
 from ...core.unit_systems import Units
+from ...design_checks import checks_of, unchecked_text, verdict_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
-from ...reports.check_table import Check, checks_html, checks_of, unchecked_text, verdict_of
+from ...reports.pages import checks_html
 from ...reports.style import line_of
 from ..pictures.chart import swatch
 from .reading import Reading, number_text

@@ -139,7 +139,6 @@ def _submit_until_worker_dies(
 
 @contextmanager
 def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
-    """Start worker processes, and stop them at the end of the block."""
     with limit_threads():
         pool = ProcessPoolExecutor(
             workers, mp_context=get_context("spawn"), initializer=_initialize_worker, initargs=(work,)

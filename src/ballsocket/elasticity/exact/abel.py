@@ -175,10 +175,7 @@ class AbelState(PeakPressure):
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Tangent stiffness dF/dd in N/mm.
-
-        It is that of a punch of constant contact area, because G is continuous at the edge.
-        """
+        """Tangent stiffness dF/dd in N/mm: of a punch of constant contact area, because G is continuous at the edge."""
         punch = (self._inverse @ self._indentation_transform[:, :-1, None])[..., 0]
         total = numpy.sum(self._weights * numpy.cos(1.5 * self._point_angles) * punch, axis=-1)
         return 2 * pi * self._squared_radius * total / self.kernel.compliance

@@ -77,9 +77,10 @@ class ExactCurve(ModelWrapper):
         object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        solution = solve_per_joint(
-            self, joint, load, lambda plain_joint, loads: chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
-        )
+        def press(plain_joint: Joint, loads: numpy.ndarray) -> JointContacts:
+            return chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
+
+        solution = solve_per_joint(self, joint, load, press)
         return make_solver_result(solution, self.model.tolerance, load)
 
 
@@ -95,7 +96,6 @@ def exact_stress_ratio(joint: Joint, half_angle: Array) -> Array:
     The ratio does not depend on the clearance, which may be a preload. It is NaN for half angles (rad) that the exact
     solution does not reach.
     """
-    contact = ExactCurve().press(
-        joint.replace(clearance=abs(joint.clearance)).without_strengths(), half_angle=half_angle
-    )
+    with_clearance = joint.replace(clearance=abs(joint.clearance)).without_strengths()
+    contact = ExactCurve().press(with_clearance, half_angle=half_angle)
     return contact.von_mises / contact.max_pressure

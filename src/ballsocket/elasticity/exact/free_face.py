@@ -21,12 +21,8 @@ from ...core.stress import Stress
 from ...problem import Support
 from .modes import Socket
 
-MODES = 40
-"""Number of modes of pressure whose tractions on the equator are released."""
-
-POLAR_TERMS = 12
-"""Number of polynomials along the meridian."""
-
+MODES = 40  # number of modes of pressure whose tractions on the equator are released
+POLAR_TERMS = 12  # number of polynomials along the meridian
 _RADIAL = 5  # degree of the polynomials through each layer
 
 
@@ -87,39 +83,27 @@ class FreeFace:
         The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
         """
         r, w, f, slope, layer = self._radial_functions
-        young, nu = (
-            numpy.array([getattr(s, name) for s in self.socket.shells])[layer] for name in ("young", "poisson")
-        )
+        young, nu = numpy.array([(shell.young, shell.poisson) for shell in self.socket.shells])[layer].T
         lame, shear = _lame_constants(young, nu)
         x, weight = (numpy.array(part) for part in gauss_legendre(POLAR_TERMS + 3))
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(x)
         hoop, g = Q_rate + Q_cot, slope * r[:, None]
 
-        def integrate_polar(a: Numbers, b: Numbers) -> Numbers:
+        def polar(a: Numbers, b: Numbers) -> Numbers:  # integrals along the meridian: (a, b)
             return a.T @ (weight[:, None] * b)
 
-        def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
-            """Integrate products of radial functions a and b, times a factor, over the radius: (a, b)."""
+        def radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:  # integrals over the radius: (a, b)
             return a.T @ ((w * factor)[:, None] * b)
 
         # rr, rp, pp: blocks of the radial, mixed and polar displacement coefficients
-        mixed = integrate_radial(g, f, lame)
-        rr = numpy.kron(
-            integrate_radial(g, g, lame + 2 * shear)
-            + 2 * (mixed + mixed.T)
-            + integrate_radial(f, f, 4 * (lame + shear)),
-            integrate_polar(P, P),
-        ) + numpy.kron(integrate_radial(f, f, shear), integrate_polar(P_rate, P_rate))
-        rp = numpy.kron(mixed + integrate_radial(f, f, 2 * (lame + shear)), integrate_polar(P, hoop)) + numpy.kron(
-            integrate_radial(f, g - f, shear), integrate_polar(P_rate, Q)
-        )
-        pp = (
-            numpy.kron(integrate_radial(f, f, lame), integrate_polar(hoop, hoop))
-            + numpy.kron(
-                integrate_radial(f, f, 2 * shear), integrate_polar(Q_rate, Q_rate) + integrate_polar(Q_cot, Q_cot)
-            )
-            + numpy.kron(integrate_radial(g - f, g - f, shear), integrate_polar(Q, Q))
-        )
+        mixed, kron = radial(g, f, lame), numpy.kron
+        stretch = radial(g, g, lame + 2 * shear) + 2 * (mixed + mixed.T) + radial(f, f, 4 * (lame + shear))
+        rr = kron(stretch, polar(P, P)) + kron(radial(f, f, shear), polar(P_rate, P_rate))
+        rp = kron(mixed + radial(f, f, 2 * (lame + shear)), polar(P, hoop))
+        rp = rp + kron(radial(f, g - f, shear), polar(P_rate, Q))
+        pp = kron(radial(f, f, lame), polar(hoop, hoop))
+        pp = pp + kron(radial(f, f, 2 * shear), polar(Q_rate, Q_rate) + polar(Q_cot, Q_cot))
+        pp = pp + kron(radial(g - f, g - f, shear), polar(Q, Q))
         return numpy.block([[rr, rp], [rp.T, pp]])
 
     @cached_property

@@ -135,9 +135,7 @@ def _distance_moments(y: Numbers, size: int) -> Numbers:
     return moments
 
 
-ORDER = 6
-"""Number of terms of the kernel's expansion that are summed in closed form."""
-
+ORDER = 6  # number of terms of the kernel's expansion that are summed in closed form
 _MAX_TERMS = 30  # of the power series, which converge like (x/2π)²
 
 

@@ -280,9 +280,7 @@ class Hemisphere:
             return {name: numpy.where(inside, numpy.expm1(after[name] - before[name]), nan) for name in CHANGES}
 
 
-CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")
-"""Quantities of a contact whose change is computed."""
-
+CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")  # quantities of a contact whose change is computed
 _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1 - 1e-9, 4, 1e-3, 1e-3
 
 

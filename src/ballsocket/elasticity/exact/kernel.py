@@ -14,6 +14,7 @@ to the integral at the points and at t = ε. They are linear in a_1 .. a_6 and i
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import ceil, pi
@@ -217,20 +218,19 @@ class Kernel:
 
     def excess(self, degrees: Numbers) -> Numbers:
         """Compute the excess ρ_n = c_n (n + ½)/C - 1 of the modal compliance of both bodies together."""
-        socket = self.socket.excess(degrees)
-        if self.ball is None:
-            return socket
-        share = self.ball.asymptote / self.compliance
-        return (1 - share) * socket + share * self.ball.excess(degrees)
+        return self._mix(lambda body: body.excess(degrees))
 
     @cached_property
     def expansion(self) -> Numbers:
         """Coefficients a_1 .. a_8 of the expansion of ρ_n in 1/(n + ½)."""
-        socket = self.socket.expansion(ORDER + 2)
+        return self._mix(lambda body: body.expansion(ORDER + 2))
+
+    def _mix(self, quantity: Callable[[Socket | ElasticBall], Numbers]) -> Numbers:
+        """Compute the mean of a quantity of both bodies, weighted with their shares of the compliance C."""
         if self.ball is None:
-            return socket
+            return quantity(self.socket)
         share = self.ball.asymptote / self.compliance
-        return (1 - share) * socket + share * self.ball.expansion(ORDER + 2)
+        return (1 - share) * quantity(self.socket) + share * quantity(self.ball)
 
     @cached_property
     def remainder(self) -> Numbers:
@@ -241,10 +241,7 @@ class Kernel:
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
     def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
-        """Compute the integral operators of the kernel over [-ε, ε] for even and for odd functions f.
-
-        They are ½ ∫ k(t - s) f(s) ds.
-        """
+        """Compute the integral operators ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even and for odd functions f."""
         operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)
         return operators

@@ -58,9 +58,8 @@ class LoadCurve:
 
     def state(self, angle: Numbers, points: int) -> AbelState:
         """Make the contacts with these half angles (rad), on a grid with this number of points."""
-        return AbelState(
-            kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points))
-        )
+        intervals = Intervals(half_angle=angle, grid=cached_grid(points))
+        return AbelState(kernel=self.kernel, gap=self.gap, intervals=intervals)
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
         state = self.state(angle, points)
@@ -115,10 +114,8 @@ class LoadCurve:
             return self._knot_state
         inside = _ANGLES[self._max_computed_angle > _ANGLES]
         margin = self._max_computed_angle - inside.max(initial=0.0)
-        return self.state(
-            numpy.append(inside, self._max_computed_angle - margin * numpy.array([0.5, 0.2, 0.07, 0.02])),
-            _COARSE_POINTS,
-        )
+        outermost = self._max_computed_angle - margin * numpy.array([0.5, 0.2, 0.07, 0.02])
+        return self.state(numpy.append(inside, outermost), _COARSE_POINTS)
 
     def knots_in(self, window: slice) -> AbelState | None:
         """Return the contacts at a slice of the tabulated half angles, or None if one of them is not valid."""
@@ -132,11 +129,8 @@ class LoadCurve:
         goal = numpy.log(load)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
         width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
-        cubic = (
-            y[i] * (1 + 2 * t) * (1 - t) ** 2
-            + y[i + 1] * t * t * (3 - 2 * t)
-            + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
-        )
+        cubic = y[i] * (1 + 2 * t) * (1 - t) ** 2 + y[i + 1] * t * t * (3 - 2 * t)
+        cubic = cubic + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
         bounded = numpy.clip(cubic, y[i], y[i + 1])
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), bounded))
 

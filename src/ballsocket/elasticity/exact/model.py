@@ -79,6 +79,7 @@ class Exact(Model):
         check_gap(self.gap)
 
     contact_type: ClassVar[type[Contact]] = ElasticContact
+    is_closed_sphere: ClassVar[bool] = True
     differentiable: ClassVar[bool] = False
     smooth_step: ClassVar[float] = 2e-3
     seconds_a_press: ClassVar[float] = 3e-3

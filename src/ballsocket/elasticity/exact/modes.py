@@ -268,10 +268,7 @@ def _excess_polynomials(nu: float) -> tuple[list[float], list[float]]:
 
 
 def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
-    """Compute the excess ρ_n of an infinite socket at q = n + ½, or of a ball at q = -(n + ½).
-
-    The excess is ρ_n = c_n (n + ½)/C - 1.
-    """
+    """Compute ρ_n = c_n (n + ½)/C - 1 of an infinite socket at q = n + ½, or of a ball at q = -(n + ½)."""
     numerator, _ = _excess_polynomials(nu)
     return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
 

@@ -18,8 +18,7 @@ from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisp
 from .kernel import Intervals
 from .load_curve import LoadCurve
 
-MIN_HALF_ANGLE = radians(1.0)
-"""Half angle in rad of the narrowest contact whose interior is computed."""
+MIN_HALF_ANGLE = radians(1.0)  # half angle in rad of the narrowest contact whose interior is computed
 
 _SIMILAR_ANGLE = radians(1.5)
 """Half angle in rad of the contact whose stress ratio stands for narrower ones; it needs fewer modes than 1°."""
@@ -75,10 +74,8 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
         angles, depths = _refine_points_around(angles, int(i)), _refine_points_around(depths, int(j))
-        maximum = Peak(
-            von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
-        )
-    return maximum
+    depth, angle = float(depths[_HALF_INTERVALS]), float(angles[_HALF_INTERVALS])
+    return Peak(von_mises=float(values[i, j]), depth=depth, angle=angle)
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
@@ -102,9 +99,7 @@ def estimate_von_mises(state: AbelState) -> Numbers:
     return _evaluate_contacts(estimate_peak, state, numpy.ones_like(state.half_angle, dtype=bool))
 
 
-VON_MISES_TOLERANCE = 0.1
-"""Relative error of `estimate_von_mises`."""
-
+VON_MISES_TOLERANCE = 0.1  # relative error of `estimate_von_mises`
 _FEWER_MODES = 8  # the estimate divides the number of modes by this
 _MAX_SEARCH_ANGLE = radians(85.0)  # the stress in the corner of the rim is unbounded
 
@@ -132,9 +127,11 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
 
 def largest_von_mises(state: AbelState, reachable: Numbers) -> Numbers:
     """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others."""
-    return _evaluate_contacts(
-        lambda contact: find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises, state, reachable
-    )
+
+    def peak(contact: AbelState) -> float:
+        return find_peak_stress(contact, contact.kernel.socket.shells[0].thickness).von_mises
+
+    return _evaluate_contacts(peak, state, reachable)
 
 
 def _evaluate_contacts(peak: Callable[[AbelState], float], state: AbelState, mask: Numbers) -> Numbers:

@@ -25,9 +25,7 @@ Matrix = numpy.ndarray
 
 _MAX_LOG_RATIO = 100.0  # ln(b/R2) of a layer that counts as infinite
 _MIN_DENOMINATOR = 1e-17  # for an incompressible layer at n = 0, which is rigid
-
-UNIT: Matrix = numpy.eye(2)[:, :, None]
-"""Unit matrix for all degrees."""
+UNIT: Matrix = numpy.eye(2)[:, :, None]  # unit matrix for all degrees
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:
@@ -95,10 +93,7 @@ class Wave:
 
 
 def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the wave of the powers r^(n-1) and r^(n+1), which grow outwards.
-
-    The displacements of r^(n-1) are u = (n, 1).
-    """
+    """Make the wave of r^(n-1) and r^(n+1), which grow outwards; r^(n-1) has the displacements u = (n, 1)."""
     compressibility = 1 - 2 * nu
     denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
     weight = (2 - nu - compressibility * n) / denominator
@@ -108,10 +103,7 @@ def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
 
 
 def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the wave of the powers r^-(n+2) and r^-n, which decay outwards.
-
-    The displacements of r^-(n+2) are u = (-n - 1, 1).
-    """
+    """Make the wave of r^-(n+2) and r^-n, which decay outwards; r^-(n+2) has the displacements u = (-n - 1, 1)."""
     compressibility = 1 - 2 * nu
     denominator = n + 1 + compressibility * (2 * n + 1)
     weight = (3 * (1 - nu) + compressibility * n) / denominator
@@ -183,13 +175,10 @@ class SupportedLayer:
         """Compliance matrix S of the layer: displacements u per traction r σ on the inner surface."""
         # 1 + reflection nearly cancels in a thin layer on a stiff backing: first as if the outer surface were fixed
         x = self._log_ratio
-        backing_difference = _matmul(self.condition[1], self._growing_wave.K - self._decaying_wave.K)
-        fixed_term = self._growing_wave.decay_deficit(x) + self._growing_wave.propagate(
-            x, self._decaying_wave.decay_deficit(x)
-        )
-        backing_term = self._growing_wave.propagate(
-            x, _matmul(_matmul(self._condition_inverse, backing_difference), self._transmission)
-        )
+        growing, decaying = self._growing_wave, self._decaying_wave
+        fixed_term = growing.decay_deficit(x) + growing.propagate(x, decaying.decay_deficit(x))
+        backing = _matmul(self._condition_inverse, _matmul(self.condition[1], growing.K - decaying.K))
+        backing_term = growing.propagate(x, _matmul(backing, self._transmission))
         return _matmul(fixed_term + backing_term, self._traction_response)
 
     @cached_property
@@ -206,9 +195,8 @@ class SupportedLayer:
     def outer_traction(self, traction: Matrix) -> Matrix:
         """Compute the traction r σ on the outer surface from that on the inner surface."""
         growing, decaying = self._wave_amplitudes(traction)
-        return _matmul(self._growing_wave.K, growing) + _matmul(
-            self._decaying_wave.K, _matmul(self._transmission, decaying)
-        )
+        transmitted = _matmul(self._transmission, decaying)
+        return _matmul(self._growing_wave.K, growing) + _matmul(self._decaying_wave.K, transmitted)
 
     def fields(self, traction: Matrix, r: numpy.ndarray) -> numpy.ndarray:
         """Compute displacements and stresses at radii r (mm) from the traction r σ on the inner surface.

@@ -1,4 +1,4 @@
-"""Ball and socket as elastic bodies with their supports, condensed onto their contact surfaces.
+"""Ball and socket as elastic bodies with their supports, condensed onto their contact surfaces, and pairs of these.
 
 The ball is the half that faces the socket, supported at its equator, which stays plane and is free to expand. The
 socket ends at its rim. Its outer surface is fixed; or it is free, and the socket stands on its rim, which stays on its
@@ -7,20 +7,24 @@ cone.
 The nodes of a structured block are ordered by nested dissection, which needs no graph here: halve the longer side and
 place the line between the halves last. The normal displacements of the contact come at the very end. The last block of
 the factors is then the factored Schur complement, the stiffness at the contact.
+
+The pressure is linear between the corners of the socket's elements. It is integrated on the sphere itself, between
+the corners of both bodies, so their meshes need not match.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import inf
+from math import inf, pi
 from typing import Any
 
 import numpy
-from scipy.sparse import csc_matrix
+from scipy.linalg import cholesky, solve_triangular
+from scipy.sparse import csc_matrix, csr_array, dia_array
 from scipy.sparse.linalg import splu
 
-from ...core.arrays import Numbers
+from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
 from .elasticity import ElasticBlock
 from .mesh import Block, Resolution, SocketShape, ball_corners, mesh_block
@@ -52,11 +56,11 @@ class CondensedBody:
     def _factorize_stiffness(self) -> Any:
         return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
 
-    def compliance(self) -> Numbers:
-        """Compute the compliance matrix of the contact nodes: normal displacements by unit normal forces."""
+    def surface_compliance(self) -> tuple[Numbers, Numbers]:
+        """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
         factors, count = self._factorize_stiffness(), len(self.contact)
         stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
-        return numpy.linalg.inv((stiffness + stiffness.T) / 2)
+        return self.elastic.block.angle[:count], numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
     def displacements(self, forces: Numbers) -> Numbers:
         """Compute the displacements u_φ and u_r of all nodes, (nodes, 2), under normal forces on contact nodes."""
@@ -85,10 +89,7 @@ def elimination_ranks(block: Block) -> Numbers:
 
 
 def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
-    """Order the nodes of a grid by nested dissection along lines between elements.
-
-    `start` is the index of the part's first node in the full grid.
-    """
+    """Order the nodes of a part of a grid, which begins at `start`, by nested dissection between elements."""
     if nodes.size <= _MAX_LEAF_SIZE or min(nodes.shape) <= 2:
         return nodes.ravel()
     along = 0 if nodes.shape[0] >= nodes.shape[1] else 1
@@ -97,9 +98,8 @@ def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0
     middle += (start[along] + middle) % order  # counted in the full block
     second_start = (start[0] + middle + 1, start[1]) if along == 0 else (start[0], start[1] + middle + 1)
     first, second = (half if along == 0 else half.T for half in (lines[:middle], lines[middle + 1 :]))
-    return numpy.concatenate(
-        [nested_dissection(first, order, start), nested_dissection(second, order, second_start), lines[middle]]
-    )
+    parts = nested_dissection(first, order, start), nested_dissection(second, order, second_start)
+    return numpy.concatenate([*parts, lines[middle]])
 
 
 def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
@@ -149,16 +149,117 @@ def _axis_mask(mesh: Block) -> Numbers:
 @lru_cache(maxsize=64)
 def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Compute angles (rad) and compliance matrix of the nodes on the bore, from a cache."""
-    return _surface_compliance(socket_body(shape, resolution))
+    return socket_body(shape, resolution).surface_compliance()
 
 
 @lru_cache(maxsize=64)
 def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Numbers]:
     """Compute angles (rad) and compliance matrix of the nodes on the ball's surface, from a cache."""
-    return _surface_compliance(ball_body(poisson, resolution))
+    return ball_body(poisson, resolution).surface_compliance()
 
 
-def _surface_compliance(body: CondensedBody) -> tuple[Numbers, Numbers]:
-    """Compute angles (rad) of a body's contact nodes and their normal displacements by unit normal forces."""
-    block = body.elastic.block
-    return block.angle[: len(body.contact)], body.compliance()
+_NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
+_ANGLE_TOLERANCE = 1e-9  # rad: corners of two meshes closer than this are one
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSurface:
+    """Contact surface of a body: angles of its nodes in rad, and compliance matrix in mm/N."""
+
+    angle: Numbers
+    order: int
+    compliance: Numbers
+
+    @property
+    def corners(self) -> Numbers:
+        """Angles of the element corners in rad."""
+        return self.angle[:: self.order]
+
+    def nodal_sums(self, angle: Numbers, values: Numbers) -> Numbers:
+        """Sum values at angles (rad) onto the nodes, weighted with shape functions: (nodes,)."""
+        nodes, shapes = _element_shapes(self.corners, self.order, angle)
+        return numpy.bincount(nodes.ravel(), weights=(shapes * values[:, None]).ravel(), minlength=len(self.angle))
+
+
+def lagrange(corners: Numbers, order: int, angle: Numbers) -> csr_array:
+    """Compute the Lagrange polynomials of this order at angles: a sparse matrix (angles, nodes)."""
+    nodes, shapes = _element_shapes(corners, order, angle)
+    ends = numpy.arange(len(angle) + 1) * (order + 1)
+    return csr_array((shapes.ravel(), nodes.ravel(), ends), shape=(len(angle), order * (len(corners) - 1) + 1))
+
+
+def _element_shapes(corners: Numbers, order: int, angle: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the nodes of the element at each angle and their shape functions: (angles, order + 1) each."""
+    element = numpy.clip(numpy.searchsorted(corners, angle) - 1, 0, len(corners) - 2)
+    t = (angle - corners[element]) / (corners[element + 1] - corners[element])
+    shapes = [1 - t, t] if order == 1 else [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)]
+    return order * element[:, None] + numpy.arange(order + 1), numpy.stack(shapes, axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SurfacePair:
+    """Contact surfaces of the socket and of an elastic ball, on a sphere of one radius (mm) up to an angle (rad)."""
+
+    surfaces: tuple[ContactSurface, ...]
+    radius: float
+    reach: float
+    resolution: Resolution
+    ball_resolution: Resolution
+
+    @cached_property
+    def angle(self) -> Numbers:
+        """Angles in rad of the pressure nodes, which are corners of the socket's elements."""
+        corners = self.surfaces[0].corners
+        return corners[corners <= self.reach + _ANGLE_TOLERANCE]
+
+    @cached_property
+    def corners(self) -> Numbers:
+        """Polar angles of the elements' corners of both bodies, in rad."""
+        merged = numpy.sort(numpy.concatenate([surface.corners for surface in self.surfaces]))
+        merged = merged[merged <= self.angle[-1] + _ANGLE_TOLERANCE]
+        return merged[numpy.append(True, numpy.diff(merged) > _ANGLE_TOLERANCE)]
+
+    def area(self, angle: Numbers) -> Numbers:
+        """Compute the area per polar angle, dA/dφ, in mm²/rad."""
+        return 2 * pi * self.radius**2 * numpy.sin(angle)
+
+    @cached_property
+    def points(self) -> tuple[Numbers, Numbers]:
+        """Angles (rad) and weights (mm²) of Gauss-Legendre quadrature over the contact area."""
+        width = numpy.diff(self.corners)[:, None]
+        angle = (self.corners[:-1, None] + width * _NODES).ravel()
+        return angle, self.area(angle) * (width * _WEIGHTS).ravel()
+
+    @cached_property
+    def _weighted_shapes(self) -> csr_array:
+        """Shape functions of the pressure at the quadrature points, times the weights: (shapes, points)."""
+        angle, weights = self.points
+        return csr_array(lagrange(self.angle, 1, angle).T @ dia_array((weights[None], [0]), shape=2 * weights.shape))
+
+    def integrate_with_shapes(self, values: Numbers) -> Numbers:
+        """Integrate values at the quadrature points times each shape function of the pressure, over the area."""
+        return self._weighted_shapes @ values
+
+    @cached_property
+    def displacements(self) -> tuple[Numbers, ...]:
+        """Normal displacements of each surface's nodes in mm per shape function of the pressure: (nodes, shapes)."""
+        return tuple(surface.compliance @ forces for surface, forces in zip(self.surfaces, self.forces, strict=True))
+
+    @cached_property
+    def forces(self) -> tuple[Numbers, ...]:
+        """Normal forces on each surface's nodes in N per shape function of the pressure: (nodes, shapes)."""
+        shapes = (lagrange(surface.corners, surface.order, self.points[0]) for surface in self.surfaces)
+        return tuple((self._weighted_shapes @ functions).toarray().T for functions in shapes)
+
+    @cached_property
+    def compliance_matrix(self) -> Numbers:
+        """Integrals ∫ φ_i (displacement of both bodies by φ_j) dA in mm³/MPa, for shape functions φ of the pressure."""
+        return sum(
+            forces.T @ displacements for forces, displacements in zip(self.forces, self.displacements, strict=True)
+        )
+
+    @cached_property
+    def whitening(self) -> Numbers:
+        """Inverse W of the matrix' Cholesky factor, A⁻¹ = WᵀW; its leading blocks serve narrower contacts."""
+        factor = cholesky(self.compliance_matrix, lower=True)
+        return solve_triangular(factor, numpy.eye(len(factor)), lower=True)

@@ -17,9 +17,7 @@ from ...core.arrays import Numbers
 from .deck_bodies import TYPES
 from .deck_lines import deck_paths
 
-SECTORS = 180
-"""Number of sectors in a ring: CalculiX solves two degrees of an axisymmetric element."""
-
+SECTORS = 180  # number of sectors in a ring: CalculiX solves two degrees of an axisymmetric element
 _OUTPUT_LINES = 12  # of ccx's output in an error message
 _OPEN_GAP = 3e-3  # over the indentation
 _SKIPPED_NODES, _FITTED_NODES = 2, 5  # beyond the edge

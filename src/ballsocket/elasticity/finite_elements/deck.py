@@ -35,9 +35,7 @@ from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
 from .deck_lines import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .model import MeshedContact
 
-MAX_STEPS = 1000
-"""Largest number of steps of a deck; the expected result of each is computed."""
-
+MAX_STEPS = 1000  # largest number of steps of a deck; the expected result of each is computed
 _PENALTY_FACTOR = 2000.0
 _MAX_FACETING_GAP = 2e-3  # over the indentation
 _LINE_WIDTH = 100
@@ -123,13 +121,8 @@ class Deck(InputDeck):
     def expected(self) -> dict[str, Numbers]:
         """Expected results at each step (steps,) by name, with indentation in mm, force in N, pressures in MPa."""
         contact = self.contact.model.press(self._bodies.joint, indentation=self._indentations)
-        return {
-            "indentation": self._indentations,
-            "force": contact.force,
-            "max_pressure": contact.max_pressure,
-            "pole_pressure": contact.pole_pressure,
-            "half_angle_deg": numpy.degrees(contact.half_angle),
-        }
+        results = {name: getattr(contact, name) for name in ("force", "max_pressure", "pole_pressure")}
+        return {"indentation": self._indentations, **results, "half_angle_deg": numpy.degrees(contact.half_angle)}
 
     @property
     def contact_penalty(self) -> float:
@@ -150,15 +143,14 @@ class Deck(InputDeck):
 
     def expected_record(self) -> dict[str, Any]:
         """Return the expected results for JSON; see the class."""
+        rows = (zip(self.expected, row, strict=True) for row in self._expected_rows())
+        steps = [{name: None if numpy.isnan(value) else value for name, value in row} for row in rows]
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
             "scale": self.scale,
             "element": TYPES[self._bodies.solved.pair.resolution.order],
-            "steps": [
-                {name: None if numpy.isnan(value) else value for name, value in zip(self.expected, row, strict=True)}
-                for row in self._expected_rows()
-            ],
+            "steps": steps,
             "bore": self._bodies.socket.surface(),
             "round": self._bodies.ball.surface(),
         }
@@ -221,14 +213,11 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     They act along x and y on the axis and for fixed nodes of the ball, elsewhere along radius and angle.
     """
     socket, ball = bodies.socket, bodies.ball
-    upright = [
-        *socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes),
-        *ball.node_numbers(ball.axis_nodes | ball.fixed_nodes),
-    ]
+    upright = socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes)
+    upright += ball.node_numbers(ball.axis_nodes | ball.fixed_nodes)
     seated, rolling = socket.fixed_directions & ~socket.fixed_nodes & ~socket.axis_nodes
-    yield from node_set_lines(
-        "PUSHED", ball.node_numbers(ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes))
-    )
+    pushed = ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes)
+    yield from node_set_lines("PUSHED", ball.node_numbers(pushed))
     yield from _polar_lines(socket, seated | rolling)
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),

@@ -11,18 +11,16 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem import Joint
-from .bodies import ball_body, socket_body
+from .bodies import SurfacePair, ball_body, socket_body
 from .load_search import Solved
 from .mesh import Block, mesh_block, socket_shape
 from .model import MeshedContact
-from .surfaces import SurfacePair
 
 _RING_THICKNESS = 0.05  # meshed part of a rigid ball, over its radius
 _ANGLE_TOLERANCE = 1e-9  # rad
 
 
-TYPES = {1: "CAX4", 2: "CAX8R"}
-"""Names of bilinear and biquadratic elements in CalculiX and Abaqus."""
+TYPES = {1: "CAX4", 2: "CAX8R"}  # names of bilinear and biquadratic elements in CalculiX and Abaqus
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,11 +53,6 @@ class DeckBody:
         used[self._outer_nodes] = True
         return numpy.where(used, self.nodes_before + numpy.cumsum(used), 0)
 
-    @property
-    def node_count(self) -> int:
-        """Number of the body's nodes in the deck."""
-        return int(numpy.count_nonzero(self.number))
-
     def node_numbers(self, mask: Numbers) -> list[int]:
         """Return the deck's numbers of the nodes in a mask (nodes,), without those in the middle of elements."""
         return self.number[mask & (self.number > 0)].tolist()
@@ -67,9 +60,7 @@ class DeckBody:
     @cached_property
     def axis_nodes(self) -> Numbers:
         """Mask of the nodes on the load axis."""
-        mask = numpy.zeros(self.block.number.size, dtype=bool)
-        mask[self.block.number[0]] = True
-        return mask
+        return numpy.isin(numpy.arange(self.block.number.size), self.block.number[0])
 
     @property
     def fixed_nodes(self) -> Numbers:
@@ -93,10 +84,7 @@ class DeckBody:
         return self.elements_before + 1 + numpy.arange(count) * strips + strip % strips
 
     def node_lines(self) -> Iterator[str]:
-        """Yield a line of number and coordinates for each node.
-
-        CalculiX reads at most twenty characters of a number.
-        """
+        """Yield a line of number and coordinates for each node; CalculiX reads 20 characters of a number."""
         across, below = self.radius * self.block.nodes
         for node in numpy.flatnonzero(self.number):
             yield f"{self.number[node]}, {across[node]:.14g}, {-below[node] - self.drop:.14g}"
@@ -143,7 +131,12 @@ class DeckBodies:
     def ball(self) -> DeckBody:
         """Body of the ball at first contact; its radius is R2 minus the scaled clearance."""
         if self.joint.ball is None:
-            mesh, fixed_directions, contact = self._rigid_ball_mesh()
+            # one fixed layer of elements, which match the bore's and extend one element further
+            corners = self.solved.pair.angle
+            corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
+            radii = numpy.array([1 - _RING_THICKNESS, 1.0])
+            mesh = mesh_block(corners, [radii], self.solved.pair.resolution.order)
+            fixed_directions, contact = numpy.ones((2, mesh.number.size), dtype=bool), mesh.number[:, -1]
         else:
             body = ball_body(float(self.joint.ball.poisson), self.solved.pair.ball_resolution)
             mesh, fixed_directions, contact = body.elastic.block, body.fixed_unknowns.reshape(-1, 2).T, body.contact
@@ -155,16 +148,9 @@ class DeckBodies:
             contact=contact,
             radius=float(self.joint.socket_radius) - clearance,
             drop=clearance,
-            nodes_before=self.socket.node_count,
+            nodes_before=int(self.socket.number.max()),
             elements_before=self.socket.block.elements.shape[1],
         )
-
-    def _rigid_ball_mesh(self) -> tuple[Block, Numbers, Numbers]:
-        """Mesh a rigid ball as one fixed layer of elements, which match the bore's and extend one element further."""
-        corners = self.solved.pair.angle
-        corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
-        mesh = mesh_block(corners, [numpy.array([1 - _RING_THICKNESS, 1.0])], self.solved.pair.resolution.order)
-        return mesh, numpy.ones((2, mesh.number.size), dtype=bool), mesh.number[:, -1]
 
     @property
     def reach(self) -> float:

@@ -10,9 +10,7 @@ from typing import Any
 
 from ...core.storage.atomic_files import make_folder, write_text
 
-_NAME, _EXPECTED = "ballsocket", "expected.json"
-"""Names of the deck, and of the file with the expected results."""
-
+_NAME, _EXPECTED = "ballsocket", "expected.json"  # names of the deck, and of the file with the expected results
 _NUMBERS_PER_LINE = 16
 
 

@@ -90,10 +90,7 @@ class ElasticBlock:
             yield slice(first, first + _CHUNK)
 
     def _element_stiffness(self, element_indices: Numbers) -> Numbers:
-        """Compute the stiffness matrices of elements.
-
-        They integrate the energy density 2G (|ε|² - tr²/3) + K tr². In its last term the change of volume is projected.
-        """
+        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements; in its last term tr is projected."""
         points, weights = element_quadrature(self.block.order)
         strains = self.strains(element_indices, points)
         volume = strains.volume * weights

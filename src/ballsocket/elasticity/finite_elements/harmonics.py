@@ -17,10 +17,9 @@ from scipy.sparse import csc_matrix
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
-from .bodies import elimination_ranks, factorize, socket_block, socket_elastic
+from .bodies import elimination_ranks, factorize, lagrange, socket_block, socket_elastic
 from .elasticity import ElasticBlock, assemble, element_quadrature
 from .mesh import Block, Resolution, SocketShape
-from .surfaces import lagrange
 
 _DIRECT, _HOOP, _SHEARS = 4, 3, (4, 5)
 _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0, 1.0, 1.0]))[:, None]
@@ -139,10 +138,7 @@ class Harmonics:
         return constant, linear, quadratic
 
     def _element_matrices(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute the element stiffness matrices of the powers 0, 1 and 2 of m.
-
-        They integrate the energy density 2G (|ε|² - tr²/3) + K tr².
-        """
+        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements, for the powers 0, 1 and 2 of m."""
         elements = numpy.arange(self._block.elements.shape[1])
         points, weights = element_quadrature(self._block.order)
         gradients = self.elastic.gradients(elements, points)

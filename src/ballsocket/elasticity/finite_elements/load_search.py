@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from ...core.arrays import gauss_legendre
 from ...problem.gaps import Gap
+from .bodies import SurfacePair
 from .pair_contact import FullContact, PartialContact, partial_contact
-from .surfaces import SurfacePair
 
 _SAMPLES = 10
 _SECANT_STEPS = 4
@@ -55,10 +55,8 @@ class ContactBracket:
     def _interpolators(self) -> dict[str, PchipInterpolator]:
         """Interpolating functions from ln(load) to ln ε, by the kind of load."""
         angles = numpy.log([contact.half_angle for contact in self._samples])
-        return {
-            kind: PchipInterpolator(numpy.log([getattr(contact, kind) for contact in self._samples]), angles)
-            for kind in ("force", "indentation")
-        }
+        loads = {kind: [getattr(contact, kind) for contact in self._samples] for kind in ("force", "indentation")}
+        return {kind: PchipInterpolator(numpy.log(values), angles) for kind, values in loads.items()}
 
     def lies_below(self, kind: str, load: float) -> bool:
         """Return True if the load exceeds that of the widest contact and no sample is missing."""
@@ -80,9 +78,8 @@ class ContactBracket:
         if above == len(self._samples):
             _, fits = self._samples_and_fit  # the load is infinite at the perfect fit
             return self._solve_by_brent(kind, load, self._samples[-1].half_angle, self.high) if fits else None
-        return self._solve_by_secant(kind, load) or self._solve_by_brent(
-            kind, load, self._samples[above - 1].half_angle, self._samples[above].half_angle
-        )
+        low, high = (self._samples[number].half_angle for number in (above - 1, above))
+        return self._solve_by_secant(kind, load) or self._solve_by_brent(kind, load, low, high)
 
     def _solve_by_secant(self, kind: str, load: float) -> PartialContact | None:
         goal = numpy.log(load)
@@ -134,10 +131,8 @@ def stiffness(contact: Solved) -> float:
     if isinstance(contact, FullContact):
         return contact.stiffness
     angles = numpy.minimum(_RELATIVE_STEPS, contact.pair.angle[-1] / contact.half_angle - 1)
-    neighbours = [
-        partial_contact(contact.pair, contact.gap, float(contact.half_angle * (1 + angle)))
-        for angle in numpy.unique(angles)
-    ]
+    half_angles = contact.half_angle * (1 + numpy.unique(angles))
+    neighbours = [partial_contact(contact.pair, contact.gap, float(half_angle)) for half_angle in half_angles]
     valid = [neighbour for neighbour in neighbours if is_pressed(neighbour)]
     if len(valid) < _DEGREE + 1:
         return numpy.nan

@@ -19,7 +19,7 @@ import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
-from .surfaces import SurfacePair
+from .bodies import SurfacePair
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
 _INDENTATION_TOLERANCE = 1e-13  # relative

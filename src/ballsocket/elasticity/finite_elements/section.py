@@ -198,22 +198,15 @@ class _LoadedBody:
             swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
             mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
             rho, z, hoop = (2 * shear * strain[i] + mean for i in (0, 1, 3))
-            polar = _spherical_stresses(strains.coordinates, rho, z, shear * strain[2])
-            stresses[:, chunk] = numpy.stack([*polar[:2], hoop, polar[2]]) @ extrapolation
+            rho_z = shear * strain[2]
+            # spherical directions at the polar angle of each point
+            sine, cosine = strains.coordinates / numpy.hypot(*strains.coordinates)
+            along = 2 * sine * cosine * rho_z
+            radial = sine**2 * rho + cosine**2 * z + along
+            meridional = cosine**2 * rho + sine**2 * z - along
+            tilted = sine * cosine * (rho - z) + (cosine**2 - sine**2) * rho_z
+            stresses[:, chunk] = numpy.stack([radial, meridional, hoop, tilted]) @ extrapolation
         return stresses
-
-
-def _spherical_stresses(
-    position: Numbers, rho: Numbers, z: Numbers, shear: Numbers
-) -> tuple[Numbers, Numbers, Numbers]:
-    r = numpy.hypot(*position)
-    sine, cosine = position / r
-    across, along = rho - z, 2 * sine * cosine * shear
-    return (
-        sine**2 * rho + cosine**2 * z + along,
-        cosine**2 * rho + sine**2 * z - along,
-        sine * cosine * across + (cosine**2 - sine**2) * shear,
-    )
 
 
 def _superconvergent_points(order: int) -> tuple[Numbers, Numbers]:
@@ -263,27 +256,19 @@ def write_vtk(section: Section, path: Path) -> None:
     needs("fem", "meshio")
     import meshio
 
-    positions = numpy.concatenate([part.position for part in section.parts], axis=1)
-    first = numpy.cumsum([0, *(part.position.shape[1] for part in section.parts)])
-    moved = numpy.concatenate([part.displacement for part in section.parts], axis=1)
-    names = ("von_mises", "radial", "meridional", "hoop", "shear")
-    stresses = {
-        name: numpy.concatenate([getattr(part.stress, name) for part in section.parts]).ravel() for name in names
-    }
-    cells = [
-        (_CELLS[len(part.elements)], (part.elements + start).T)
-        for part, start in zip(section.parts, first[:-1], strict=True)
-    ]
-    mesh = meshio.Mesh(
-        _add_third_coordinate(positions),
-        cells,
-        point_data={"displacement": _add_third_coordinate(moved), **stresses},
-        cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
+    parts = section.parts
+    first = numpy.cumsum([0, *(part.position.shape[1] for part in parts)])
+    no_depth = numpy.zeros(first[-1])  # third coordinate of vectors in the plane
+    positions, moved = (
+        numpy.column_stack([*numpy.concatenate(vectors, axis=1), no_depth])
+        for vectors in ([part.position for part in parts], [part.displacement for part in parts])
     )
+    data = {"displacement": moved}
+    for name in ("von_mises", "radial", "meridional", "hoop", "shear"):
+        data[name] = numpy.concatenate([getattr(part.stress, name) for part in parts]).ravel()
+    pairs = zip(parts, first[:-1], strict=True)
+    cells = [(_CELLS[len(part.elements)], (part.elements + start).T) for part, start in pairs]
+    numbers = [numpy.full(part.elements.shape[1], i) for i, part in enumerate(parts)]
+    mesh = meshio.Mesh(positions, cells, point_data=data, cell_data={"part": numbers})
     with write_atomically(path) as draft:
         mesh.write(draft)
-
-
-def _add_third_coordinate(plane: numpy.ndarray) -> numpy.ndarray:
-    """Add a third coordinate of 0 to vectors in the plane: (points, 3)."""
-    return numpy.column_stack([*plane, numpy.zeros(plane.shape[1])])

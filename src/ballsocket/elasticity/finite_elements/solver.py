@@ -17,17 +17,14 @@ from ...core.checks import require
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
 from ...problem.gaps import CircularGap, Gap, LinearGap
-from .bodies import ball_compliance, socket_compliance
+from .bodies import ContactSurface, SurfacePair, ball_compliance, socket_compliance
 from .load_search import ContactBracket, Solved, is_pressed, stiffness, work
 from .mesh import Resolution, socket_shape
 from .pair_contact import FullContact, partial_contact
 from .progress import report_progress
 from .spacing import Spacing, Uniform, check_memory, mesh_size
-from .surfaces import ContactSurface, SurfacePair
 
-FINE, COARSE = 0, 1
-"""Indices of the two meshes."""
-
+FINE, COARSE = 0, 1  # indices of the two meshes
 _STRIDE = 4  # number of classes whose contacts one coarse mesh resolves
 _CLASS_MARGIN = 1.12  # factor by which the half angle may differ from its class on another mesh
 
@@ -50,10 +47,9 @@ class MeshedLoadCurve:
         touching = load > 0
         loads = load[touching].tolist()
         numbers = [self._mesh_class(kind, value) for value in loads]
+        pairs = list(zip(loads, numbers, strict=True))
         fine, *coarse = (
-            MeshedStates(
-                solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True))
-            )
+            MeshedStates(solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in pairs))
             for mesh in (FINE, COARSE)[: self.meshes]
         )
         reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
@@ -169,16 +165,8 @@ class MeshedStates(PeakPressure):
 
 
 _SAFETY = 2.0  # factor on Richardson's error estimate
-_MIN_ERRORS = {
-    "force": 0.03,
-    "indentation": 0.03,
-    "half_angle": 0.7,
-    "max_pressure": 0.2,
-    "pole_pressure": 0.2,
-    "stiffness": 1.0,
-    "energy": 0.07,
-    "pressure_integral": 0.02,
-}
+_MIN_ERRORS = {"force": 0.03, "indentation": 0.03, "half_angle": 0.7, "max_pressure": 0.2, "pole_pressure": 0.2}
+_MIN_ERRORS |= {"stiffness": 1.0, "energy": 0.07, "pressure_integral": 0.02}
 """Observed errors of random contacts against the exact solution, over the square of relative element size.
 
 They hold for biquadratic elements; bilinear ones had three times the errors. test_fem.py draws new contacts and
@@ -201,13 +189,9 @@ def estimate_errors(kind: str, fine: MeshedStates, coarse: MeshedStates, order: 
     return errors
 
 
-LIMIT = radians(88.0)
-"""Largest half angle in rad that is solved."""
-
+LIMIT = radians(88.0)  # largest half angle in rad that is solved
 _REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
-
-MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000
-"""Limits on the number of elements of one size along the bore."""
+MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000  # limits on the number of elements of one size along the bore
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -235,15 +219,12 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
 
     thickness, order = float(joint.liner_thickness), settings.order
 
-    def make_resolution(spacing: Spacing, class_index: int, mesh: int) -> Resolution:
-        coarse = spacing.coarse(class_limits[class_index], radius, thickness, order)
-        return coarse if mesh == COARSE else replace(coarse, halvings=1)
-
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        socket, ball = (
-            make_resolution(spacing, class_index, mesh) for spacing in (settings.spacing, settings.ball_spacing)
-        )
-        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * class_limits[class_index], widest))
+        limit = class_limits[class_index]
+        spacings = settings.spacing, settings.ball_spacing
+        coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
+        socket, ball = (part if mesh == COARSE else replace(part, halvings=1) for part in coarse)
+        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(

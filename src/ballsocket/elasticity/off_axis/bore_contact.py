@@ -126,11 +126,11 @@ class BoreContact:
 
     def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
         """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""
-        pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
+        batch = self.unsolved_batch(displacement)
         for block in self.split_into_blocks(numpy.arange(len(displacement))):
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
-            pressure[block], converged[block] = solution.pressure, solution.converged
-        return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
+            batch.pressure[block], batch.converged[block] = solution.pressure, solution.converged
+        return batch
 
     def work_beyond_stored_energy(self, displacement: Numbers) -> Numbers:
         """Compute the work of the load in N mm, (batch,), less the stored energy, on straight ways from the centre.
@@ -161,10 +161,7 @@ class BoreContact:
         tolerance: float = 0.1,
         edge_compliance: Numbers | float = 1.0,
     ) -> Numbers:
-        """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians).
-
-        See `solve_pressure_change` for the shares (batch, rings, meridians) of the cells in contact.
-        """
+        """Compute the derivative of pressures by displacement in MPa/mm: (batch, 3, rings, meridians)."""
         shape = (len(share), 3, *share.shape[1:])
         overlap_slope = numpy.broadcast_to(self.gap.overlap_slope(displacement), shape).reshape(-1, *shape[2:])
         shares = numpy.broadcast_to(share[:, None], shape).reshape(-1, *shape[2:])
@@ -175,10 +172,7 @@ class BoreContact:
         return change.reshape(shape)
 
     def tangent(self, sensitivity: Numbers) -> Numbers:
-        """Compute the tangent stiffness of contact and tether in N/mm: (batch, 3, 3).
-
-        `sensitivity` is the derivative of the pressures by the displacement.
-        """
+        """Compute the tangent stiffness (batch, 3, 3) of contact and tether in N/mm from the sensitivity."""
         tangent = sensitivity.reshape(len(sensitivity), 3, len(self._force_weights)) @ self._force_weights
         return tangent.swapaxes(1, 2) + self.tether
 
@@ -188,10 +182,11 @@ class BoreContact:
         size = max(_BATCH_CELLS // (grid.rings * grid.meridians), 1)
         return [indices[i : i + size] for i in range(0, len(indices), size)]
 
-    def zero_pressure(self, count: int) -> Numbers:
-        """Return pressures of 0 for a number of contacts: (count, rings, meridians)."""
-        grid = self.compliance.grid
-        return numpy.zeros((count, grid.rings, grid.meridians))
+    def unsolved_batch(self, displacement: Numbers) -> EquilibriumBatch:
+        """Return balls at displacements (batch, 3) in mm, without pressure and not converged."""
+        count, grid = len(displacement), self.compliance.grid
+        pressure, converged = numpy.zeros((count, grid.rings, grid.meridians)), numpy.zeros(count, dtype=bool)
+        return EquilibriumBatch(displacement=displacement.copy(), pressure=pressure, converged=converged)
 
 
 def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:

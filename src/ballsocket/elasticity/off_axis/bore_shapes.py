@@ -109,10 +109,7 @@ class OvalBore:
 
 
 class InterpolatedDeviation:
-    """Base class of deviations interpolated between measured points.
-
-    The depth at the last read-only array of directions is cached.
-    """
+    """Deviation interpolated between measured points; the depth at the last read-only directions is cached."""
 
     def depth(self, directions: Numbers) -> Numbers:
         """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""

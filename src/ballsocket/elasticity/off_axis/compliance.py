@@ -94,9 +94,8 @@ def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
     The inverse only guides the iteration; the compliance decides when it ends.
     """
     inverse = numpy.linalg.inv(matrices).astype(numpy.float32)
-    return Compliance(
-        grid=grid, softness=AxisymmetricOperator(matrices=matrices), stiffness=AxisymmetricOperator(matrices=inverse)
-    )
+    softness, stiffness = (AxisymmetricOperator(matrices=operator) for operator in (matrices, inverse))
+    return Compliance(grid=grid, softness=softness, stiffness=stiffness)
 
 
 def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Compliance:
@@ -104,9 +103,8 @@ def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Com
     ball = ball_of(joint)
     if isinstance(surface, Springs) and ball is None:
         modulus = float(surface.modulus(joint))
-        return Compliance(
-            grid=grid, softness=UniformOperator(factor=1 / modulus), stiffness=UniformOperator(factor=modulus)
-        )
+        softness, stiffness = (UniformOperator(factor=factor) for factor in (1 / modulus, modulus))
+        return Compliance(grid=grid, softness=softness, stiffness=stiffness)
     matrices = surface.rings(joint, cup, grid)
     if ball is not None:
         matrices = matrices + grid.average_over_cells(sphere_rings(ball.compliance, grid))
@@ -118,10 +116,7 @@ _CACHE_SIZE, _LOCK = 8, Lock()
 
 
 def cached_compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    """Return the compliance of bore and ball of one joint in rings of this width (rad), from a cache.
-
-    The last eight compliances are cached.
-    """
+    """Return the compliance of one joint in rings of this width (rad); the last eight are cached."""
     key = (surface, joint, cup.arc_of_cover, cup.chamfer, cup.interface, width)
     with _LOCK:
         if key not in _CACHE:

@@ -20,15 +20,8 @@ from .patch_measures import CellArrays, Patches
 from .rim_curve import CurveFunction
 from .surfaces import EdgeRelation
 
-_PRESSURE_ERRORS = {
-    "force": 0.3,
-    "indentation": 0.2,
-    "max_pressure": 0.3,
-    "pole_pressure": 0.3,
-    "stiffness": 0.7,
-    "energy": 0.4,
-    "pressure_integral": 0.3,
-}
+_PRESSURE_ERRORS = {"force": 0.3, "indentation": 0.2, "max_pressure": 0.3, "pole_pressure": 0.3}
+_PRESSURE_ERRORS |= {"stiffness": 0.7, "energy": 0.4, "pressure_integral": 0.3}
 """Factors of the errors that follow from the pressures and the edge: of (ring width / half angle)²."""
 
 _HALF_ANGLE_ERROR = 0.1
@@ -148,9 +141,8 @@ class ContactStates:
         for contact, load_axis in enumerate(self.axes):
             cosine = numpy.tensordot(load_axis, grid.centroids, 1)
             first, second = measures.tangents_at(load_axis)
-            azimuth = numpy.arctan2(
-                numpy.tensordot(second, grid.centroids, 1), numpy.tensordot(first, grid.centroids, 1)
-            )
+            along_first, along_second = (numpy.tensordot(tangent, grid.centroids, 1) for tangent in (first, second))
+            azimuth = numpy.arctan2(along_second, along_first)
             sine = numpy.sqrt(numpy.maximum(1.0 - cosine * cosine, 0.0))
             for turn in numpy.arange(_FRICTION_AXES) * (numpy.pi / _FRICTION_AXES):
                 along = cosine * numpy.cos(axis_angle) + sine * numpy.sin(axis_angle) * numpy.cos(azimuth - turn)
@@ -178,10 +170,7 @@ class ContactStates:
 
     @cached_property
     def tangent(self) -> Numbers:
-        """Tangent stiffness matrices in N/mm: (3, 3, contacts).
-
-        The edge of the contact crosses the cells steadily: see `cell_shares`.
-        """
+        """Tangent stiffness matrices in N/mm, (3, 3, contacts), with the edge between cells: see `cell_shares`."""
         share = self._measure_patches(measures.cell_shares, self._edges[:, :3], self._edges[:, 3:])
         if can_solve_lanes(self.bore):
             return numpy.moveaxis(solve_tangents(self.bore, share, self.edges.compliance), 0, -1)
@@ -292,10 +281,7 @@ _SUMMARY_QUANTITIES = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSummaries:
-    """Quantities of the contacts of one joint without their fields; the names are those of `ContactStates`.
-
-    Arrays have a last axis of contacts.
-    """
+    """Quantities of `ContactStates` by their names, without the fields; arrays have a last axis of contacts."""
 
     bore: BoreContact
     edges: EdgeRelation

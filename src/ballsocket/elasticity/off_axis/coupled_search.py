@@ -28,19 +28,11 @@ import numpy
 from ...core import arrays
 from ...core.arrays import Array
 
-COARSE_TOLERANCE = 1e-3
-"""Residuals of forces and overlaps at the end of the search in wide cells."""
-
-COARSE_ROUNDS = 4
-"""Number of rounds of the search in wide cells; each starts with a new sensitivity."""
-
-COARSE_ITERATIONS = 7
-"""Number of iterations in a round."""
-
+COARSE_TOLERANCE = 1e-3  # residuals of forces and overlaps at the end of the search in wide cells
+COARSE_ROUNDS = 4  # number of rounds of the search in wide cells; each starts with a new sensitivity
+COARSE_ITERATIONS = 7  # number of iterations in a round
 _WARM_UP_ITERATIONS = 2  # number of iterations at a fixed displacement before the first Newton step
-
-SENSITIVITY_ITERATIONS = 3
-"""Number of iterations for the sensitivity of the pressures in wide cells, for Newton steps."""
+SENSITIVITY_ITERATIONS = 3  # number of iterations for the sensitivity of the pressures in wide cells, for Newton steps
 
 TANGENT_ITERATIONS = 4
 """Number of iterations for the tangent stiffness, whose error is the square of that of the sensitivity."""
@@ -338,12 +330,8 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
     """Compute the Newton steps in mm, (3, lanes), towards the loads that the converged pressures will balance."""
     xp = arrays.namespace(lanes.pressure)
     count = lanes.pressure.shape[-1]
-    missing = xp.stack(
-        [
-            integrate(bore, predictor.sensitivity[..., axis * count : (axis + 1) * count], lanes.residual)
-            for axis in range(len(bore.tether))
-        ]
-    )
+    parts = [predictor.sensitivity[..., axis * count :][..., :count] for axis in range(len(bore.tether))]
+    missing = xp.stack([integrate(bore, part, lanes.residual) for part in parts])
     # (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA: what the pressures will still add on their own is not asked of the ball
     imbalance = lanes.imbalance - bore.scale * missing
     step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)

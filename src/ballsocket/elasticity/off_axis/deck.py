@@ -57,10 +57,7 @@ class SphericalBlock:
 
     @cached_property
     def number(self) -> Numbers:
-        """Number of the node at each polar angle, azimuth and radius; 0 where there is no node.
-
-        Nodes in the middle of edges are included.
-        """
+        """Number of the node at each polar angle, azimuth and radius, also in the middle of edges; 0 without a node."""
         shape = tuple(2 * len(corners) - 1 for corners in (self.polar, self.azimuth, self.radius))
         i, j, k = numpy.indices(shape)
         used = (i % 2 + j % 2 + k % 2) <= 1
@@ -201,7 +198,12 @@ class TiltedDeck(InputDeck):
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
         yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
-        yield from self._mesh_lines()
+        yield "*NODE, NSET=ALL"
+        for body in (self.socket, self.ball):
+            yield from body.node_lines()
+        ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
+        yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
+        yield from _element_lines(self.ball, lambda k: "SKIN")
         # the skin of the ball is almost rigid
         liner = float(self.joint.liner.young)
         layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
@@ -224,14 +226,6 @@ class TiltedDeck(InputDeck):
             "max_pressure": float(contact.max_pressure),
         }
 
-    def _mesh_lines(self) -> Iterator[str]:
-        yield "*NODE, NSET=ALL"
-        for body in (self.socket, self.ball):
-            yield from body.node_lines()
-        ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
-        yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
-        yield from _element_lines(self.ball, lambda k: "SKIN")
-
     def _support_lines(self) -> Iterator[str]:
         """Yield the lines of the symmetry plane, of the fixed nodes, and of the ball's skin, which is displaced."""
         number = self.socket.number
@@ -245,10 +239,7 @@ class TiltedDeck(InputDeck):
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
-    """Yield the lines of a body's elements, sorted by type and layer.
-
-    `set_name` returns the name of the set of a layer of elements.
-    """
+    """Yield the lines of a body's elements, sorted by type and layer, in the set that `set_name` gives a layer."""
     previous = None
     for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda element: (element[1], element[2][2])):
         header = f"*ELEMENT, TYPE={kind}, ELSET={set_name(k)}"

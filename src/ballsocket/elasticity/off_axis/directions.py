@@ -51,16 +51,10 @@ def cup_frames(cup: Cup, inclination: Array | None, anteversion: Array | None) -
     An angle that is None keeps the value of the cup.
     """
     inputs = {"inclination": inclination, "anteversion": anteversion}
-    angles = (
-        arrays.to_numpy(CUP[name].check(getattr(cup, name) if angle is None else angle))
-        for name, angle in inputs.items()
-    )
-    pairs = numpy.broadcast_arrays(*angles)
-    frames = [
-        replace(cup, inclination=float(first), anteversion=float(second)).frame
-        for first, second in zip(*(angle.ravel() for angle in pairs), strict=True)
-    ]
-    return numpy.array(frames).reshape(*pairs[0].shape, 3, 3)
+    given = {name: getattr(cup, name) if angle is None else angle for name, angle in inputs.items()}
+    angles = numpy.stack(numpy.broadcast_arrays(*(arrays.to_numpy(CUP[name].check(given[name])) for name in given)))
+    frames = [replace(cup, inclination=a, anteversion=b).frame for a, b in angles.reshape(2, -1).T.tolist()]
+    return numpy.array(frames).reshape(*angles.shape[1:], 3, 3)
 
 
 def unit_vectors(polar: Numbers, azimuth: Numbers) -> Numbers:

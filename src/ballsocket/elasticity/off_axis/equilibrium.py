@@ -52,10 +52,7 @@ def solve_force(
     not `held` (batch,) stay there without pressure. Without initial pressures (batch, rings, meridians) in MPa, at
     least 0, a search in cells twice as wide comes first.
     """
-    count = len(load)
-    solution = EquilibriumBatch(
-        displacement=start.copy(), pressure=bore.zero_pressure(count), converged=numpy.zeros(count, dtype=bool)
-    )
+    solution = bore.unsolved_batch(start)
     preload = bore.area * bore.compliance.uniform_stiffness * max(-bore.gap.clearance, 0.0)
     force_scale = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
     coarser = coarser_lanes(bore)

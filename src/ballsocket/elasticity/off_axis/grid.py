@@ -135,10 +135,7 @@ class Grid:
 
     @cached_property
     def coarser_grid(self) -> Grid | None:
-        """Grid of cells twice as wide, or None if this grid has few rings.
-
-        The last ring stays alone if the number of rings is odd.
-        """
+        """Grid of cells twice as wide, an odd last ring alone; None if this grid has few rings."""
         if self.meridians % 4 or self.rings < _MIN_RINGS_TO_COARSEN:
             return None
         return Grid(edges=numpy.unique(numpy.append(self.edges[::2], self.edges[-1])), meridians=self.meridians // 2)

@@ -1,27 +1,32 @@
-"""Search for the equilibrium of many balls in JAX, compiled, with derivatives.
+"""Search for the equilibrium of many balls in JAX, compiled, with derivatives by loads, gaps and the liner.
 
 The search is that of `coupled_search`. Lanes that have converged are masked until a quarter is left, which continues
 in arrays of its own. Derivatives follow from one Newton step at the solution, in its touching cells. The step is zero
-there, and its derivative is that of the solution.
+there, and its derivative is that of the solution. NumPy computes the compliance of a liner and its derivatives; JAX
+calls NumPy for them.
 """
 
 from __future__ import annotations
 
-from functools import cache, partial
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, lru_cache, partial
 from typing import Any, NamedTuple
 
-from ...core.arrays import Array
+import numpy
+
+from ...core.arrays import Array, Numbers
+from ...problem import Joint
+from ...problem.cup import Cup
 from . import coupled_search as search
+from .compliance import cached_compliance
 from .coupled_search import BoreArrays, Lanes, Predictor
+from .ring_matrices import liner_numbers, vary_liner
+from .surfaces import Surface
 
 _MAX_ITERATIONS = 30
-
-_TOLERANCE_FACTOR = 0.8
-"""Fraction of the tolerance to which lanes are iterated, before their residuals are computed anew."""
-
+_TOLERANCE_FACTOR = 0.8  # of the tolerance to which lanes are iterated, before their residuals are computed anew
 _NEWTON_ITERATIONS = 20  # number of conjugate-gradient iterations in the Newton step that carries derivatives
-
-
 _REMAINING_FRACTION = 4  # lanes are iterated together until one in so many has not converged
 
 
@@ -159,10 +164,7 @@ def _iterate_in_stages(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tol
 def _iterate(
     bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: Array, few: int = 0
 ) -> tuple[Lanes, Array]:
-    """Iterate until at most `few` lanes are not within a tolerance; return lanes and number of iterations.
-
-    Converged lanes stay unchanged.
-    """
+    """Iterate until at most `few` lanes are not within a tolerance; return lanes and number of iterations."""
     import jax
     import jax.numpy as xp
 
@@ -179,3 +181,90 @@ def _iterate(
 
     number, lanes = jax.lax.while_loop(is_unfinished, advance, (0, lanes))
     return lanes, number
+
+
+class Operators(NamedTuple):
+    """Matrices (m, rings, rings) of a bore and of the same in cells twice as wide: see `Compliance`."""
+
+    softness: Array
+    stiffness: Array
+    coarse_softness: Array
+    coarse_stiffness: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinerCompliance:
+    """Compliance matrices of one joint for any liner."""
+
+    surface: Any
+    joint: Joint  # a joint without arrays. Its bore stays the same.
+    cup: Cup
+    ring_width: float  # in rad, 3° or less
+
+    def operators(self, liner: Numbers) -> Operators:
+        """Compute the matrices for Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner."""
+        joint = vary_liner(self.joint, tuple(map(float, liner)))
+        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
+        coarser = compliance.coarser_compliance
+        if coarser is None:
+            raise ValueError("the compliance of a liner needs rings of 3 degrees or less")
+        operators: tuple[Any, ...] = (compliance.softness, compliance.stiffness, coarser.softness, coarser.stiffness)
+        return Operators(*(operator.matrices for operator in operators))
+
+    def softness_slopes(self, liner: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the derivatives of both softnesses by the three numbers of the liner: (3, m, rings, rings)."""
+        return _softness_slopes(
+            self.surface, vary_liner(self.joint, tuple(map(float, liner))), self.cup, self.ring_width
+        )
+
+
+@lru_cache(maxsize=2)
+def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> tuple[Numbers, Numbers]:
+    grid = cached_compliance(surface, joint, cup, width).grid
+    slopes = surface.ring_slopes(joint, cup, grid)
+    return slopes, numpy.stack([grid.coarsen_matrices(slope) for slope in slopes])
+
+
+def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Array], Operators]:
+    """Return a function of JAX from the numbers of a liner (3,) to `Operators`, with derivatives of first order.
+
+    The stiffnesses have no derivatives: they only precondition the iteration.
+    """
+    import jax
+
+    def shapes_of(values: Any) -> Any:
+        return jax.tree.map(lambda array: jax.ShapeDtypeStruct(array.shape, dtype), values)
+
+    def convert(compute: Callable[[Numbers], Any], liner: Array) -> Any:
+        return jax.tree.map(partial(numpy.asarray, dtype=dtype), compute(numpy.asarray(liner, dtype=float)))
+
+    nominal = bore.operators(liner_numbers(bore.joint))
+    operator_shapes = shapes_of(nominal)
+    slope_shapes = tuple(
+        jax.ShapeDtypeStruct((3, *matrices.shape), dtype) for matrices in (nominal.softness, nominal.coarse_softness)
+    )
+
+    @jax.custom_jvp
+    def operators(liner: Array) -> Operators:
+        matrices: Operators = jax.pure_callback(
+            partial(convert, bore.operators), operator_shapes, liner, vmap_method="sequential"
+        )
+        return matrices
+
+    @operators.defjvp
+    def differentiate(primals: Any, tangents: Any) -> Any:
+        (liner,), (change,) = primals, tangents
+        slopes = jax.pure_callback(
+            partial(convert, bore.softness_slopes), slope_shapes, liner, vmap_method="sequential"
+        )
+        matrices = operators(liner)
+        softness, coarse_softness = (jax.numpy.tensordot(change, slope, 1) for slope in slopes)
+        changes = Operators(
+            softness=softness,
+            stiffness=0.0 * matrices.stiffness,
+            coarse_softness=coarse_softness,
+            coarse_stiffness=0.0 * matrices.coarse_stiffness,
+        )
+        return matrices, changes
+
+    return operators

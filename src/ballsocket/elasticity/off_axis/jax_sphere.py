@@ -26,8 +26,7 @@ from . import coupled_search as search
 from . import patch_measures as measures
 from .bore_contact import BoreContact, make_bore_arrays
 from .coupled_search import BoreArrays
-from .jax_compliance import LinerCompliance, Operators, differentiable_operators
-from .jax_search import Grids, differentiable_search
+from .jax_search import Grids, LinerCompliance, Operators, differentiable_operators, differentiable_search
 from .lane_solver import coarser_lanes
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
 from .model import Sphere, check_sphere
@@ -38,8 +37,6 @@ _MIN_STEP = radians(2.0)
 """Width of the rings from which the number of steps along a ray follows; wider rings take fewer."""
 
 _MEASURED_CONTACTS = 64  # number of contacts whose outlines are computed together
-
-
 _DTYPES = ("float32", "float64")  # precisions of the solver
 
 
@@ -170,10 +167,8 @@ class JaxSphere:
     @cached_property
     def _operators(self) -> Callable[[Array], Operators]:
         """Function from the numbers of a liner to the matrices of the bore."""
-        model = self.model
-        compliance = LinerCompliance(
-            surface=model.surface, joint=self.joint, cup=model.cup, ring_width=model.ring_width
-        )
+        surface, cup, width = self.model.surface, self.model.cup, self.model.ring_width
+        compliance = LinerCompliance(surface=surface, joint=self.joint, cup=cup, ring_width=width)
         return differentiable_operators(compliance, self.dtype)
 
     def press(
@@ -223,9 +218,13 @@ class JaxSphere:
             Loads that are not real numbers.
         """
         needs("jax", "jax")
+        import jax
         import jax.numpy as xp
 
-        _check_precision(self.dtype)
+        if jax.dtypes.canonicalize_dtype(self.dtype) != self.dtype:
+            raise ValueError(
+                'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
+            )
         gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
@@ -267,18 +266,16 @@ class JaxSphere:
         check_domain(self.model.domain, varied, self.model.name)
         operators = self._operators(xp.stack([young, poisson, thickness]))
         softening = self.joint.effective_modulus / varied.effective_modulus
-        return self._bores._replace(
-            grids=operators.replace_in(self._bores.grids),
-            edge_compliance=self._bores.edge_compliance * softening,
+        fine, coarse = self._bores.grids
+        grids = Grids(
+            fine=fine._replace(softness=operators.softness, stiffness=operators.stiffness),
+            coarse=coarse._replace(softness=operators.coarse_softness, stiffness=operators.coarse_stiffness),
         )
+        return self._bores._replace(grids=grids, edge_compliance=self._bores.edge_compliance * softening)
 
 
 def _check_bore(model: Any, joint: Any) -> None:
-    """Check that model and joint describe one bore that `Sphere` solves.
-
-    Raises TypeError: another type than `Sphere` or `Joint`, or a joint with arrays.
-    Raises OutsideDomainError: a joint outside the domain of the model.
-    """
+    """Check that model and joint describe one bore that `Sphere` solves."""
     check_sphere(model)
     check_joint(joint)
     if any(numpy.shape(number) for number in joint.numbers()):
@@ -286,21 +283,8 @@ def _check_bore(model: Any, joint: Any) -> None:
     check_domain(model.domain, joint, model.name)
 
 
-def _check_precision(dtype: str) -> None:
-    import jax
-
-    if jax.dtypes.canonicalize_dtype(dtype) != dtype:
-        raise ValueError(
-            'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
-        )
-
-
 def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
-    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays.
-
-    Raises TypeError: another type than real numbers.
-    Raises ValueError: another shape.
-    """
+    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays."""
     force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
     shape = numpy.shape(force)
     if len(shape) != 1 or 0 in shape:
@@ -344,8 +328,10 @@ def _press_loads(
     touching, error, share = jax.lax.stop_gradient((pressure > 0, lanes.error, share.transpose(2, 1, 0)))
     fixed, edge_compliance = jax.lax.stop_gradient((fine, bores.edge_compliance))
     loaded, largest = measures.edge_loaded(fields), measures.largest_pressures(bores.cells, fields, axes)[0]
+    # the limit of `Sphere` for the displacement of a ball in its bore
+    held = xp.linalg.norm(displacement, axis=0) <= MAX_EQUILIBRIUM_DISPLACEMENT * xp.sqrt(fine.scale)
     contacts = JaxContacts(
-        converged=(error <= tolerance) & touching.any(axis=(0, 1)) & _holds_ball(fine, displacement),
+        converged=(error <= tolerance) & touching.any(axis=(0, 1)) & held,
         error=error,
         displacement=displacement.T,
         force_vector=search.compute_force(fine, pressure).T,
@@ -370,14 +356,6 @@ def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance
     return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
 
 
-def _holds_ball(bore: BoreArrays, displacement: Array) -> Array:
-    """Return the mask (loads,) of the balls in their bore, by the limit of `Sphere` for displacements (3, loads)."""
-    import jax.numpy as xp
-
-    limit = MAX_EQUILIBRIUM_DISPLACEMENT * xp.sqrt(bore.scale)
-    return xp.linalg.norm(displacement, axis=0) <= limit
-
-
 def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
     """Set the numbers of loads that did not converge to NaN."""
     import jax.numpy as xp
@@ -386,12 +364,8 @@ def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
         converged = contacts.converged.reshape(-1, *(1 for _ in values.shape[1:]))
         return xp.where(converged, values, xp.nan)
 
-    numbers = {
-        name: mask(values)
-        for name, values in contacts._asdict().items()
-        if name not in ("converged", "error", "edge_loaded")
-    }
-    return contacts._replace(**numbers)
+    kept = ("converged", "error", "edge_loaded")
+    return contacts._replace(**{name: mask(values) for name, values in contacts._asdict().items() if name not in kept})
 
 
 def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:

@@ -74,9 +74,7 @@ def solve_lanes(
     tolerance limits the residuals of force and overlap, relative to the force scale (batch,) in N and the largest
     overlap.
     """
-    solution = EquilibriumBatch(
-        displacement=start.copy(), pressure=bore.zero_pressure(len(load)), converged=numpy.zeros(len(load), dtype=bool)
-    )
+    solution = bore.unsolved_batch(start)
     symmetric = _are_symmetric(bore, load) & _are_symmetric(bore, start)
     for components, lanes in ((_PLANE, symmetric), (numpy.arange(3), ~symmetric)):
         if not lanes.any():

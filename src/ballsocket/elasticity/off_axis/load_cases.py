@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from math import pi
-from types import MappingProxyType
 
 import numpy
 
@@ -130,23 +129,17 @@ def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
 
 
 def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
-    """Limit an estimate to its bracket: return it if it lies inside, else another point inside.
-
-    A guess beyond an upper end that was never computed becomes a point just below the limit.
-    """
+    """Return an estimate inside its bracket, else another point there, just below a limit that was never computed."""
     middle = numpy.where(low > 0, numpy.sqrt(low * high), high / 10)
     inside: Numbers = numpy.where((guess > low) & (guess < high), guess, middle)
     return numpy.where((guess >= limit) & (high >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
 
 
-LOAD_SOLVERS: MappingProxyType[str, LoadSolver] = MappingProxyType(
-    {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
-)
+LOAD_SOLVERS = {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
 """Solver of each kind of load by its name."""
 
 
 _MAX_TILT_STEPS = 30
-
 _POLE_TILT = 1e-6  # rad: tilt of an axial load that still defines a meridian
 
 
@@ -159,9 +152,8 @@ def edge_margins(states: ContactStates | ContactSummaries) -> Numbers:
     margins = states.edge_margin.copy()
     cut_indices = numpy.flatnonzero((states.edge_loaded == 1) & states.converged)
     if len(cut_indices):
-        margins[cut_indices] = numpy.minimum(
-            _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T), 0.0
-        )
+        rotation = _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T)
+        margins[cut_indices] = numpy.minimum(rotation, 0.0)
     return margins
 
 
@@ -206,7 +198,13 @@ def _interpolate_rim_contact(
     See `_solve_rim_contact` for the arguments. Loads that fill the bore along its axis have no such tilt; then all are
     solved.
     """
-    nodes = _spread_nodes(numpy.log(load))
+    positions, nodes = numpy.log(load), sorted({0, len(load) - 1})
+    while len(nodes) < min(_MAX_RIM_NODES, len(load)):  # add the load that is farthest from the nearest node
+        distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
+        if distance.max() < _MIN_NODE_DISTANCE:
+            break
+        nodes.append(int(distance.argmax()))
+    nodes.sort()
     solved = _solve_rim_contact(states, load[nodes], azimuth[nodes], high[nodes], high_level[nodes])
     if len(nodes) == len(load):
         return solved
@@ -214,19 +212,8 @@ def _interpolate_rim_contact(
         return _solve_rim_contact(states, load, azimuth, high, high_level)
     from scipy.interpolate import make_interp_spline  # slow to import
 
-    spline = make_interp_spline(numpy.log(load[nodes]), solved, k=min(3, len(nodes) - 1))
-    return spline(numpy.log(load))
-
-
-def _spread_nodes(positions: Numbers) -> Numbers:
-    """Choose indices of a few ascending positions so that none is far from the nearest chosen one: ascending."""
-    nodes = [0, len(positions) - 1] if len(positions) > 1 else [0]
-    while len(nodes) < min(_MAX_RIM_NODES, len(positions)):
-        distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
-        if distance.max() < _MIN_NODE_DISTANCE:
-            break
-        nodes.append(int(distance.argmax()))
-    return numpy.sort(nodes)
+    spline = make_interp_spline(positions[nodes], solved, k=min(3, len(nodes) - 1))
+    return spline(positions)
 
 
 def _solve_rim_contact(
@@ -316,12 +303,9 @@ def _keep_summary(
 
 
 def _field_bytes(bore: BoreContact, count: int) -> int:
-    """Compute the bytes of the fields of a number of contacts at the peak."""
     grid = bore.compliance.grid
     return 8 * _FIELD_COPIES * grid.rings * grid.meridians * count
 
 
-KEEP_FUNCTIONS: MappingProxyType[str, KeepFunction] = MappingProxyType(
-    {"fields": _keep_fields, "summary": _keep_summary}
-)
+KEEP_FUNCTIONS: dict[str, KeepFunction] = {"fields": _keep_fields, "summary": _keep_summary}
 """Functions that solve loads, by the value of `keep`."""

@@ -37,9 +37,7 @@ from .surfaces import ClosedShell, RealCup, Springs, Surface
 if TYPE_CHECKING:
     from .bore_contact import BoreContact
 
-KEPT = ("fields", "summary")
-"""Allowed values of `keep` of a `Sphere`."""
-
+KEPT = ("fields", "summary")  # allowed values of `keep` of a `Sphere`
 _MIN_RING_WIDTH, MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 
@@ -123,18 +121,16 @@ class Sphere(Model):
         if self.keep not in KEPT:
             raise ValueError(f"keep must be {' or '.join(map(repr, KEPT))}, got {shown(self.keep)}")
 
-    @property
-    def domain(self) -> tuple[Range, ...]:
-        """Ranges of the joint in which the model has a solution."""
-        incompressible = Range(
+    domain: ClassVar[tuple[Range, ...]] = (
+        Range(
             quantity=largest_poisson,
             symbol="ν",
             low=-1.0,
             high=0.49995,
             why="an incompressible body has no bulk modulus",
-        )
-        thin = Range(quantity="joint.thickness_ratio", high=60.0, why="a thinner liner is not meshed in rings: use fem")
-        return (incompressible, thin)
+        ),
+        Range(quantity="joint.thickness_ratio", high=60.0, why="a thinner liner is not meshed in rings: use fem"),
+    )
 
     @property
     def validity(self) -> tuple[Range, ...]:
@@ -244,30 +240,21 @@ class Sphere(Model):
         shapes = [numpy.shape(number) for number in numbers if number is not None]
         check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
         if inclination is not None or anteversion is not None:
-            return (
-                model.with_direction(direction, tilt, azimuth)
-                .with_orientation(inclination, anteversion)
-                ._press_along(joint, **load)
-            )
+            model = model.with_direction(direction, tilt, azimuth).with_orientation(inclination, anteversion)
+            return Model.press(model, joint, **load)
         if displacement is None:
-            return model.with_direction(direction, tilt, azimuth)._press_along(joint, **load)
+            return Model.press(model.with_direction(direction, tilt, azimuth), joint, **load)
         select_load(**load, displacement=displacement)
         if direction is not None or tilt is not None or azimuth is not None:
             raise ValueError("a displacement includes its direction: leave direction, tilt and azimuth out")
-        return model._press_displaced(joint, displacement)
-
-    def _press_displaced(self, joint: Joint, displacement: Array) -> Contact:
-        """Solve the contact of a ball at a displacement vector in mm; within the clearance there is none."""
         vector = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
         require("displacement", vector, numpy.isfinite(vector), "a displacement (mm) is finite")
         length = numpy.linalg.norm(vector, axis=-1)
-        direction = numpy.where(length[..., None] > 0, vector, numpy.array(self.cup.dome))
-        depth = numpy.maximum(length - arrays.to_numpy(joint.clearance), 0.0)
-        indentation = float(depth) if depth.ndim == 0 else depth
-        return replace(self, direction=direction)._press_along(joint, indentation=indentation)
-
-    def _press_along(self, joint: Joint, **load: Array | None) -> Contact:
-        return super().press(joint, **load)
+        depth = numpy.maximum(length - arrays.to_numpy(joint.clearance), 0.0)  # within the clearance no contact
+        along = numpy.where(length[..., None] > 0, vector, numpy.array(self.cup.dome))
+        return Model.press(
+            replace(model, direction=along), joint, indentation=float(depth) if depth.ndim == 0 else depth
+        )
 
     def with_direction(
         self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None
@@ -299,13 +286,11 @@ class Sphere(Model):
         in_cup = self.direction @ numpy.array(self.cup.frame).T
         in_cup = in_cup / numpy.linalg.norm(in_cup, axis=-1, keepdims=True)
         components = [in_cup[..., axis] for axis in range(3)]
-        solution = solve_per_joint(
-            self,
-            joint,
-            load,
-            lambda single, loads, *axis: self._solve_joint(single, kind, loads, numpy.stack(axis, axis=-1)),
-            *components,
-        )
+
+        def solve(single: Joint, loads: Numbers, *axis: Numbers) -> JointContacts:
+            return self._solve_joint(single, kind, loads, numpy.stack(axis, axis=-1))
+
+        solution = solve_per_joint(self, joint, load, solve, *components)
         return SolverResult(
             laws=solution,
             force=solution.force,
@@ -324,13 +309,8 @@ class Sphere(Model):
         bore = self.bore_contact(joint)
         edges = self.surface.edges(joint, self.cup, bore.compliance.grid)
         state = KEEP_FUNCTIONS[self.keep](LOAD_SOLVERS[kind], bore, loads[touching], axes[touching], edges)
-        return JointContacts(
-            load=loads,
-            touching=touching,
-            state=state,
-            reached=state.reachable,
-            error=estimate_errors(state, kind),
-        )
+        errors = estimate_errors(state, kind)
+        return JointContacts(load=loads, touching=touching, state=state, reached=state.reachable, error=errors)
 
     def bore_contact(self, joint: Joint) -> BoreContact:
         """Return ball and bore of one joint: compliance and gap of every cell."""

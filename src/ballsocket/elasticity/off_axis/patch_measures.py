@@ -16,9 +16,7 @@ from ...core import arrays
 from ...core.arrays import Array, Numbers
 from .grid import Grid
 
-RAYS = 90
-"""Number of rays from the centre of a contact to its outline."""
-
+RAYS = 90  # number of rays from the centre of a contact to its outline
 _SECANTS = 5  # number of secants that locate the edge in a step of half a ring's width: half angles within 3e-7 rad
 _FIT_RADIUS = 2.2  # radius of the quadratic fit around the largest pressure, in widths of a ring
 _FLAT = 2e-5  # relative difference of two pressures of the fit that the points of the lattice do not resolve
@@ -113,9 +111,8 @@ def interpolate(cells: CellArrays, table: Array, directions: Array) -> Array:
     down, along = (polar - low) / (cells.nodes[row + 1] - low), column - left
     index = _flattened(row * columns + left.astype(row.dtype))
     flat = table.reshape(count, rows * columns)
-    corners = [
-        xp.take_along_axis(flat, index + offset, axis=1).reshape(polar.shape) for offset in (0, 1, columns, columns + 1)
-    ]
+    offsets = (0, 1, columns, columns + 1)
+    corners = [xp.take_along_axis(flat, index + offset, axis=1).reshape(polar.shape) for offset in offsets]
     upper = corners[0] + along * (corners[1] - corners[0])
     lower = corners[2] + along * (corners[3] - corners[2])
     return (upper + down * (lower - upper)) * (polar <= cells.reach * (1 + _ROUNDING))
@@ -172,7 +169,9 @@ def largest_pressures(cells: CellArrays, pressure: Array, axis: Array) -> tuple[
     fitted = (near @ middle[..., None])[..., 0] > xp.cos(radius)
     fitted = (fitted & (values > 0)).astype(pressure.dtype)
     first, second = tangents_at(middle)
-    fit = _fit_quadratic(*_project(near, first, second, radius), (values - top[:, None]) * fitted, fitted)
+    terms = _quadratic_terms(*_project(near, first, second, radius)) * fitted[..., None]
+    normal, rises = terms.swapaxes(1, 2) @ terms, (values - top[:, None]) * fitted
+    fit = xp.linalg.pinv(normal, hermitian=True) @ (terms.swapaxes(1, 2) @ rises[..., None])
     lattice = xp.linspace(-0.6, 0.6, _LATTICE_POINTS, dtype=pressure.dtype) * radius
     s, t = (coordinate.reshape(-1)[None, :, None] for coordinate in xp.meshgrid(lattice, lattice))
     candidates = middle[:, None] + first[:, None] * s + second[:, None] * t
@@ -200,13 +199,6 @@ def _quadratic_terms(s: Array, t: Array) -> Array:
     return arrays.namespace(s).stack([1.0 + 0.0 * s, s, t, s * s, s * t, t * t], axis=-1)
 
 
-def _fit_quadratic(s: Array, t: Array, values: Array, weights: Array) -> Array:
-    xp = arrays.namespace(s)
-    terms = _quadratic_terms(s, t) * weights[..., None]
-    normal = terms.swapaxes(1, 2) @ terms
-    return xp.linalg.pinv(normal, hermitian=True) @ (terms.swapaxes(1, 2) @ values[..., None])
-
-
 def contact_centres(cells: CellArrays, patches: Patches) -> Array:
     """Compute the centres of contacts (contacts, 3): the load, or the largest pressure if the load points outside."""
     xp = arrays.namespace(patches.pressure)
@@ -224,15 +216,12 @@ def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> range:
     """Compute the steps of half a ring's width in which rays leave their contacts, for all contacts in NumPy."""
     cosine = numpy.einsum("nk,krm->nrm", centres, cells.middles)
     loaded, step = patches.level > 0, cells.width / 2
-    farthest = _angle(numpy.where(loaded, cosine, 1.0).min(initial=1.0)) + 3 * cells.width
-    nearest = _angle(numpy.where(loaded, -1.0, cosine).max(initial=-1.0))
+    cosines = numpy.where(loaded, cosine, 1.0).min(initial=1.0), numpy.where(loaded, -1.0, cosine).max(initial=-1.0)
+    farthest_loaded, nearest = (float(numpy.arccos(numpy.clip(extreme, -1.0, 1.0))) for extreme in cosines)
+    farthest = farthest_loaded + 3 * cells.width
     to_rim = cells.reach - numpy.atan2(numpy.hypot(centres[:, 0], centres[:, 1]), centres[:, 2]).max(initial=0.0)
     first = max(int((min(nearest, to_rim) - 2 * cells.width) / step), 1)
     return range(first, max(int(min(farthest, pi) / step), first) + 1)
-
-
-def _angle(cosine: Numbers) -> float:
-    return float(numpy.arccos(numpy.clip(cosine, -1.0, 1.0)))
 
 
 def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: range) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, inf, nan, pi, sin
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from .contact import OffAxisContact
 
 _MAX_BISECTIONS = 40
-
 _RELATIVE_TOLERANCE = 1e-4
-
 _MAX_INTERFERENCES = 4.0  # displacement, as a multiple of the interference, at which a part of every contact is open
 
 
@@ -111,7 +109,15 @@ class Preload:
             contact = self.displace(start + distance * vector / numpy.linalg.norm(vector))
             return bool((contact.pressure_map[2] > 0).all())
 
-        return self._bisect_length(is_closed)
+        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
+        if not is_closed(low):
+            return 0.0
+        for _ in range(_MAX_BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if is_closed(middle) else (low, middle)
+            if high - low < _RELATIVE_TOLERANCE * high:
+                break
+        return low
 
     def wear_depth_to_loosen(self) -> float:
         """Compute the uniform wear of the bore in mm at which the ball loses its preload.
@@ -132,18 +138,6 @@ class Preload:
             bounds=[(None, None)] * 3 + [(0.0, None)],
         )
         return float(fitted.x[3])
-
-    def _bisect_length(self, holds: Callable[[float], bool]) -> float:
-        """Find the largest length in mm up to which a condition holds, or 0 if it does not hold at 0."""
-        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
-        if not holds(low):
-            return 0.0
-        for _ in range(_MAX_BISECTIONS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if holds(middle) else (low, middle)
-            if high - low < _RELATIVE_TOLERANCE * high:
-                break
-        return low
 
 
 MAX_RIM_STRAIN = 0.1

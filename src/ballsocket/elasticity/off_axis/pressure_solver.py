@@ -92,10 +92,7 @@ class _ConjugateGradients:
         return self.compliance.grid.integrate_product(self.pressure, self.overlap + self.residual) / 2
 
     def check_convergence(self, tolerance: Numbers) -> Numbers:
-        """Return True for contacts within their tolerances (batch,).
-
-        Strict tolerances are checked in double precision.
-        """
+        """Return True for contacts within their tolerances (batch,); strict ones are checked in double precision."""
         doubtful = self.is_single & (tolerance < _MIN_SINGLE_RESIDUAL) & (self.relative_residual <= tolerance)
         if doubtful.any():
             self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])

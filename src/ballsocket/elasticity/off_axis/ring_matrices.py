@@ -78,10 +78,7 @@ def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
 
 
 def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
-    """Integrate the normalised associated Legendre functions P_n^m over each ring: (m, rings, degrees n).
-
-    The integrand is P_n^m sin θ.
-    """
+    """Integrate the normalised Legendre functions P_n^m times sin θ over each ring: (m, rings, degrees n)."""
     nodes, weights = (numpy.array(rule) for rule in gauss_legendre(_POINTS_PER_RING))
     width = numpy.diff(grid.edges)[:, None]
     angle = (grid.edges[:-1, None] + width * nodes).ravel()

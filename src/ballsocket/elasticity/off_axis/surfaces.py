@@ -42,10 +42,7 @@ class EdgeRelation:
     bounded: bool  # True if the pressure stays finite in a contact that reaches the end of the bore
 
     def levels(self, pressure: Numbers, gap: Numbers) -> Numbers:
-        """Compute levels in mm (..., rings, meridians) from pressures in MPa and gaps in mm.
-
-        A level is positive in loaded cells and minus the gap in open ones.
-        """
+        """Compute levels in mm: positive by the pressure in loaded cells, minus the gap in open ones."""
         return numpy.where(pressure > 0, pressure * self.compliance, -numpy.maximum(gap, 0.0))
 
 

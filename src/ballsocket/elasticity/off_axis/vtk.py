@@ -14,9 +14,7 @@ from ..finite_elements.section import check_vtk_path
 from .contact import OffAxisContact
 from .directions import unit_vectors
 
-BORE, BALL, EDGE = 0, 1, 2
-"""Numbers of the bodies in the cell data `part`."""
-
+BORE, BALL, EDGE = 0, 1, 2  # numbers of the bodies in the cell data `part`
 _BALL_RINGS = 90  # number of rings in which the ball is drawn
 
 

@@ -61,10 +61,7 @@ def fmi2_description(information: UnitInformation, variables: Sequence[Variable]
     for parent in (SubElement(root[0], "SourceFiles"), files):
         for source in information.sources:
             SubElement(parent, "File", name=source)
-    _add_units(root)
-    _add_log_categories(SubElement(root, "LogCategories"))
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    variables_element = SubElement(root, "ModelVariables")
+    variables_element = _add_units_and_logs(root)
     for variable in variables:
         scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
         SubElement(scalar_variable, "Real", _unit_and_start_attributes(variable))
@@ -72,21 +69,15 @@ def fmi2_description(information: UnitInformation, variables: Sequence[Variable]
     outputs = [variable for variable in variables if variable.causality == "output"]
     for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
         for variable in outputs:
-            SubElement(
-                parent,
-                "Unknown",
-                {"index": str(variable.reference), **_dependency_attributes(variable.needs, parent.tag)},
-            )
+            dependencies = _dependency_attributes(variable.needs, parent.tag)
+            SubElement(parent, "Unknown", {"index": str(variable.reference), **dependencies})
     return _xml_bytes(root)
 
 
 def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
     """Return the XML file `modelDescription.xml` of an FMU for FMI 3.0, as bytes."""
     root = _description_root("3.0", information, {"instantiationToken": information.guid})
-    _add_units(root)
-    _add_log_categories(SubElement(root, "LogCategories"))
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    variables_element = SubElement(root, "ModelVariables")
+    variables_element = _add_units_and_logs(root)
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
     SubElement(variables_element, "Float64", time, unit="s")
     for variable in variables:
@@ -97,11 +88,8 @@ def fmi3_description(information: UnitInformation, variables: Sequence[Variable]
     outputs = [variable for variable in variables if variable.causality == "output"]
     for tag in ("Output", "InitialUnknown"):
         for variable in outputs:
-            SubElement(
-                structure,
-                tag,
-                {"valueReference": str(variable.reference), **_dependency_attributes(variable.needs, tag)},
-            )
+            dependencies = _dependency_attributes(variable.needs, tag)
+            SubElement(structure, tag, {"valueReference": str(variable.reference), **dependencies})
     return _xml_bytes(root)
 
 
@@ -134,23 +122,20 @@ def _description_root(version: str, information: UnitInformation, identifiers: d
     return root
 
 
-def _add_units(root: Element) -> None:
-    """Add the definitions of all units to a model description."""
+def _add_units_and_logs(root: Element) -> Element:
+    """Add units, log categories and the default experiment to a model description, and return its variables."""
     units = SubElement(root, "UnitDefinitions")
     for name, powers in UNITS.items():
-        SubElement(
-            SubElement(units, "Unit", name=name), "BaseUnit", {base: str(power) for base, power in powers.items()}
-        )
-
-
-def _add_log_categories(parent: Element) -> None:
-    """Add the categories of log messages to an XML element."""
+        bases = {base: str(power) for base, power in powers.items()}
+        SubElement(SubElement(units, "Unit", name=name), "BaseUnit", bases)
+    categories = SubElement(root, "LogCategories")
     for name, meaning in LOG_CATEGORIES.items():
-        SubElement(parent, "Category", name=name, description=meaning)
+        SubElement(categories, "Category", name=name, description=meaning)
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
+    return SubElement(root, "ModelVariables")
 
 
 def _variable_attributes(variable: Variable) -> dict[str, str]:
-    """Return the XML attributes that describe a variable."""
     parameter = variable.causality == "parameter"
     attributes = {
         "name": variable.name,
@@ -163,7 +148,6 @@ def _variable_attributes(variable: Variable) -> dict[str, str]:
 
 
 def _unit_and_start_attributes(variable: Variable) -> dict[str, str]:
-    """Return the unit and the start value of a variable as XML attributes."""
     return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
 
 
@@ -174,7 +158,6 @@ def _dependency_attributes(inputs: Iterable[int], tag: str) -> dict[str, str]:
 
 
 def _xml_bytes(root: Element) -> bytes:
-    """Convert an XML element to the indented text of a file, as bytes."""
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 

@@ -19,10 +19,7 @@ _BY_NAME = {claim.name: claim for claim in (*CLAIMS, *MESHED_CLAIMS, *ELSEWHERE,
 def claim(name: str) -> Claim:
     """Return a claim by its name; call it with a reference model to judge it.
 
-    Raises
-    ------
-    KeyError
-        An unknown name.
+    Raises KeyError: an unknown name.
     """
     if name not in _BY_NAME:
         raise KeyError(f"claim {shown(name)} is not known{nearest(name, tuple(_BY_NAME))}")

@@ -11,17 +11,7 @@ from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
 from .. import cases
 from . import quantities
-from .evaluation import (
-    ACCEPTABLY,
-    BY_EVALUATION,
-    CONSIDERABLE,
-    EXACTLY,
-    STATED,
-    ZERO,
-    Claim,
-    Computed,
-    percent,
-)
+from .evaluation import ACCEPTABLY, BY_EVALUATION, CONSIDERABLE, EXACTLY, STATED, ZERO, Claim, Computed, percent
 
 
 def _outer_radius(numbers: Computed) -> str:

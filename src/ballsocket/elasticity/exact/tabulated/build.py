@@ -29,18 +29,13 @@ from ..modes import ElasticBall, Shell, Socket
 from . import chebyshev
 from . import model as table
 
-SHIPPED = Path(__file__).parents[3] / "data" / "exact_tables.npz"
-"""Path of the tables of the package."""
+SHIPPED = Path(__file__).parents[3] / "data" / "exact_tables.npz"  # path of the tables of the package
 
 BY_ANGLE = ("indentation", "force", "pole_pressure", "stiffness", "energy", "pressure_integral")
 """Quantities that are checked by half angle."""
 
-BY_FORCE = ("half_angle", "indentation", "pole_pressure")
-"""Quantities that are checked by force."""
-
-QUANTITIES = (*BY_ANGLE, "half_angle")
-"""All quantities that are checked."""
-
+BY_FORCE = ("half_angle", "indentation", "pole_pressure")  # quantities that are checked by force
+QUANTITIES = (*BY_ANGLE, "half_angle")  # all quantities that are checked
 _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARE_POINTS = 5  # of the ball's share of the compliance
 _PROFILE_POINTS = 11  # along the contact
@@ -172,9 +167,8 @@ def _sample_ball_change(
         state = _solve_state(liner, angle, points, share, ball_poisson)
         return (function(state) - rigid) * (2 / (1 + coordinate))
 
-    return numpy.array(
-        [[function_change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev_points(shares)]
-    )
+    coordinates = [float(coordinate) for coordinate in chebyshev_points(shares)]
+    return numpy.array([[function_change(coordinate, nu) for nu in balls] for coordinate in coordinates])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,10 +182,7 @@ class _TableSpec:
     balls: tuple[float, ...] = ()
 
     def fit(self, map_function: Callable[..., Any]) -> Numbers:
-        """Compute the coefficients of this table: (ν, R2/L, ball share, ball ν, function, angle).
-
-        `map_function` applies a function to all liners.
-        """
+        """Compute the coefficients of this table: (ν, R2/L, ball share, ball ν, function, angle)."""
         low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
         poisson = (1 - numpy.exp((high + low - chebyshev_points(self.counts[0]) * (high - low)) / 2)) / 2
         ratio = chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1]))
@@ -253,20 +244,14 @@ def check_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
     chebyshev.load_tables(str(path))  # raises an error at once for a file without tables
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
     with _process_pool(workers) as pool:
-        known = [
-            numpy.array(list(pool.map(_solve_exact, zip(*numbers, strict=True), chunksize=50))).T
-            for numbers in (rigid, elastic)
-        ]
+        known = [list(pool.map(_solve_exact, zip(*of, strict=True), chunksize=50)) for of in (rigid, elastic)]
     model = table.Tabulated(file=str(path))
-    errors = [_largest_errors(model, numbers, exact) for numbers, exact in zip((rigid, elastic), known, strict=True)]
+    errors = [_largest_errors(model, of, numpy.array(k).T) for of, k in zip((rigid, elastic), known, strict=True)]
     return TableAccuracy(points=points, size=Path(path).stat().st_size, rigid=errors[0], elastic=errors[1])
 
 
 def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Numbers, ...]:
-    """Draw random contacts: ε, ν, R2/L, E/E_ball and ν of the ball, an array of each.
-
-    The distributions are uniform, for R2/L in its logarithm.
-    """
+    """Draw uniform random ε, ν, ln(R2/L), E/E_ball and ν of the ball; return an array of each, of R2/L itself."""
     random = numpy.random.default_rng(seed)
     angle, poisson = numpy.radians(random.uniform(2, 80, count)), random.uniform(0, 0.499, count)
     ratio = numpy.exp(random.uniform(numpy.log(0.2), numpy.log(20), count))
@@ -298,9 +283,8 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
     by_angle, by_force = model.press(joint, half_angle=numbers[0]), model.press(joint, force=known["force"])
     results = [(name, getattr(by_angle, name), known[name], "") for name in BY_ANGLE]
     results += [(name, getattr(by_force, name), known[name], " by force") for name in BY_FORCE]
-    return tuple(
-        _largest_error(name + suffix, abs(value / expected - 1), numbers) for name, value, expected, suffix in results
-    )
+    errors = ((name + suffix, abs(value / expected - 1)) for name, value, expected, suffix in results)
+    return tuple(_largest_error(name, error, numbers) for name, error in errors)
 
 
 def _largest_error(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> LargestError:

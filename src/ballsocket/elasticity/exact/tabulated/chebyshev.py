@@ -19,14 +19,9 @@ from ....core.arrays import log as ln
 from ....core.chebyshev import chebyshev_polynomials, contract_factors
 from ....core.input_files import open_input
 
-POISSON = (-0.5, 0.4993)
-"""Range of ν in the tables, slightly wider than the model's domain."""
-
-THICKNESS_RATIO = (0.195, 20.5)
-"""Range of R2/L in the tables, slightly wider than the model's domain."""
-
-MAX_BALL_SHARE = 0.0275
-"""Ratio β/(1 + β) of the softest ball in the tables: E/E_ball slightly above 0.02."""
+POISSON = (-0.5, 0.4993)  # range of ν in the tables, slightly wider than the model's domain
+THICKNESS_RATIO = (0.195, 20.5)  # range of R2/L in the tables, slightly wider than the model's domain
+MAX_BALL_SHARE = 0.0275  # ratio β/(1 + β) of the softest ball in the tables: E/E_ball slightly above 0.02
 
 WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
 """Name of the table for an elastic ball, by that for a rigid one."""
@@ -105,10 +100,7 @@ class ChebyshevTable:
         return self.coefficients_of_polynomials(polynomials)
 
     def coefficients_of_polynomials(self, polynomials: list[Array]) -> Array:
-        """Compute the coefficients from the Chebyshev polynomials (orders, joints or 1) of the coordinates.
-
-        There may be more orders than this table has.
-        """
+        """Compute the coefficients from Chebyshev polynomials (orders or more, joints or 1) of the coordinates."""
         first, second, *ball = (values[:count, ...] for values, count in zip(polynomials, self.counts, strict=False))
         matrix, products = contract_factors(convert_like(self.liner, first), first, second)
         if ball:

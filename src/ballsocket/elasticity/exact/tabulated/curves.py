@@ -33,8 +33,7 @@ from .chebyshev import (
     thickness_coordinate,
 )
 
-ONE, TWO, ALL = (0,), (0, 1), (0, 1, 2)
-"""Indices of the functions to evaluate."""
+ONE, TWO, ALL = (0,), (0, 1), (0, 1, 2)  # indices of the functions to evaluate
 
 
 class CurveCoefficients(NamedTuple):
@@ -133,10 +132,7 @@ def shift_state(state: TabulatedState, shift: Array) -> TabulatedState:
 
 
 def contact_quantities(state: TabulatedState, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε).
-
-    The units are mm, N, MPa, N/mm and mm.
-    """
+    """Compute d in mm, F in N, p0 in MPa, dF/dd in N/mm and the slope dd/d(ln ε) in mm."""
     growth = 1 / (1 - state.opening)
     reach, outer = scale.clearance * growth, state.opening * state.opening_rate * growth
     modulus = reach / scale.compliance
@@ -267,5 +263,4 @@ def derivative_series(functions: Array) -> Array:
     return arrays.namespace(functions).stack([derivative @ functions[row, ...] for row in range(functions.shape[0])])
 
 
-SMALL_LOAD = 1e-3
-"""Load in place of one that is not positive."""
+SMALL_LOAD = 1e-3  # load in place of one that is not positive

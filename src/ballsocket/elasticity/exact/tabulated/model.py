@@ -237,11 +237,7 @@ _SERIES_NUMBERS = 128
 def _map_blocks_in_jax(
     file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
 ) -> tuple[Array, ...]:
-    """Compute quantities of contacts inside `jax.jit`, block by block.
-
-    `rows` are the numbers of the joint and the loads: arrays (1,) or (contacts,). Contacts of one joint store no
-    series and need no blocks.
-    """
+    """Compute quantities block by block inside `jax.jit`; rows of joint and loads are (1,) or (contacts,)."""
 
     def compute_block(*parts: Array) -> tuple[Array, ...]:
         return compute_quantities(JointCurves(file, joint.with_numbers(list(parts[:-1]))), parts[-1])
@@ -307,6 +303,7 @@ class Tabulated(Model):
     file: str = ""
 
     seconds_a_press: ClassVar[float] = 4e-6
+    is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"

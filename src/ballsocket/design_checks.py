@@ -1,39 +1,31 @@
-"""Table of checks of a design: each demand beside its capacity, with ratio, verdict and source.
+"""Checks of a design: each demand compared with its capacity, and the verdict on all of them.
 
-Reports and the explorer show the same rows::
+Every door shows the same checks::
 
     rows = checks_of(contact, cup)                                         # a contact of any model in its cup
     rows = checks_at(joint, pressure=pressure, von_mises=stress)           # bars of a cycle or of a worn bore
-    html = checks_html(rows, units.text_of)                                # or reading.with_unit in the explorer
     verdict, sentence = verdict_of(rows)
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import nextafter
 from typing import Any
 
-from ..contact import Contact
-from ..contact.verdict import (
+from .contact import Contact
+from .contact.verdict import (
     EDGE_DISTANCE,
     Bounded,
     Verdict,
     ball_von_mises,
-    bar_text,
     error_bar,
-    percent,
     ratio_text,
 )
-from ..core.answers import Check
-from ..core.quantities import QUANTITIES, STRENGTH, Quantity
-from ..elasticity.off_axis.contact import OffAxisContact
-from ..problem import Joint, Material
-from ..problem.cup import Cup
-from .pages import render_part
-
-Writer = Callable[[Quantity, float], str]
-"""Function that writes a number in internal units with its unit: `Units.text_of`, or `Reading.with_unit`."""
+from .core.answers import Check
+from .core.quantities import STRENGTH
+from .problem import Joint, Material
+from .problem.cup import Cup
 
 _PRESSURE, _VON_MISES = "allowable_pressure", "yield_stress"
 
@@ -47,8 +39,9 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
     if contact.status.failed:
         return ()
     joint, radius = contact.joint, float(contact.joint.socket_radius)
-    if isinstance(contact, OffAxisContact):
-        reach, distance = float(contact.model.reach_of(joint)), error_bar(contact, EDGE_DISTANCE)
+    reach_of: Any = getattr(contact.model, "reach_of", None)
+    if reach_of is not None:  # a load off the axis
+        reach, distance = float(reach_of(joint)), error_bar(contact, EDGE_DISTANCE)
     else:
         reach = cup.rim - cup.chamfer / radius
         value, low, high = error_bar(contact, "half_angle")
@@ -170,23 +163,3 @@ _WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)
 def _uses(rows: Sequence[Check]) -> str:
     """Write the ratios of checks in words, such as "pressure on the liner is 81 % of the allowable pressure"."""
     return "; ".join(f"{row.title} is {ratio_text(row.ratio)} the {row.limit}" for row in rows if row.ratio is not None)
-
-
-def checks_html(rows: Sequence[Check], write: Writer) -> str:
-    """Render checks as a table in HTML, with sign, word and style of each result; narrow pages stack its cells."""
-    return render_part("parts.html", "checks", [_cells(row, write) for row in rows])
-
-
-def _cells(row: Check, write: Writer) -> dict[str, Any]:
-    quantity, ratio = QUANTITIES[row.quantity], row.ratio
-    return {
-        "title": row.title,
-        "demand": write(quantity, row.demand.value),
-        "bar": bar_text(row.demand, lambda value: write(quantity, value)),
-        "capacity": "–" if row.capacity is None else f"{write(quantity, row.capacity)} ({row.limit})",
-        "ratio": "–" if ratio is None else f"{percent(ratio.value)} %",
-        "width": f"{min(100.0, 100 * ratio.value) if ratio else 0.0:.1f}",
-        "state": "unknown" if ratio is None else row.verdict.word,
-        "result": row.result,
-        "source": row.source,
-    }
