@@ -24,16 +24,6 @@ def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHan
         return None
 
 
-def _work_key(work: Work) -> Hashable:
-    """Return function and arguments of a partial function; work without comparable arguments is unique."""
-    key = getattr(work, "func", work), getattr(work, "args", ())
-    try:
-        hash(key)
-    except TypeError:
-        return object()
-    return key
-
-
 class Job:
     """Long work of one view in at most one process; its news go to `heard` with the key of the work.
 
@@ -57,7 +47,12 @@ class Job:
         if self._run is not None and key == self._key:
             return
         self.stop()
-        self._key, self._work, self._context = key, _work_key(work), copy_context()
+        self._key, self._context = key, copy_context()
+        self._work = getattr(work, "func", work), getattr(work, "args", ())
+        try:
+            hash(self._work)
+        except TypeError:  # work without comparable arguments is unique
+            self._work = object()
         if self._work not in _SHARED:
             _SHARED[self._work] = Run(work, longest=self._longest), []
         self._run, jobs = _SHARED[self._work]

@@ -194,7 +194,11 @@ def write_question(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: 
     import tomli_w
 
     (folder / _HIP).unlink(missing_ok=True)
-    tables = {_QUESTION: _tables(inputs, file)} | ({_HIP: _hip(file, use)} if inputs.wear == "yes" else {})
+    tables = {_QUESTION: _tables(inputs, file)}
+    if inputs.wear == "yes":
+        weight = {"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}
+        law = {"cycle": {"name": use.cycle}, "wear": {**use.wear_table, "contact": use.contact}, **use.creep_tables}
+        tables[_HIP] = {**_joint(file), **weight, "cycles": 1e6 * use.millions, **law}
     for name, content in tables.items():
         for words in _texts(content):
             if Path(words).is_absolute() or ".." in Path(words).parts:  # a pack includes every file that is named
@@ -219,17 +223,6 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
     if inputs.wear == "yes":
         tables["wear"] = {"file": _HIP}
     return tables
-
-
-def _hip(file: JointFile, use: Use) -> Tables:
-    return {
-        **_joint(file),
-        **({"body_weight": use.body_weight} if CYCLES[use.cycle].per_body_weight else {}),
-        "cycles": 1e6 * use.millions,
-        "cycle": {"name": use.cycle},
-        "wear": {**use.wear_table, "contact": use.contact},
-        **use.creep_tables,
-    }
 
 
 def _joint(file: JointFile) -> Tables:
