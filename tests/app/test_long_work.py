@@ -31,7 +31,7 @@ from ballsocket.models.plane_layer import PlaneLayer
 from ballsocket.problem.cup import Cup
 
 from ..extent import some
-from ..processes import wait_until
+from ..processes import PATIENCE, wait_until
 from .asking import does, edits, saved
 
 HIP = bs.joints["hip-28"]
@@ -51,7 +51,8 @@ def waited_for(page):
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left_running():
+def nothing_is_left_running(monkeypatch):
+    monkeypatch.setattr(solving, "PRESS_SECONDS", PATIENCE)
     solving._solved.clear()
     yield
     assert len(running.QUEUE) == 0
@@ -152,7 +153,7 @@ def until_the_end(run):
 def judging(force, **cup):
     from ballsocket.app.views.finite_elements import run_finite_elements
 
-    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
+    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))), longest=PATIENCE)
 
 
 @pytest.mark.long
