@@ -55,6 +55,7 @@ VALUE_ERRORS = [
     (FORCE, {"direction": (0.0, 0.0, NAN)}, "a length is finite"),
     (FORCE, {"direction": (0.0, 0.0, 1.0), "tilt": 0.1}, "not both"),
     (MOVE, {"tilt": 0.1}, "leave direction, tilt and azimuth out"),
+    (MOVE, {"inclination": 0.1}, "give inclination and anteversion in the cup"),
     (MOVE, {"force": 1.0}, "exactly one"),
     (bs.Sphere, {"ring_width": radians(0.49)}, "0.5 to 6 degrees"),
     (bs.Sphere, {"ring_width": radians(6.01)}, "0.5 to 6 degrees"),

@@ -239,14 +239,17 @@ class Sphere(Model):
         numbers, vectors = (*load.values(), tilt, azimuth, inclination, anteversion), (displacement, direction)
         shapes = [numpy.shape(number) for number in numbers if number is not None]
         check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
-        if inclination is not None or anteversion is not None:
-            model = model.with_direction(direction, tilt, azimuth).with_orientation(inclination, anteversion)
-            return Model.press(model, joint, **load)
         if displacement is None:
-            return Model.press(model.with_direction(direction, tilt, azimuth), joint, **load)
+            model = model.with_direction(direction, tilt, azimuth)
+            if inclination is not None or anteversion is not None:
+                model = model.with_orientation(inclination, anteversion)
+            return Model.press(model, joint, **load)
         select_load(**load, displacement=displacement)
-        if direction is not None or tilt is not None or azimuth is not None:
-            raise ValueError("a displacement includes its direction: leave direction, tilt and azimuth out")
+        if any(given is not None for given in (direction, tilt, azimuth, inclination, anteversion)):
+            raise ValueError(
+                "a displacement includes its direction: leave direction, tilt and azimuth out, and give inclination "
+                "and anteversion in the cup of the model"
+            )
         vector = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
         require("displacement", vector, numpy.isfinite(vector), "a displacement (mm) is finite")
         length = numpy.linalg.norm(vector, axis=-1)
