@@ -40,9 +40,10 @@ def error_bar(contact: Contact, name: str) -> Bounded:
     """Return a quantity of a contact with its error bar, in internal units.
 
     The bar of the von Mises stress and the utilisation is that of `contact.quick_von_mises`, or the error of a solved
-    stress, with the error of the pressure. A utilisation of the ball alone has no upper end. Other quantities have the
-    error that solver or model state; without one the bar has no width. For models of a closed sphere, stress and
-    largest pressure may be higher in a cup with a free rim, a hemisphere by default: their bars end above it.
+    stress, with the error of the pressure; a model that states no error of its pressure has no bound. A utilisation of
+    the ball alone has no upper end. Other quantities have the error that solver or model state; without one the bar has
+    no width. For models of a closed sphere, stress and largest pressure may be higher in a cup with a free rim, a
+    hemisphere by default: their bars end above it.
 
     Parameters
     ----------
@@ -59,7 +60,9 @@ def error_bar(contact: Contact, name: str) -> Bounded:
     if name in ("von_mises", "quick_von_mises"):
         is_solved = name == "von_mises" and contact.stress_error is not None
         bar = exact_number(value).scaled(1.0, contact.stress_error or 0.0) if is_solved else contact.quick_von_mises
-        bar = bar.scaled(1.0, errors.get("max_pressure", 0.0))
+        if "max_pressure" not in errors:
+            return Bounded(bar.value, 0.0 * bar.value, inf + 0.0 * bar.value)
+        bar = bar.scaled(1.0, errors["max_pressure"])
         return bar._replace(high=bar.high * (1 + _rim_error(contact)))
     if name == EDGE_DISTANCE:
         error = errors["edge_margin"] * contact.joint.socket_radius

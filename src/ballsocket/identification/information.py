@@ -57,7 +57,6 @@ class Estimate:
             "low": self.low,
             "high": self.high,
             "identifiable": self.identifiable,
-            "told": self.identifiable,
             "limited_by": list(self.limited_by),
         }
 
