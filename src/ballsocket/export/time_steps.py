@@ -12,6 +12,9 @@ from ..dynamics import ForceElement, PreloadedElement
 _ALLOWED_ENERGY_ERROR = 0.01  # energy that a bounce may gain or lose, relative to its energy
 _PHASES = 24  # number of bounces that differ in the part of a step before the first touch
 
+_MAX_STEPS = 10_000
+"""Largest number of steps of a bounce."""
+
 _SHARES = numpy.geomspace(1.0, 0.01, 60)
 """Time steps that are tried, as shares of the largest stable one, in falling order."""
 
@@ -33,7 +36,7 @@ class TimeStepAdvice:
 
     def __str__(self) -> str:
         return (
-            f"time steps for a ball of {self.mass:g} kg up to {self.depth:.3g} mm of indentation "
+            f"time steps for a ball of {self.mass:g} kg that is pressed by up to {self.depth:.3g} mm "
             f"({self.stiffness:.3g} N/mm): an explicit integration is stable below {self.stable:.2g} s, and a bounce "
             f"keeps its energy within {100 * _ALLOWED_ENERGY_ERROR:g} % up to {self.accurate:.2g} s"
         )
@@ -44,6 +47,7 @@ def time_step_advice(element: ForceElement | PreloadedElement, depth: float, mas
 
     The socket is fixed. Two free bodies of masses m and M move like one with the mass m M/(m + M).
     """
+    depth = min(depth, element.wall)
     depths = depth * numpy.linspace(0.0, 1.0, 401)[1:]
     if isinstance(element, PreloadedElement):  # it is stiffest at rest, where it moves with little force
         rows = element.table.evaluate("energy", numpy.append(1e-3 * depth, depths))
@@ -53,7 +57,7 @@ def time_step_advice(element: ForceElement | PreloadedElement, depth: float, mas
     stiffness = float(numpy.max(stiffnesses))
     stable = 2.0 * (1e-3 * mass / stiffness) ** 0.5
     changes = [_energy_change(depths, forces[-len(depths) :], mass, share * stable) for share in _SHARES]
-    too_large = numpy.flatnonzero(numpy.array(changes) > _ALLOWED_ENERGY_ERROR)
+    too_large = numpy.flatnonzero(~(numpy.array(changes) <= _ALLOWED_ENERGY_ERROR))
     accurate = float(_SHARES[min(too_large.max(initial=-1) + 1, len(_SHARES) - 1)]) * stable
     return TimeStepAdvice(mass=mass, depth=depth, stiffness=stiffness, stable=stable, accurate=accurate)
 
@@ -65,7 +69,9 @@ def _energy_change(depths: Numbers, forces: Numbers, mass: float, step: float) -
     impact_speed = (2.0 * work / (1e-3 * mass)) ** 0.5
     depth = -impact_speed * step * numpy.linspace(0.0, 1.0, _PHASES, endpoint=False)
     speed, leaving = numpy.full(_PHASES, impact_speed), numpy.full(_PHASES, False)
-    while not leaving.all():
+    for _ in range(_MAX_STEPS):
+        if leaving.all():
+            break
         excess = numpy.clip(depth - depths[-1], 0.0, None)
         force = numpy.interp(depth, depths, forces) + excess * last_stiffness
         speed = numpy.where(leaving, speed, speed - force * step / (1e-3 * mass))
