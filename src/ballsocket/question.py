@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from .comparison import Comparison, compare
 from .contact import Contact, Model
 from .files.joint_file import JointFile
-from .model_catalogue import OFF_AXIS, catalogue, named_models, reference, with_gap
+from .model_catalogue import JUDGE, OFF_AXIS, catalogue, named_models, reference, with_gap
 from .problem.cup import AXIAL_TILT
 from .problem.presets import long_term_note
 
@@ -63,8 +63,8 @@ class PressAnswer:
 
     @property
     def leading(self) -> str:
-        """Name of the model whose contact gets the verdict: `sphere` where it is needed, or the first valid one."""
-        ordered = [name for name in (OFF_AXIS, reference.name, *self.models) if name in self.comparison]
+        """Name of the model whose contact gets the verdict: `sphere` where needed, else the most exact valid one."""
+        ordered = [name for name in (OFF_AXIS, JUDGE, reference.name, *self.models) if name in self.comparison]
         needed = [OFF_AXIS] if OFF_AXIS in ordered and real_cup_reason(self.file) else []
         return [*needed, *(name for name in ordered if self.comparison[name].valid), *ordered][0]
 

@@ -27,13 +27,27 @@ _DEFAULT_FORCE = 2000.0  # largest load in N for data without forces
 
 @dataclass(frozen=True)
 class Candidate:
-    """Possible next measurement: quantity, load and uncertainty."""
+    """Possible next measurement: quantity, load and uncertainty.
 
-    quantity: str  #: one of `ballsocket.identification.MEASURED`
-    uncertainty: float  #: standard uncertainty in the unit of the quantity
-    force: float | None = None  #: load in N; None for a number of the joint
-    machine: Machine = IDEAL_MACHINE  #: machine that would read an indentation
-    order: float = 0.0  #: number of the reading, for a machine with a drifting zero
+    Attributes
+    ----------
+    quantity : str
+        One of `ballsocket.identification.MEASURED`.
+    uncertainty : float
+        Standard uncertainty in the unit of the quantity.
+    force : float or None
+        Load in N; None for a number of the joint.
+    machine : Machine
+        Machine that would read an indentation.
+    order : float
+        Number of the reading, for a machine with a drifting zero.
+    """
+
+    quantity: str
+    uncertainty: float
+    force: float | None = None
+    machine: Machine = IDEAL_MACHINE
+    order: float = 0.0
 
     def measured(self, value: float) -> Measured:
         """Return a data set for this candidate, with an assumed measured value."""
@@ -50,13 +64,23 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Gain:
-    """Expected information gain of a candidate measurement."""
+    """Expected information gain of a candidate measurement.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    bits : float
+        Half log2 of the growth of the information's determinant (D-optimal).
+    uncertainty_ratio : dict of str to float
+        Uncertainty of each unknown after the measurement over its present uncertainty.
+    identifies : tuple of str
+        Unknowns that this measurement would make identifiable.
+    """
 
     candidate: Candidate
-    bits: float  #: half log2 of the growth of the information's determinant (D-optimal)
-    #: uncertainty of each unknown after the measurement over its present uncertainty
+    bits: float
     uncertainty_ratio: dict[str, float]
-    identifies: tuple[str, ...]  #: unknowns that this measurement would make identifiable
+    identifies: tuple[str, ...]
 
     def summary(self) -> dict[str, Any]:
         """Return the information gain of the candidate as a dictionary for JSON."""
@@ -71,10 +95,17 @@ class Gain:
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """Candidates for the next measurement, in descending order of their information gain."""
+    """Candidates for the next measurement, in descending order of their information gain.
+
+    Attributes
+    ----------
+    gains : tuple of Gain
+    unidentifiable : tuple of str
+        Unknowns that are unidentifiable at present.
+    """
 
     gains: tuple[Gain, ...]
-    unidentifiable: tuple[str, ...]  #: unknowns that are unidentifiable at present
+    unidentifiable: tuple[str, ...]
 
     @property
     def best(self) -> Gain:

@@ -96,11 +96,21 @@ def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedModel:
-    """Contact model fitted to measured data, with estimates and residuals."""
+    """Contact model fitted to measured data, with estimates and residuals.
 
-    misfit: Misfit  #: data, model and unknowns
-    best: FitResult  #: point of the smallest misfit
-    information: Information  #: information at that point, and profile intervals of the unknowns
+    Attributes
+    ----------
+    misfit : Misfit
+        Data, model and unknowns.
+    best : FitResult
+        Point of the smallest misfit.
+    information : Information
+        Information at that point, and profile intervals of the unknowns.
+    """
+
+    misfit: Misfit
+    best: FitResult
+    information: Information
 
     @property
     def model(self) -> Model:

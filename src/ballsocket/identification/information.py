@@ -31,15 +31,27 @@ _MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directi
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated value of one unknown with its 95 % band."""
+    """Estimated value of one unknown with its 95 % band.
+
+    Attributes
+    ----------
+    name, unit : str
+    value : float
+        NaN for an unidentifiable unknown without a stated distribution.
+    low, high : float
+        Band of 95 % from the profile likelihood within the ranges of all unknowns.
+    width_ratio : float
+        Width of the band over the prior range.
+    limited_by : tuple of str
+        Unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
+    """
 
     name: str
     unit: str
-    value: float  #: NaN for an unidentifiable unknown without a stated distribution
-    low: float  #: lower end of the band of 95 %, from the profile likelihood within the ranges of all unknowns
+    value: float
+    low: float
     high: float
-    width_ratio: float  #: width of the band over the prior range
-    #: unknowns whose ranges limit the band, its own name included. Empty where the data alone limit it.
+    width_ratio: float
     limited_by: tuple[str, ...] = ()
 
     @property
@@ -63,12 +75,21 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Product:
-    """Identifiable product of powers of unknowns that are not identifiable separately."""
+    """Identifiable product of powers of unknowns that are not identifiable separately.
 
-    exponents: dict[str, float]  #: power of each unknown
+    Attributes
+    ----------
+    exponents : dict of str to float
+        Power of each unknown.
+    unit : str
+    value, low, high : float
+        Value of the product, and its band of 95 %.
+    """
+
+    exponents: dict[str, float]
     unit: str
     value: float
-    low: float  #: lower end of the band of 95 %
+    low: float
     high: float
 
     @property
@@ -107,13 +128,25 @@ class Interval:
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Fisher information of the data about the unknowns, with identifiability and covariance."""
+    """Fisher information of the data about the unknowns, with identifiability and covariance.
+
+    Attributes
+    ----------
+    transform : ParameterTransform
+    theta : array (unknowns,)
+        Best point, in standard deviations of the priors.
+    matrix : array (unknowns, unknowns)
+        Fisher information of the data there; 1 is the information of the prior.
+    intervals : tuple of Interval
+        Profile intervals over the ranges of the unknowns; `matrix` is local.
+    quantile : float
+        Standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large.
+    """
 
     transform: ParameterTransform
-    theta: Numbers  #: (unknowns,), best point, in standard deviations of the priors
-    matrix: Numbers  #: (unknowns, unknowns), Fisher information of the data there; 1 is the information of the prior
-    intervals: tuple[Interval, ...]  #: profile intervals over the ranges of the unknowns; `matrix` is local
-    #: standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large
+    theta: Numbers
+    matrix: Numbers
+    intervals: tuple[Interval, ...]
     quantile: float = QUANTILE_95
 
     @cached_property

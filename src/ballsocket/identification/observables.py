@@ -17,11 +17,20 @@ from ..core.quantities import Quantity
 
 @dataclass(frozen=True)
 class CustomObservable:
-    """Custom measured quantity that is computed from a contact."""
+    """Custom measured quantity that is computed from a contact.
 
-    described: Quantity  #: name, title and unit
-    read: Callable[..., Any]  #: function from a contact, and from the `numbers` by name, to the values of the quantity
-    #: names of `registry.OBSERVABLE_NUMBERS` that the quantity depends on; each must be an unknown
+    Attributes
+    ----------
+    described : Quantity
+        Name, title and unit.
+    read : callable
+        Function from a contact, and from the `numbers` by name, to the values of the quantity.
+    numbers : tuple of str
+        Names of `registry.OBSERVABLE_NUMBERS` that the quantity depends on; each must be an unknown.
+    """
+
+    described: Quantity
+    read: Callable[..., Any]
     numbers: tuple[str, ...] = ()
 
 

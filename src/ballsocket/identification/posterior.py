@@ -23,14 +23,29 @@ CONVERGED = 1.01
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Samples of the posterior distribution of the unknowns, with convergence measures."""
+    """Samples of the posterior distribution of the unknowns, with convergence measures.
+
+    Attributes
+    ----------
+    names : tuple of str
+    samples : array (samples, unknowns)
+        Values in mm, N, MPa, rad.
+    acceptance : float
+        Fraction of accepted proposals.
+    autocorrelation : dict of str to float
+        Integrated autocorrelation time in steps, by unknown.
+    effective : dict of str to float
+        Effective number of independent samples, by unknown.
+    r_hat : dict of str to float
+        Split R-hat of independent ensembles, by unknown; 1 for converged chains.
+    """
 
     names: tuple[str, ...]
-    samples: Numbers  #: (samples, unknowns), values in mm, N, MPa, rad
-    acceptance: float  #: fraction of accepted proposals
-    autocorrelation: dict[str, float]  #: integrated autocorrelation time in steps, by unknown
-    effective: dict[str, float]  #: effective number of independent samples, by unknown
-    r_hat: dict[str, float]  #: split R-hat of independent ensembles, by unknown; 1 for converged chains
+    samples: Numbers
+    acceptance: float
+    autocorrelation: dict[str, float]
+    effective: dict[str, float]
+    r_hat: dict[str, float]
 
     @property
     def converged(self) -> bool:

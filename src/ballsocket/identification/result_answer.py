@@ -89,7 +89,7 @@ def _machine_errors(result: IdentificationResult) -> Table:
 
 
 def _proposals(result: IdentificationResult) -> Table:
-    columns = [Column.of_words("quantity", "measure next"), Column.of(LOADS["force"], head="at")]
+    columns = [Column.of_words("quantity", "measure next"), replace(Column.of(LOADS["force"], head="at"), title="at")]
     columns += [Column.of_number("uncertainty", "to within"), Column.of_number("bits", digits=3)]
     for name, unknown in zip(result.transform.names, result.transform.unknowns, strict=True):
         columns.append(Column.of_number(f"{name}_left", f"{unknown.quantity.symbol} left", PERCENT, digits=3))

@@ -23,12 +23,24 @@ _TYPICAL_FORCE = 500.0  # force in N of the reading by which errors are ordered
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Shifts of the estimates by one machine error of assumed size."""
+    """Shifts of the estimates by one machine error of assumed size.
 
-    machine: str  #: name of the machine; empty for an unnamed machine
-    part: str  #: name of the error: "offset", "compliance" or "drift"
-    size: float  #: size of the error in mm or mm/N
-    shifts: dict[str, float]  #: shift of each estimate in its unit, by unknown; NaN for an unidentifiable unknown
+    Attributes
+    ----------
+    machine : str
+        Name of the machine; empty for an unnamed machine.
+    part : str
+        Name of the error: "offset", "compliance" or "drift".
+    size : float
+        Size of the error in mm or mm/N.
+    shifts : dict of str to float
+        Shift of each estimate in its unit, by unknown; NaN for an unidentifiable unknown.
+    """
+
+    machine: str
+    part: str
+    size: float
+    shifts: dict[str, float]
 
     @property
     def title(self) -> str:

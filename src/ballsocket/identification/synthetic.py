@@ -17,12 +17,21 @@ from .measured import Measured
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Estimates and bands from repeated identifications of synthetic data."""
+    """Estimates and bands from repeated identifications of synthetic data.
+
+    Attributes
+    ----------
+    names : tuple of str
+    truth : array (unknowns,)
+        True values in standard deviations of the priors, as all that follows.
+    middle, low, high : array (trials, unknowns)
+        Estimates, and the ends of their bands of 95 %.
+    """
 
     names: tuple[str, ...]
-    truth: Numbers  #: (unknowns,), true values in standard deviations of the priors, as all that follows
-    middle: Numbers  #: (trials, unknowns), estimates
-    low: Numbers  #: (trials, unknowns), lower ends of their bands of 95 %
+    truth: Numbers
+    middle: Numbers
+    low: Numbers
     high: Numbers
 
     @property

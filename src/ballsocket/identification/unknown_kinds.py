@@ -19,12 +19,21 @@ Effect = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class ModelNumber:
-    """Parameter of a contact model that can be an unknown, such as the work of adhesion."""
+    """Parameter of a contact model that can be an unknown, such as the work of adhesion.
 
-    quantity: Quantity  #: name, symbol, title, unit and allowed range of the number
-    models: tuple[type[Model], ...]  #: classes of models that have this number
-    #: function from a model and a value (number or array) to the model with that value. By default the field with the
-    #: name of the quantity is replaced.
+    Attributes
+    ----------
+    quantity : Quantity
+        Name, symbol, title, unit and allowed range of the number.
+    models : tuple of type
+        Classes of models that have this number.
+    insert : callable or None
+        Function from a model and a value (number or array) to the model with that value. By default the field with
+        the name of the quantity is replaced.
+    """
+
+    quantity: Quantity
+    models: tuple[type[Model], ...]
     insert: Callable[[Any, Array], Model] | None = None
 
     @property
@@ -78,14 +87,26 @@ class MachineError:
     """Type of machine error, such as an offset, that adds to each reading.
 
     A reading increases by the size of the error times `effect(force, order)`.
+
+    Attributes
+    ----------
+    quantity : Quantity
+        Name, symbol, title, unit and allowed range of the size.
+    effect : callable
+        Factor on the size from force (N) and number of the reading, such that the product is in mm.
+    slope : callable or None
+        Derivative of `effect` with respect to the force; None for an effect that does not depend on the force.
+    assumed : float
+        Size assumed for the sensitivity of estimates to this error, in the unit of the quantity.
+    phrase : str
+        Description in a note, with {} for the size: "a zero offset of {}".
     """
 
-    quantity: Quantity  #: name, symbol, title, unit and allowed range of the size
-    effect: Effect  #: factor on the size from force (N) and number of the reading, such that the product is in mm
-    #: derivative of `effect` with respect to the force; None for an effect that does not depend on the force
+    quantity: Quantity
+    effect: Effect
     slope: Effect | None = None
-    assumed: float  #: size assumed for the sensitivity of estimates to this error, in the unit of the quantity
-    phrase: str  #: description in a note, with {} for the size: "a zero offset of {}"
+    assumed: float
+    phrase: str
 
     @property
     def name(self) -> str:

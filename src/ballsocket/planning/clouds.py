@@ -27,11 +27,21 @@ _MICRON = {"µm": "um", "μm": "um", "micron": "um"}
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """Points of a measured surface."""
+    """Points of a measured surface.
 
-    points: Numbers  #: (n, 3), coordinates in mm, each point once
-    name: str = "cloud"  #: name of the file, for messages
-    notes: tuple[str, ...] = ()  #: sentences on columns that are not read
+    Attributes
+    ----------
+    points : array (n, 3)
+        Coordinates in mm, each point once.
+    name : str
+        Name of the file, for messages.
+    notes : tuple of str
+        Sentences on columns that are not read.
+    """
+
+    points: Numbers
+    name: str = "cloud"
+    notes: tuple[str, ...] = ()
 
 
 def read_points(path: str | Path, *, units: str = "mm") -> PointCloud:

@@ -55,27 +55,52 @@ _MIN_OUTWARDS = 0.35  # least cosine between the normal of an outer surface and 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImplantFit:
-    """Fitted bearing of a liner or head."""
+    """Fitted bearing of a liner or head.
 
-    radius: float  #: radius in mm of the sphere through the corners of the facets
-    centre: Numbers  #: (3,), centre in mm, in the coordinates of the file
-    residual: float  #: root mean square distance in mm of these corners from the sphere
-    #: (3,), unit vector from the centre out of the opening; None for a complete sphere. A plane rim gives it by its
-    #: normal. For a liner with a lip it is the axis around which the surfaces outside the bore are turned.
+    Attributes
+    ----------
+    radius : float
+        Radius in mm of the sphere through the corners of the facets.
+    centre : array (3,)
+        Centre in mm, in the coordinates of the file.
+    residual : float
+        Root mean square distance in mm of these corners from the sphere.
+    axis : array (3,) or None
+        Unit vector from the centre out of the opening; None for a complete sphere. A plane rim gives it by its normal.
+        For a liner with a lip it is the axis around which the surfaces outside the bore are turned.
+    arc_of_cover : float
+        Angle in rad that the spherical surface covers in a section through its axis; 2π for a complete sphere.
+    rim_deviation : float
+        Largest angle in rad of the end of the surface from a plane rim.
+    rim : tuple of RimPlane
+        Main plane of the rim and that of its lip, if it has one; empty for a complete sphere.
+    ambiguous : bool
+        True if both planes of the rim may be the main one: the outer surface does not decide.
+    facet_depth : float
+        Mean depth in mm of the middle of the facets below the sphere through their corners.
+    wall_thickness : float or None
+        Wall of a liner at the pole in mm, to the sphere of the outer surface; None for a head or without such a sphere.
+    wall_range : tuple of float or None
+        Smallest and largest distance in mm of both spheres within 80 % of the polar angle of the rim.
+    wall_residual : float or None
+        Root mean square distance in mm of the outer surface from its sphere.
+    name : str
+        Name of the file.
+    """
+
+    radius: float
+    centre: Numbers
+    residual: float
     axis: Numbers | None
-    #: angle in rad that the spherical surface covers in a section through its axis; 2π for a complete sphere
     arc_of_cover: float
-    rim_deviation: float  #: largest angle in rad of the end of the surface from a plane rim
-    facet_depth: float  #: mean depth in mm of the middle of the facets below the sphere through their corners
-    #: main plane of the rim and that of its lip, if it has one; empty for a complete sphere
+    rim_deviation: float
+    facet_depth: float
     rim: tuple[RimPlane, ...] = ()
-    ambiguous: bool = False  #: True if both planes of the rim may be the main one: the outer surface does not decide
-    #: wall of a liner at the pole in mm, to the sphere of the outer surface; None for a head or without such a sphere
+    ambiguous: bool = False
     wall_thickness: float | None = None
-    #: smallest and largest distance in mm of both spheres within 80 % of the polar angle of the rim
     wall_range: tuple[float, float] | None = None
-    wall_residual: float | None = None  #: root mean square distance in mm of the outer surface from its sphere
-    name: str = "mesh"  #: name of the file
+    wall_residual: float | None = None
+    name: str = "mesh"
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -50,10 +50,18 @@ ROLES = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Landmarks:
-    """Named points of a patient."""
+    """Named points of a patient.
 
-    names: tuple[str, ...]  #: names as in the file; several points may have one name
-    points: Numbers  #: (n, 3), coordinates in mm: to the right, to the front, upwards (RAS)
+    Attributes
+    ----------
+    names : tuple of str
+        Names as in the file; several points may have one name.
+    points : array (n, 3)
+        Coordinates in mm: to the right, to the front, upwards (RAS).
+    """
+
+    names: tuple[str, ...]
+    points: Numbers
 
     def find(self, role: str) -> Numbers | None:
         """Return the point (3,) of a role, such as "right_asis"; None without one.

@@ -30,11 +30,21 @@ _MAX_OPEN_AREA = 0.2  # sum of area vectors over total area below which a mesh w
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles of a mesh."""
+    """Triangles of a mesh.
 
-    triangles: Numbers  #: (n, 3, 3), corners in mm
-    name: str = "mesh"  #: name of the file, for messages
-    space: str | None = None  #: "RAS" or "LPS" if the header states the coordinates of a scan, as 3D Slicer writes it
+    Attributes
+    ----------
+    triangles : array (n, 3, 3)
+        Corners in mm.
+    name : str
+        Name of the file, for messages.
+    space : str or None
+        "RAS" or "LPS" if the header states the coordinates of a scan, as 3D Slicer writes it.
+    """
+
+    triangles: Numbers
+    name: str = "mesh"
+    space: str | None = None
 
     @cached_property
     def _area_vectors(self) -> Numbers:

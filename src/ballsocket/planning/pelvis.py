@@ -26,16 +26,29 @@ _MAX_TILT = radians(60.0)  # largest angle of the vertical from the pelvic plane
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PelvicFrame:
-    """Frame of the anterior pelvic plane: x to the right, y to the front, z upwards, origin between both spines."""
+    """Frame of the anterior pelvic plane: x to the right, y to the front, z upwards, origin between both spines.
 
-    origin: Numbers  #: (3,), middle of both anterior superior iliac spines in mm, RAS
-    axes: Numbers  #: (3, 3), unit vectors x, y, z as rows, in RAS
-    asis_distance: float  #: distance of the spines in mm
-    height: float  #: distance of the pubis from their line in mm
-    #: distance in mm of the two pubic tubercles across the direction of the line of the spines, 0 if both lines are
-    #: parallel; None without tubercles
+    Attributes
+    ----------
+    origin : array (3,)
+        Middle of both anterior superior iliac spines in mm, RAS.
+    axes : array (3, 3)
+        Unit vectors x, y, z as rows, in RAS.
+    asis_distance, height : float
+        Distance of the spines, and of the pubis from their line, in mm.
+    tubercle_offset : float or None
+        Distance in mm of the two pubic tubercles across the direction of the line of the spines, 0 if both lines are
+        parallel; None without tubercles.
+    vertical : array (3,) or None
+        Direction upwards in the pelvic frame; None if it is not known.
+    """
+
+    origin: Numbers
+    axes: Numbers
+    asis_distance: float
+    height: float
     tubercle_offset: float | None = None
-    vertical: Numbers | None = None  #: (3,), direction upwards in the pelvic frame; None if it is not known
+    vertical: Numbers | None = None
 
     def convert(self, points: Numbers) -> Numbers:
         """Convert points (..., 3) in mm from RAS to the pelvic frame."""
@@ -164,17 +177,35 @@ def _vertical(axes: Numbers, vertical: Any, pelvic_tilt: float | None) -> Number
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CupOrientation:
-    """Orientation of a cup in the pelvis."""
+    """Orientation of a cup in the pelvis.
 
-    axis: Numbers  #: (3,), unit vector out of the opening, in the pelvic frame
-    centre: Numbers  #: (3,), centre of the rim's points, or of the bore, in mm in the pelvic frame
-    side: Side  #: side of the body
+    Attributes
+    ----------
+    axis : array (3,)
+        Unit vector out of the opening, in the pelvic frame.
+    centre : array (3,)
+        Centre of the rim's points, or of the bore, in mm in the pelvic frame.
+    side : Side
+        Side of the body.
+    frame : PelvicFrame
+    points : int
+        Number of points of the rim; 0 for the axis of a mesh.
+    residual : float or None
+        Root mean square distance in mm of the points from their plane; None without points.
+    angle_error : float or None
+        Standard error of the axis in rad; None if it is not known.
+    largest_deviation : tuple of str and float, or None
+        Name and distance in mm of the point farthest from the plane.
+    """
+
+    axis: Numbers
+    centre: Numbers
+    side: Side
     frame: PelvicFrame
-    points: int = 0  #: number of points of the rim; 0 for the axis of a mesh
-    #: root mean square distance in mm of the points from their plane; None without points
+    points: int = 0
     residual: float | None = None
-    angle_error: float | None = None  #: standard error of the axis in rad; None if it is not known
-    largest_deviation: tuple[str, float] | None = None  #: name and distance in mm of the point farthest from the plane
+    angle_error: float | None = None
+    largest_deviation: tuple[str, float] | None = None
 
     def cup(self, upright: bool = True, **attributes: Any) -> Cup:
         """Create the cup with its radiographic angles in the upright body, or in the pelvic frame.

@@ -35,7 +35,17 @@ _LPS = numpy.diag([-1.0, -1.0, 1.0])
 class HipPlan:
     """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
 
-    Raises ValueError: a head that does not belong to the bore.
+    Attributes
+    ----------
+    frame : PelvicFrame or None
+    orientation : CupOrientation or None
+    liner, head : ImplantFit or None
+    worn : WornBore or None
+
+    Raises
+    ------
+    ValueError
+        A head that does not belong to the bore.
     """
 
     frame: PelvicFrame | None = None

@@ -34,11 +34,21 @@ _MIN_END = 0.75  # least share of the end of an outer surface that lies in a pla
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RimPlane:
-    """Plane in which a part of the rim lies."""
+    """Plane in which a part of the rim lies.
 
-    normal: Numbers  #: (3,), unit normal out of the opening, in the coordinates of the file
-    height: float  #: distance in mm from the centre of the bore, positive out of the opening
-    share: float  #: share of the circumference whose rim lies in the plane
+    Attributes
+    ----------
+    normal : array (3,)
+        Unit normal out of the opening, in the coordinates of the file.
+    height : float
+        Distance in mm from the centre of the bore, positive out of the opening.
+    share : float
+        Share of the circumference whose rim lies in the plane.
+    """
+
+    normal: Numbers
+    height: float
+    share: float
 
 
 def fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float, float]:

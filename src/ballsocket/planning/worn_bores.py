@@ -51,28 +51,61 @@ _GOOD_COVER = 0.9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WornBore:
-    """Wear of a bore from measured points. Errors are two standard errors (95 %)."""
+    """Wear of a bore from measured points. Errors are two standard errors (95 %).
 
-    volume: float  #: worn volume in mm³ of the covered surface
+    Attributes
+    ----------
+    volume, volume_error : float
+        Worn volume in mm³ of the covered surface.
+    depth, depth_error : float
+        Deepest wear in mm, radially, averaged over 10°.
+    radius, radius_error : float
+        Radius in mm of the unworn sphere.
+    centre : array (3,)
+        Centre of the unworn sphere in mm, in the coordinates of the file.
+    pole : array (3,)
+        Unit vector from the centre to the middle of the points.
+    deepest : array (3,)
+        Unit vector from the centre to the deepest wear.
+    noise : float
+        Standard deviation in mm of single points.
+    form : float
+        Standard deviation in mm of the unworn surface from its sphere, over patches of 10°.
+    unworn : float
+        Share of the points' surface that is not worn.
+    reach : float
+        Polar angle in rad from the pole up to which there are points.
+    cover : float
+        Share of the surface within that angle that the points cover.
+    points : int
+        Number of points.
+    ambiguous : bool
+        True if the worn part is as good a sphere as the unworn one, with the same radius.
+    hidden_shift : float
+        Longest shift in mm of a head of the bore's radius that may have worn the sphere without a trace in the points.
+        The errors contain it. 0 if the points exclude it.
+    name : str
+        Name of the file.
+    """
+
+    volume: float
     volume_error: float
-    depth: float  #: deepest wear in mm, radially, averaged over 10°
+    depth: float
     depth_error: float
-    radius: float  #: radius in mm of the unworn sphere
+    radius: float
     radius_error: float
-    centre: Numbers  #: (3,), centre of the unworn sphere in mm, in the coordinates of the file
-    pole: Numbers  #: (3,), unit vector from the centre to the middle of the points
-    deepest: Numbers  #: (3,), unit vector from the centre to the deepest wear
-    noise: float  #: standard deviation in mm of single points
-    form: float  #: standard deviation in mm of the unworn surface from its sphere, over patches of 10°
-    unworn: float  #: share of the points' surface that is not worn
-    reach: float  #: polar angle in rad from the pole up to which there are points
-    cover: float  #: share of the surface within that angle that the points cover
-    points: int  #: number of points
-    ambiguous: bool  #: True if the worn part is as good a sphere as the unworn one, with the same radius
-    name: str  #: name of the file
+    centre: Numbers
+    pole: Numbers
+    deepest: Numbers
+    noise: float
+    form: float
+    unworn: float
+    reach: float
+    cover: float
+    points: int
+    ambiguous: bool
+    name: str
     reading_notes: tuple[str, ...] = ()
-    #: longest shift in mm of a head of the bore's radius that may have worn the sphere without a trace in the points.
-    #: The errors contain it. 0 if the points exclude it.
     hidden_shift: float = 0.0
 
     @property

@@ -24,10 +24,15 @@ class LinearGap:
     """Linearised surface displacement under a rigid ball, u = d cos φ - c (1 - cos φ).
 
     Eq. (6) of Heß & Forsbach 2021, doi 10.3390/app112311170.
+
+    Parameters
+    ----------
+    clearance, socket_radius : float
+        c and R2 in mm.
     """
 
-    clearance: float  #: c in mm
-    socket_radius: float  #: R2 in mm
+    clearance: float
+    socket_radius: float
     steps: ClassVar[int] = 1
     """Number of Newton steps from d = 0; u is linear in d."""
 
@@ -60,7 +65,12 @@ class LinearGap:
 class CircularGap:
     """Surface displacement under a circular ball, u = e cos φ + sqrt(R1² - e² sin² φ) - R2, Eq. (5).
 
-    Fields and transforms are those of `LinearGap`.
+    The transforms are those of `LinearGap`.
+
+    Parameters
+    ----------
+    clearance, socket_radius : float
+        c and R2 in mm.
     """
 
     clearance: float

@@ -74,13 +74,28 @@ def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """Foundation modulus fitted to a reference model, with its errors."""
+    """Foundation modulus fitted to a reference model, with its errors.
 
-    modulus: Modulus  #: fitted modulus; `model` is the closed form with it
-    joint: Joint  #: joints of the fit (numbers or arrays)
-    force: numpy.ndarray  #: loads in N
-    wanted: numpy.ndarray  #: target: p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint
-    spread: float  #: largest relative deviation of p0/d at a single load from that mean
+    Attributes
+    ----------
+    modulus : Modulus
+        Fitted modulus; `model` is the closed form with it.
+    joint : Joint
+        Joints of the fit (numbers or arrays).
+    force : array
+        Loads in N.
+    wanted : array
+        Target: p0/d of the reference in MPa/mm, averaged over the loads; shape of the joint.
+    spread : float
+        Largest relative deviation of p0/d at a single load from that mean.
+    reference : Model
+    """
+
+    modulus: Modulus
+    joint: Joint
+    force: numpy.ndarray
+    wanted: numpy.ndarray
+    spread: float
     reference: Model
 
     @property

@@ -36,12 +36,22 @@ from .sampling import MAX_SOBOL_COUNT, Method
 class Design:
     """Points of a study: all combinations of its axes, with fixed parameters.
 
-    Raises ValueError: an unknown parameter, one that varies twice, or parameters that contradict each other.
+    Attributes
+    ----------
+    axes : tuple of Axis
+    fixed : mapping of str to float
+    held : mapping of str to float
+        Lengths of the joint that stay while others vary, see `holding`.
+
+    Raises
+    ------
+    ValueError
+        An unknown parameter, one that varies twice, or parameters that contradict each other.
     """
 
     axes: tuple[Axis, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
-    held: Mapping[str, float] = field(default_factory=dict)  #: lengths that stay while others vary, see `holding`
+    held: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         names = self.names

@@ -38,21 +38,45 @@ _NO_CHOICES: Mapping[str, Any] = MappingProxyType({})
 
 @dataclass(frozen=True, kw_only=True)
 class Optimum:
-    """Result of `optimise`."""
+    """Result of `optimise`.
 
-    minimise: str  #: name of the minimised quantity
-    point: dict[str, float]  #: varied parameters, in mm, MPa, rad
-    value: float  #: minimised quantity
-    joint: Joint  #: optimal joint
-    #: limits and ends of ranges that the optimum touches. A wider limit would reduce the value.
+    Attributes
+    ----------
+    minimise : str
+        Name of the minimised quantity.
+    point : dict of str to float
+        Varied parameters, in mm, MPa, rad.
+    value : float
+        Minimised quantity.
+    joint : Joint
+        Optimal joint.
+    active : tuple of str
+        Limits and ends of ranges that the optimum touches. A wider limit would reduce the value.
+    slopes : dict of str to float
+        Derivative of the quantity with respect to each parameter with a range.
+    valid : bool
+        True if the model is valid for the contact of the optimum.
+    searched : int
+        Number of joints in the search for starts.
+    undecided : int
+        Number of these joints whose error bar contains a limit. The optimum keeps all limits by its whole error bar.
+    materials : dict of str to str
+        Names of the chosen materials, by part.
+    held : dict of str to float
+        Lengths of the joint in mm that stay while others vary.
+    """
+
+    minimise: str
+    point: dict[str, float]
+    value: float
+    joint: Joint
     active: tuple[str, ...]
-    slopes: dict[str, float]  #: derivative of the quantity with respect to each parameter with a range
-    valid: bool  #: True if the model is valid for the contact of the optimum
-    searched: int  #: number of joints in the search for starts
-    #: number of these joints whose error bar contains a limit. The optimum keeps all limits by its whole error bar.
+    slopes: dict[str, float]
+    valid: bool
+    searched: int
     undecided: int = 0
-    materials: dict[str, str] = field(default_factory=dict)  #: names of the chosen materials, by part
-    held: dict[str, float] = field(default_factory=dict)  #: lengths of the joint in mm that stay while others vary
+    materials: dict[str, str] = field(default_factory=dict)
+    held: dict[str, float] = field(default_factory=dict)
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the optimum for JSON."""

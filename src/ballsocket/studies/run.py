@@ -54,12 +54,24 @@ _MANY_HOURS = 100.0  # number of hours that is written without digits after the 
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a study."""
+    """Progress of a study.
 
-    n_done: int  #: number of points with a result
-    n_points: int  #: total number of points
-    n_stored: int  #: number of points with a stored result at the start
-    seconds: float  #: time since the start in s
+    Attributes
+    ----------
+    n_done : int
+        Number of points with a result.
+    n_points : int
+        Total number of points.
+    n_stored : int
+        Number of points with a stored result at the start.
+    seconds : float
+        Time since the start in s.
+    """
+
+    n_done: int
+    n_points: int
+    n_stored: int
+    seconds: float
 
     @property
     def rate(self) -> float:
