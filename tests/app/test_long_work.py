@@ -20,6 +20,7 @@ from ballsocket.app.session import Page
 from ballsocket.app.solving import heavy, solved_curve
 from ballsocket.app.state.screen import START
 from ballsocket.app.state.use import Use
+from ballsocket.app.view import Document
 from ballsocket.app.views.contact import Press
 from ballsocket.app.views.hip_runs import gait_key, wear_key
 from ballsocket.app.views.real_cup import bore_of, orientation_key
@@ -226,6 +227,9 @@ class Square(LongView):
 
     def work(self, screen):
         return partial(square, screen.file.load["force"])
+
+    def document(self, screen):
+        return Document(rows=list, sections=dict)
 
     def show_result(self, screen, result):
         self.page.channel.put("#press-numbers", "" if result is None else f"{result:g}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import abstractmethod
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from functools import partial
@@ -157,20 +158,20 @@ class LongView(View):
         else:
             self.edit(key, value)
 
+    @abstractmethod
     def question_of(self, screen: Screen) -> Hashable:
         """Return what the result depends on: numbers and choices, no names and no units."""
-        raise NotImplementedError
 
+    @abstractmethod
     def work(self, screen: Screen) -> Work:
         """Return the work for a screen; raise ValueError if the inputs allow none."""
-        raise NotImplementedError
 
     def show_inputs(self, screen: Screen) -> None:
         self.channel.put_fields(self.fields(screen))
 
+    @abstractmethod
     def show_result(self, screen: Screen, result: Any) -> None:
         """Show a result, which may belong to an earlier screen; None clears it."""
-        raise NotImplementedError
 
     def show(self, screen: Screen) -> None:
         self.show_inputs(screen)

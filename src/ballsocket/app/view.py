@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -72,7 +73,7 @@ class Host(Protocol):
         """Register the handler of a view's inputs, whose names start with the view and a dot."""
 
 
-class View:
+class View(ABC):
     """View of the screen, made with its page when it is first opened.
 
     `name` is its key in the registry; the ids in its HTML `body` and the names of its inputs begin with it. Each of
@@ -88,9 +89,9 @@ class View:
         self.page, self.channel = page, page.channel
         page.listen(self.name, self.edit)
 
+    @abstractmethod
     def show(self, screen: Screen) -> None:
         """Show the results for a screen."""
-        raise NotImplementedError
 
     def fields(self, screen: Screen) -> dict[str, Field]:
         """Return the inputs of the settings by name."""
@@ -139,15 +140,15 @@ class View:
         """Show why a computation has no result."""
         self.put(trouble=alert(sentence))
 
+    @abstractmethod
     def document(self, screen: Screen) -> Document:
         """Return the content of the screen for a file."""
-        raise NotImplementedError
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
         """List the joints and models to press, in the order in which they are needed."""
         return [], ()
 
-    def leave(self) -> None:
+    def leave(self) -> None:  # noqa: B027  most views have no work of their own
         """Stop all work of a closed page."""
 
 
