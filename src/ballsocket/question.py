@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from .comparison import Comparison, compare
 from .contact import Contact, Model
+from .contact.model import relative_rim_distance
 from .files.joint_file import JointFile
 from .model_catalogue import JUDGE, OFF_AXIS, catalogue, named_models, reference, with_gap
 from .problem.cup import AXIAL_TILT
@@ -95,12 +96,11 @@ def real_cup_reason(file: JointFile, contact: Contact | None = None) -> str:
         return "the ball is preloaded"
     if file.tilt > AXIAL_TILT:
         return f"the load is tilted {degrees(file.tilt):.3g}° against the axis of the cup"
-    radius, (cup, direction) = float(file.joint.socket_radius), file.cup.under_load(file.tilt)
+    cup, direction = file.cup.under_load(file.tilt)
     near_rim = (
         contact is not None
         and not contact.status.failed
-        and cup.edge_distance(radius, float(contact.half_angle), direction)
-        < min(float(file.joint.liner_thickness), radius)
+        and relative_rim_distance(cup, direction, contact) < 1.0  # over the liner thickness
     )
     return "the contact ends near the rim of the cup" if near_rim else ""
 

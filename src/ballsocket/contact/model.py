@@ -276,7 +276,7 @@ class RimLimited(ModelWrapper):
         The rim must be one liner thickness or more away.
         """
         rim_range = Range(
-            quantity=partial(_relative_rim_distance, self.cup, self.direction),
+            quantity=partial(relative_rim_distance, self.cup, self.direction),
             symbol="distance to the rim over L",
             low=1.0,
             why=_RIM,
@@ -294,7 +294,7 @@ class RimLimited(ModelWrapper):
 _RIM = "the model takes the socket as a full sphere; near the rim, which is softer, use fem or sphere"
 
 
-def _relative_rim_distance(cup: Cup, direction: Direction, contact: Contact) -> Array:
+def relative_rim_distance(cup: Cup, direction: Direction, contact: Contact) -> Array:
     """Compute the distance from contact edge to rim, divided by the liner thickness.
 
     R2 replaces a larger thickness.
