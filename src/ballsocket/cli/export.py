@@ -12,11 +12,10 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.checks import known_name, require
+from ..core.checks import known_name
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
-from ..export.c_element import BEYOND
 from ..export.targets import TARGETS, ExportJob
 from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
@@ -126,7 +125,7 @@ Beyond = Annotated[
         help="Beyond the range of the law: extend (the force goes on with its last stiffness) or stop (no force)."
     ),
 ]
-Mass = Annotated[float, typer.Option(min=0.0, help="Mass of the ball in kg, for the advice on time steps.")]
+Mass = Annotated[float, typer.Option(help="Mass of the ball in kg, for the advice on time steps.")]
 
 _FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}
 """Endings of files: a path with one of them is a file, and any other a folder."""
@@ -162,14 +161,8 @@ def export(
     file = joint_options.read(joint)
     chosen.check(file.joint)
     element = inputs.element(file, model, gap)
-    require("mass", mass, mass > 0.0, "it must be above 0 kg")
-    job = ExportJob(
-        element=element,
-        name=identifier(out),
-        depth=fit_depth(element, file.load),
-        beyond=known_name("beyond", beyond, BEYOND),
-        mass=mass,
-    )
+    depth = fit_depth(element, file.load)
+    job = ExportJob(element=element, name=identifier(out), depth=depth, beyond=beyond, mass=mass)
     if folder != out and out.name not in (names := tuple(chosen.texts(job))):
         raise ValueError(f"out {str(out)!r}: {target} writes {', '.join(names)}; give one of them, or a folder")
     paths, notes = chosen.write(job, folder)
@@ -200,14 +193,8 @@ def fmu(
     from ..export.fmu import Fmu, write_cross_check
 
     check_ending("out", out, ".fmu")
-    require("mass", mass, mass > 0.0, "it must be above 0 kg")
-    unit = Fmu(
-        element=inputs.element(joint_options.read(joint), model, gap),
-        name=identifier(out),
-        version=fmi,
-        beyond=known_name("beyond", beyond, BEYOND),
-        mass=mass,
-    )
+    element = inputs.element(joint_options.read(joint), model, gap)
+    unit = Fmu(element=element, name=identifier(out), version=fmi, beyond=beyond, mass=mass)
     written = unit.write(out)
     start = ""
     if isinstance(unit.element, PreloadedElement):

@@ -258,7 +258,7 @@ class CElement:
     beyond: str = "extend"
 
     def __post_init__(self) -> None:
-        known_name("beyond", self.beyond, BEYOND)
+        object.__setattr__(self, "beyond", known_name("beyond", self.beyond, BEYOND))
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,40}", self.name):
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"

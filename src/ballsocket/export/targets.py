@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.checks import known_name, require
 from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
@@ -43,6 +44,10 @@ class ExportJob:
     depth: float
     beyond: str = "extend"
     mass: float = 1.0
+
+    def __post_init__(self) -> None:
+        require("mass", self.mass, self.mass > 0.0, "it must be above 0 kg")
+        object.__setattr__(self, "beyond", known_name("beyond", self.beyond, BEYOND))
 
     @cached_property
     def c_program(self) -> CElement:
