@@ -31,6 +31,7 @@ from ballsocket.studies.derivatives import local_uncertainty
 from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.optimisation import optimise, pareto
+from ballsocket.studies.orientation_answer import describe_orientations
 from ballsocket.studies.sensitivity_answer import describe_sensitivity, uncertainty_tables
 from ballsocket.studies.study_answer import describe_front, describe_map, describe_optimum, describe_study
 from ballsocket.studies.variance_shares import sensitivity
@@ -151,6 +152,16 @@ ANSWERS |= {
 }
 
 
+def orientations():
+    sphere, angles = (
+        bs.Sphere(ring_width=np.radians(6.0)),
+        {"inclination": np.radians([30, 45, 60]), "anteversion": [0.3]},
+    )
+    return bs.orient(bs.joints["hip-36"], model=sphere, force=3000.0, **angles)
+
+
+RIM = (Limit(name="edge_distance", low=1.0), Limit(name="max_pressure", high=12.0))
+ANSWERS["orientations"] = lambda: describe_orientations(orientations(), RIM)
 ANSWERS["planning data"] = lambda: describe_plan(
     make_plan(
         liner=fit_liner(read_mesh(EXAMPLES / "planning" / "liner.stl")),

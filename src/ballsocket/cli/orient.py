@@ -21,9 +21,11 @@ from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.inputs import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
-from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
+from ..reports.orientation_plots import orientation_figure
+from ..reports.terminal import print_answer
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
+from ..studies.orientation_answer import LIMITED_FIELDS, describe_orientations, limits_summary
 from .elasticity_options import RingTable
 from .options import (
     GapName,
@@ -154,7 +156,7 @@ def orient(
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))
     output.print(
         lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
-        lambda: print_orientations(orientations, limits, output.units),
+        lambda: print_answer(describe_orientations(orientations, limits), output.units),
     )
     output.draw(lambda: orientation_figure(orientations, output.units, limits))
     if not orientations.held.any():

@@ -26,7 +26,16 @@ from .unit_systems import Amount, Units
 PAGE, QUIET = 18, 19
 """Ranks of what a terminal leaves out, and of what only data have: JSON, CSV and data frames."""
 
-Cell = float | str | bool | Amount | tuple[float, ...] | None
+
+@dataclass(frozen=True)
+class Judged:
+    """Number in the internal unit with the verdict on it, which its mark shows: "?" undecided, "*" exceeded."""
+
+    value: float
+    verdict: Verdict
+
+
+Cell = float | str | bool | Amount | Judged | tuple[float, ...] | None
 """Number in the internal unit, words, an amount with a unit of its own, or the ends of a range; None is missing."""
 
 
@@ -138,13 +147,13 @@ _UNTRUSTED, _BAR = ": outside the range of the model", ": the error bar contains
 
 
 class Grid(NamedTuple):
-    """Table as texts for readers: heads, their units, rows, and their verdicts."""
+    """Table as texts for readers: heads, their units, rows, and the verdicts of their cells."""
 
     columns: Sequence[Column]
     heads: list[str]
     units: list[str]
     rows: list[list[str]]
-    verdicts: list[Verdict | None]
+    verdicts: list[list[Verdict | None]]
 
     @property
     def heads_with_units(self) -> list[str]:
@@ -167,7 +176,11 @@ def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
         for cells, _ in lines
     ]
     heads, unit_texts = [column.head for column in columns], [unit.text for unit in written]
-    return Grid(columns, heads, unit_texts, texts, [verdict for _, verdict in lines])
+    verdicts = [[getattr(cells[index], "verdict", verdict) for index in shown] for cells, verdict in lines]
+    return Grid(columns, heads, unit_texts, texts, verdicts)
+
+
+_MARKS = ("", "?", "*")
 
 
 def _text(cell: Cell, column: Column, factor: float, units: Units) -> str:
@@ -178,6 +191,9 @@ def _text(cell: Cell, column: Column, factor: float, units: Units) -> str:
         return units.sentence(cell)
     if isinstance(cell, Amount):
         return units.amount(cell)
+    if isinstance(cell, Judged):
+        mark = "" if cell.value != cell.value else _MARKS[cell.verdict]
+        return f"{_text(cell.value, column, factor, units)}{mark}"
     ends = cell if isinstance(cell, tuple) else (cell,)
     return " to ".join("-" if end != end else plain_number(end * factor, column.digits) for end in ends)
 
@@ -222,5 +238,5 @@ def _datum(cell: Cell, unit: Unit) -> Any:
         return cell
     if isinstance(cell, tuple):
         return [_datum(end, unit) for end in cell]
-    number = cell.value if isinstance(cell, Amount) else cell
+    number = cell.value if isinstance(cell, Amount | Judged) else cell
     return (number if unit.factor == 1 else number * unit.factor + 0.0) if isfinite(number) else None

@@ -69,8 +69,8 @@ def print_table(terminal: Terminal, table: Table) -> None:
         texts = text_table(written.heads, left=words, folded=words, gap=gap)
         if any(written.units):
             texts.add_row(*(Text(unit, style="dim") for unit in written.units))
-        for row, verdict in zip(written.rows, written.verdicts, strict=True):
-            texts.add_row(*(Text(text, style=_STYLES[verdict]) for text in row))
+        for row, verdicts in zip(written.rows, written.verdicts, strict=True):
+            texts.add_row(*(Text(text, style=_STYLES[verdict]) for text, verdict in zip(row, verdicts, strict=True)))
         lead = 1 + next((i for i, column in enumerate(written.columns[1:]) if column.unit is not None), 0)
         print_columns(terminal, texts, lead)
     for line in table.lines:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.reports.orientation_results import orientation_figure
+from ballsocket.reports.orientation_plots import orientation_figure
 from ballsocket.studies.expressions import parse_limit
 
 from ...joints import HIP

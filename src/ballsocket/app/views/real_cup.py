@@ -23,7 +23,7 @@ from ...problem import Joint
 from ...problem.cup import Cup, Side
 from ...question import PressQuestion, answer, complete
 from ...reports.figure_files import figure_bytes
-from ...reports.orientation_results import orientation_figure
+from ...reports.orientation_plots import orientation_figure
 from ..results import RESULTS, without_name
 from ..running import Reached, Report
 

@@ -1,0 +1,174 @@
+"""Orientations of a cup within limits, and their description: a table of inclination and anteversion for each field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import degrees, isfinite
+from typing import Any
+
+import numpy
+
+from ..core.answers import Answer, Column, Judged, Row, Table
+from ..core.arrays import Numbers
+from ..core.bounded import Verdict
+from ..core.kinds import MILLIMETRES
+from ..core.quantities import CONTACT, DERIVED, QUANTITIES
+from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.validity import Status
+from ..elasticity.off_axis.orientations import Orientations
+from .limits import Limit
+
+LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")  # fields of orientations that can be limited
+
+
+def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = ()) -> Answer:
+    """Describe distance to the rim and largest pressure by orientation, the orientations within limits, the best ones.
+
+    A number has the verdict on all limits; it is missing where the bore does not hold the ball.
+    """
+    codes = verdicts(orientations, limits)
+    tables = []
+    for quantity, digits in ((DERIVED["edge_distance"], 2), (CONTACT["max_pressure"], 3)):
+        heads = [angle_text(angle) for angle in orientations.inclination]
+        columns = [
+            replace(Column.of(quantity, digits=digits), key=head, name=head, head=head, title="") for head in heads
+        ]
+        values = numpy.where(orientations.held, getattr(orientations, quantity.name), numpy.nan)
+        rows = [
+            Row([angle_text(angle), *(Judged(float(number), Verdict(code)) for number, code in pairs)])
+            for angle, pairs in zip(orientations.anteversion, numpy.dstack([values.T, codes.T]), strict=True)
+        ]
+        corner = Column.of_words("anteversion", quantity.title)
+        lines = ["columns: inclination, rows: anteversion"]
+        tables.append(Table(quantity.key, quantity.title, [corner, *columns], rows, lines))
+    return Answer(
+        title=joint_sentence(orientations.joint),
+        lines=[load_sentence(orientations)],
+        tables=tables,
+        notes=[*(_limit_sentences(orientations, limits) if limits else ()), *_sentences(orientations)],
+    )
+
+
+def load_sentence(orientations: Orientations) -> Sentence:
+    """Describe the load with its direction in the body."""
+    ((name, value),) = orientations.load.items()
+    along = ", ".join(f"{part:g}" for part in orientations.model.direction)
+    arc = angle_text(orientations.model.cup.arc_of_cover)
+    load = Amount(value, CONTACT[name].shown)
+    return Sentence("{} {} along {}; arc of cover {}", CONTACT[name].symbol, load, f"({along})", arc)
+
+
+def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
+    """Return the code of the `Verdict` on all limits for each orientation; exceeded where the ball is not held."""
+    codes = numpy.where(orientations.held, int(Verdict.KEPT), int(Verdict.EXCEEDED))
+    for limit in limits:
+        codes = numpy.maximum(codes, orientations.error_bar(limit.name).decide(**limit.ends))
+    return codes
+
+
+def inclination_ranges(orientations: Orientations, limits: Sequence[Limit]) -> list[tuple[float, float] | None]:
+    """Find the inclinations that keep all limits by their whole error bars, for each anteversion.
+
+    Returns
+    -------
+    list
+        Ends in rad of the longest row of neighbouring inclinations within the limits; None without one.
+    """
+    ranges: list[tuple[float, float] | None] = []
+    for within in (verdicts(orientations, limits) == Verdict.KEPT).T:
+        edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[False], within, [False]]).astype(int)))
+        pairs = list(zip(edges[::2], edges[1::2] - 1, strict=True))
+        first, last = max(pairs, key=lambda pair: pair[1] - pair[0], default=(0, -1))
+        ends = float(orientations.inclination[first]), float(orientations.inclination[last])
+        ranges.append(ends if pairs else None)
+    return ranges
+
+
+def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[str, Any]:
+    """Return the limits and the orientations within them for JSON; empty without limits."""
+    if not limits:
+        return {}
+    rows = zip(orientations.anteversion, inclination_ranges(orientations, limits), strict=True)
+    codes = verdicts(orientations, limits)
+    return {
+        "limits": [str(limit_sentence(limit)) for limit in limits],
+        "within_limits": (codes == Verdict.KEPT).tolist(),
+        "verdicts": [[Verdict(code).word for code in row] for row in codes.tolist()],
+        "inclination_ranges": [
+            {
+                "anteversion_deg": round(degrees(angle), 9),
+                "inclination_deg": None if ends is None else [round(degrees(end), 9) for end in ends],
+            }
+            for angle, ends in rows
+        ],
+    }
+
+
+def limit_sentence(limit: Limit) -> Sentence:
+    """Write a limit with its unit, such as "edge_distance >= 1 mm"."""
+    unit = QUANTITIES[limit.name].written
+    ends = [(sign, end) for sign, end in ((">=", limit.low), ("<=", limit.high)) if isfinite(end)]
+    amounts = [Amount(end, unit, digits=6) for _, end in ends]
+    return Sentence(" and ".join(f"{limit.name} {sign} {{}}" for sign, _ in ends), *amounts)
+
+
+def _limit_sentences(orientations: Orientations, limits: Sequence[Limit]) -> Iterator[str]:
+    """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
+    codes = verdicts(orientations, limits)
+    kept, undecided, _ = (int((codes == verdict).sum()) for verdict in Verdict)
+    texts = Sentence(" and ".join("{}" for _ in limits), *map(limit_sentence, limits))
+    yield Sentence("limit: {}; {}", texts, f"kept in {kept} of {codes.size} orientations, exceeded where *")
+    if undecided:
+        yield f"undecided in {undecided} orientations with ?: their error bar contains the limit"
+    ranges = inclination_ranges(orientations, limits)
+    starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
+    for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
+        angles = [angle_text(orientations.anteversion[row]) for row in (first, following - 1)]
+        rows = angles[0] if following == first + 1 else f"{angles[0]} to {angles[1]}"
+        yield f"at {rows} anteversion the limit holds {_range_text(orientations, ranges[first])}"
+
+
+def _range_text(orientations: Orientations, ends: tuple[float, float] | None) -> str:
+    low, high = (angle_text(orientations.inclination[index]) for index in (0, -1))
+    if ends is None:
+        return f"at no inclination from {low} to {high}"
+    first, last = map(angle_text, ends)
+    if (first, last) == (low, high):
+        return f"at every inclination from {low} to {high}"
+    step = angle_text(float(numpy.diff(orientations.inclination).max()))
+    reach = f"up to {last}" if first == low else f"from {first} to {last}"
+    return f"{reach} inclination (steps of {step})"
+
+
+def _sentences(orientations: Orientations) -> Iterator[str]:
+    """Yield sentences about the best orientations, loaded rims, failures and the duration."""
+    distance, pressure, size = orientations.edge_distance, orientations.max_pressure, orientations.status.size
+    if orientations.held.any():
+        *angles, index = orientations.best(distance)
+        farthest = Amount(float(distance.flat[index]), MILLIMETRES, decimals=1)
+        yield Sentence(f"furthest from the rim: {{}} {_orientation_text(*angles)}", farthest)
+    if (orientations.held & numpy.isfinite(pressure)).any():
+        *angles, index = orientations.best(-pressure)
+        least = Amount(float(pressure.flat[index]), CONTACT["max_pressure"].shown)
+        yield Sentence(f"least pressure: {{}} {_orientation_text(*angles)}", least)
+    loaded = int((orientations.edge_loaded & orientations.held).sum())
+    if loaded:
+        yield f"{loaded} of {size} orientations load the rim (below 0: how far beyond first touch)"
+    if numpy.isposinf(pressure).any():
+        yield "inf: the end of the bore digs in, where the pressure is unbounded"
+    for status in Status:
+        count = int((orientations.status == int(status)).sum())
+        if status.failed and count:
+            yield f"{count} of {size}: {status.sentence}"
+    rings = angle_text(orientations.model.ring_width)
+    yield f"{orientations.model.name}: rings of {rings}, {size} orientations in {orientations.seconds:.2f} s"
+
+
+def _orientation_text(inclination: float, anteversion: float) -> str:
+    return f"at inclination {angle_text(inclination)}, anteversion {angle_text(anteversion)}"
+
+
+def angle_text(angle: float) -> str:
+    """Write an angle (rad) in degrees."""
+    return f"{degrees(angle):.4g}°"
