@@ -418,8 +418,9 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         folders.append(Path(work.args[-1]))
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "bars": {}, "case": {"force": 2e3}}}
-        record = {"worst": worst, "limits": limits}
-        pack = EvidencePack(conclusions=("one: kept", "two: exceeded", "accurate"), record=record, content=b"a pack")
+        accuracy = {"largest": None, "required": 0.05, "holds": False}
+        record = {"worst": worst, "limits": limits, "accurate": accuracy, "adequacy": {"text": "gaps"}, "recentred": []}
+        pack = EvidencePack(record=record, content=b"a pack")
         self._heard(key, RunFinished(pack))
 
     monkeypatch.setattr(Job, "ask", ask)

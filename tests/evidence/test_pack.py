@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 from functools import partial
 from importlib.util import find_spec
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from ballsocket.core.storage.pieces import Plan
+from ballsocket.core.unit_systems import Units
 from ballsocket.evidence import matrix
 from ballsocket.evidence import pack as pack_module
 from ballsocket.evidence.code_checks import CHECKS
@@ -151,6 +153,18 @@ def test_the_page_has_no_links_escapes_the_question_and_shows_a_shared_note_once
         assert f"<li>{', '.join(names)}: {note}</li>" in text
         shown += len(names) > 1
     assert shown
+
+
+def test_the_page_in_inches_and_pounds_has_the_numbers_of_the_record(record):
+    """Comparisons with publications keep the units of these."""
+    page = evidence_page({**record, "drawn": None}, units=Units.IMPERIAL)
+    sections = dict(re.findall(r"(?s)<h2 id='(\w+)'>(.*?)(?=<h2 id=|$)", page))
+    ours = "".join(sections[name] for name in ("risk", "inputs", "matrix", "calculation", "uncertainty", "limits"))
+    assert re.findall(r"\d (?:mm|MPa|kN|N|N mm)(?![\w/])", ours) == []
+    worst = record["worst"]["max_pressure"]
+    row = re.search(r"<td>largest pressure</td>\s*<td>([\d.]+) psi[^<]*</td>\s*<td>(.*?)</td>", page)
+    assert float(row[1]) == pytest.approx(worst["numbers"]["max_pressure"] * 145.0377, rel=1e-4)
+    assert f"force {worst['case']['force'] / 4.448222:.4f}"[:10] in row[2]
 
 
 @pytest.mark.parametrize("name", CHECKS)

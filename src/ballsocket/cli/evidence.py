@@ -17,6 +17,7 @@ from ..contact.verdict import Verdict
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
+from ..core.unit_systems import Units
 from ..evidence.comparison import compare
 from ..evidence.credibility_levels import Record
 from ..evidence.folder import SUMS, WORK, check_folder, digest, write
@@ -25,7 +26,7 @@ from ..evidence.question import Question, read_question
 from ..reports.evidence_page import conclusions, evidence_page
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson
+from .options import AsJson, UnitSystem
 from .root import FAILURE, app, echo_path
 
 
@@ -43,6 +44,7 @@ def evidence(
         bool, typer.Option("--strict", help="End with exit status 1 unless every limit of the question is kept.")
     ] = False,
     as_json: AsJson = False,
+    units: UnitSystem = Units.SI,
     workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,
 ) -> None:
     """Write or check an evidence pack for a computed number.
@@ -57,10 +59,10 @@ def evidence(
         raise ValueError("a question file is needed, or --check with the folder of a pack")
     engine = Processes(workers=workers)
     if check is not None:
-        record = _check(check, engine, as_json)
+        record = _check(check, engine, as_json, units)
     else:
         assert question is not None
-        record = _gather(read_question(question), out, engine, as_json)
+        record = _gather(read_question(question), out, engine, as_json, units)
     if strict and not all(limit["verdict"] == Verdict.KEPT.word for limit in record["limits"]):
         raise typer.Exit(_LIMIT_NOT_KEPT)
 
@@ -68,15 +70,15 @@ def evidence(
 _LIMIT_NOT_KEPT = 1  # exit status with --strict if a limit is not kept, or if that is not known
 
 
-def _gather(question: Question, out: Path, engine: Engine, as_json: bool) -> Record:
+def _gather(question: Question, out: Path, engine: Engine, as_json: bool, units: Units) -> Record:
     """Compute and write the pack of a question; return its record."""
     check_folder(out, question)
     resumed = count_stored_pieces(question, out / WORK)
     with _show_progress() as progress:
         record = gather_evidence(question, out / WORK, progress, engine)
-        path = write(question, record, evidence_page, out)
+        path = write(question, record, partial(evidence_page, units=units), out)
     remove_stored_pieces(out / WORK)
-    notes = conclusions(record)
+    notes = conclusions(record, Units.SI if as_json else units)
     if resumed:
         notes.append(
             f"{resumed} results were read from an earlier, stopped run and not computed: --check computes all of them "
@@ -94,7 +96,7 @@ def _gather(question: Question, out: Path, engine: Engine, as_json: bool) -> Rec
     return record
 
 
-def _check(folder: Path, engine: Engine, as_json: bool) -> Record:
+def _check(folder: Path, engine: Engine, as_json: bool, units: Units) -> Record:
     """Compute a pack again and print the differences; return its record."""
     with _show_progress() as progress:
         comparison = compare(folder, progress, engine)
@@ -121,7 +123,7 @@ def _check(folder: Path, engine: Engine, as_json: bool) -> Record:
             *(f"note: {note}" for note in comparison.notes),
             f"digest of the pack {comparison.digest}",
             "author, question and date are not confirmed by a computation: sign checksums.txt with ssh-keygen or gpg",
-            *(() if differences else conclusions(record)),
+            *(() if differences else conclusions(record, units)),
         ):
             typer.echo(line)
     if differences:

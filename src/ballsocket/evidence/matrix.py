@@ -15,6 +15,7 @@ from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, error_bar
 from ..core.arrays import Numbers, to_numpy
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES, Quantity
+from ..core.unit_systems import Units
 from ..core.validity import Status
 from ..problem.cup import UP
 from ..studies.limits import Limit
@@ -28,11 +29,7 @@ TORQUE = Quantity(
     "friction_torque", "Mf", "friction torque", Kind.ENERGY, "About an axis across the load, sliding all over, in N mm."
 )
 WEAR = Quantity(
-    "wear_rate",
-    "wear [mm³/10⁶]",
-    "wear of a new bore, mm³ a million cycles",
-    Kind.NUMBER,
-    "Volume, in the first cycles of a hip.",
+    "wear_rate", "", "wear of a new bore in a million cycles", Kind.VOLUME, "Volume, from the first cycles of a hip."
 )
 NAMES: Mapping[str, Quantity] = {
     **{name: QUANTITIES[name] for name in (*COMPUTED, "edge_distance")},
@@ -278,12 +275,18 @@ def number(value: Any) -> str:
     return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
-def limit_text(limit: Mapping[str, Any]) -> str:
+def amount_text(quantity: Quantity, value: float | None, units: Units = Units.SI) -> str:
+    """Write a number of the record, which is in the unit of files, with its unit."""
+    unit = units.of_text(quantity.written.text)
+    return f"{number(None if value is None else value * unit.factor)} {unit.text}".strip()
+
+
+def limit_text(limit: Mapping[str, Any], units: Units = Units.SI) -> str:
     """Format a limit with the title and the unit of its number: "largest pressure at most 15 MPa"."""
     quantity = KEYS.get(limit["name"]) or LIMITED[limit["name"]]
     words = {"low": "at least", "high": "at most"}.items()
-    ends = [f"{word} {number(limit[end])} {quantity.written.text}" for end, word in words if limit[end] is not None]
-    return f"{title_of(limit['name'])} {' and '.join(end.strip() for end in ends)}"
+    ends = [f"{word} {amount_text(quantity, limit[end], units)}" for end, word in words if limit[end] is not None]
+    return f"{title_of(limit['name'])} {' and '.join(ends)}"
 
 
 def verdict_text(limit: Mapping[str, Any]) -> str:

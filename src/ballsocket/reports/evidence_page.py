@@ -7,6 +7,7 @@ from itertools import starmap
 from types import MappingProxyType
 from typing import Any
 
+from ..core.unit_systems import Units
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
 from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of, verdict_text
@@ -15,6 +16,7 @@ from . import evidence_parts as figures
 from .evidence_parts import (
     Record,
     band_text,
+    bare_number,
     case_text,
     column_head,
     error_text,
@@ -27,6 +29,7 @@ from .evidence_parts import (
 )
 from .figure_files import default_style
 from .pages import render_page, svg_address
+from .style import in_units
 
 _SECTIONS = MappingProxyType(
     {
@@ -54,40 +57,40 @@ _MAPPED = ("max_pressure", "edge_distance", "wear_rate")  # results that are dra
 Rows = list[tuple[str, ...]]
 
 
-def evidence_page(record: Record, digest: str = "") -> str:
+def evidence_page(record: Record, digest: str = "", units: Units = Units.SI) -> str:
     """Return the page of a pack as HTML, from the record of `evidence.pack.gather_evidence`.
 
-    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty.
+    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty. Published numbers keep their units.
     """
     with default_style():
         context = {
-            **_inputs(record),
-            **_matrix(record),
-            **_verification(record),
+            **_inputs(record, units),
+            **_matrix(record, units),
+            **_verification(record, units),
             **_validation(record),
-            **_credibility(record),
-            "uncertainty": _uncertainty(record),
-            "wear": _wear(record),
+            **_credibility(record, units),
+            "uncertainty": _uncertainty(record, units),
+            "wear": _wear(record, units),
         }
     sections = {name: (title, None) for name, title in _SECTIONS.items()}
-    return render_page(
-        "evidence.html", "Evidence", sections, record=record, digest=digest, conclusions=conclusions(record), **context
-    )
+    context["conclusions"] = conclusions(record, units)
+    return render_page("evidence.html", "Evidence", sections, record=record, digest=digest, **context)
 
 
-def conclusions(record: Record) -> list[str]:
+def conclusions(record: Record, units: Units = Units.SI) -> list[str]:
     """Return the conclusions in sentences: verdict on each limit, accuracy, adequacy, changed nominal values."""
-    limits = [f"{limit_text(limit)}: {verdict_text(limit)}" for limit in record["limits"]] or ["no limit is stated"]
+    limits = [f"{limit_text(limit, units)}: {verdict_text(limit)}" for limit in record["limits"]]
     accurate = record["accurate"]
     largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
     within = "within" if accurate["holds"] else "NOT within"
     accuracy = (
         f"Error bars and other methods: {largest} at most, {within} the required {percent(accurate['required'])}."
     )
-    return [*limits, accuracy, f"{record['adequacy']['text']}.", *map(recentred_text, record["recentred"])]
+    recentred = [recentred_text(change, units) for change in record["recentred"]]
+    return [*(limits or ["no limit is stated"]), accuracy, f"{record['adequacy']['text']}.", *recentred]
 
 
-def _inputs(record: Record) -> dict[str, Any]:
+def _inputs(record: Record, units: Units) -> dict[str, Any]:
     risk = record["risk"]
     return {
         "risk": [
@@ -96,64 +99,76 @@ def _inputs(record: Record) -> dict[str, Any]:
             ("model risk", f"{risk['level']} ({risk['rank']} of 5): it sets the goals of the credibility factors"),
             ("required accuracy", percent(record["required"]["accuracy"])),
             ("quantities of interest", ", ".join(map(title_of, quantities_of_interest(record)))),
-            *(("limit", limit_text(limit)) for limit in record["limits"]),
+            *(("limit", limit_text(limit, units)) for limit in record["limits"]),
         ],
-        "inputs": [
-            (input_title(row["name"]), number(row["value"]), row["unit"], row["tolerance"], row["source"] or "none")
-            for row in record["inputs"]
-        ],
-        "recentred": [recentred_text(change) for change in record["recentred"]],
+        "inputs": [_input_cells(row, units) for row in record["inputs"]],
+        "recentred": [recentred_text(change, units) for change in record["recentred"]],
     }
 
 
-def _matrix(record: Record) -> dict[str, Any]:
-    worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
+def _input_cells(row: Record, units: Units) -> tuple[str, ...]:
+    unit = units.of_text(row["unit"])
+    value = row["value"] if isinstance(row["value"], str) else unit.factor * row["value"]
+    tolerance, ends = row["tolerance"], row["tolerance"].split(" to ")
+    if len(ends) == 2:  # else words
+        tolerance = " to ".join(number(unit.factor * float(end)) for end in ends)
+    return input_title(row["name"]), number(value), unit.text, tolerance, row["source"] or "none"
+
+
+def _matrix(record: Record, units: Units) -> dict[str, Any]:
+    worst = [
+        (title_of(name), value_text(name, row, units), case_text(row["case"], units))
+        for name, row in record["worst"].items()
+    ]
     return {
-        "held": held_text(record["held"]),
+        "held": units.sentence(held_text(record["held"])),
         "limits": [
-            (limit_text(limit), verdict_text(limit), *(str(limit[key]) for key in ("beyond", "unknown", "near")))
+            (limit_text(limit, units), verdict_text(limit), *(str(limit[key]) for key in ("beyond", "unknown", "near")))
             for limit in record["limits"]
         ],
-        "worst": [*worst, *_final_wear(record)],
-        "matrix_figures": [] if record["drawn"] is None else _pictures(record),
-        "cases": _cases(record["matrix"]),
+        "worst": [*worst, *_final_wear(record, units)],
+        "matrix_figures": [] if record["drawn"] is None else _pictures(record, units),
+        "cases": _cases(record["matrix"], units),
     }
 
 
-def _final_wear(record: Record) -> Rows:
+def _final_wear(record: Record, units: Units) -> Rows:
     """Return the row of the wear after all cycles where it is worst, with its band; no row without wear."""
     wear = record["wear"]
     if wear is None:
         return []
-    last, bands = wear["history"][-1], wear.get("bands", ())
-    band = f" ({band_text(bands[-1]['volume'])} in 95 of 100 patients)" if bands else ""
-    case = case_text(unloaded(record["worst"]["wear_rate"]["case"]))
-    return [(f"worn volume after {number(last['cycles'])} cycles", f"{number(last['volume'])} mm³{band}", case)]
+    last, bands, unit = wear["history"][-1], wear.get("bands", ()), units.of_text("mm³")
+    band = f" ({band_text(bands[-1]['volume'], unit.factor)} in 95 of 100 patients)" if bands else ""
+    case = case_text(unloaded(record["worst"]["wear_rate"]["case"]), units)
+    volume = f"{number(last['volume'] * unit.factor)} {unit.text}{band}"
+    return [(f"worn volume after {number(last['cycles'])} cycles", volume, case)]
 
 
-def _pictures(record: Record) -> list[dict[str, str]]:
+def _pictures(record: Record, units: Units) -> list[dict[str, str]]:
     """Return pictures of the joint with the largest pressure, and of each mapped result over the matrix."""
     aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
     caption = f"The joint with the largest pressure.{aside}"
-    pictures = [{"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}]
+    pictures = [
+        {"address": svg_address(in_units(figures.joint_figure(record), units)), "title": "section", "caption": caption}
+    ]
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
     limited = {limit["name"] for limit in record["limits"]}
     for name in names:
         title, crosses = NAMES[name].title, " × marks cases that break the limit." if name in limited else ""
         caption = f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
-        address = svg_address(figures.matrix_figure(record, name))
+        address = svg_address(figures.matrix_figure(record, name, units))
         pictures.append({"address": address, "title": title, "caption": caption})
     return pictures
 
 
-def _cases(rows: list[Record]) -> dict[str, Any]:
+def _cases(rows: list[Record], units: Units) -> dict[str, Any]:
     inputs, results = list(rows[0]["case"]), list(rows[0]["numbers"])
     return {
-        "heads": [*(column_head(key) for key in (*inputs, *results)), "valid"],
+        "heads": [*(column_head(key, units) for key in (*inputs, *results)), "valid"],
         "rows": [
             (
-                *(number(row["case"][key]) for key in inputs),
-                *(number(row["numbers"][key]) for key in results),
+                *(bare_number(key, row["case"][key], units) for key in inputs),
+                *(bare_number(key, row["numbers"][key], units) for key in results),
                 "yes" if row["valid"] else row["status"].lower().replace("_", " "),
             )
             for row in rows
@@ -161,7 +176,7 @@ def _cases(rows: list[Record]) -> dict[str, Any]:
     }
 
 
-def _verification(record: Record) -> dict[str, Any]:
+def _verification(record: Record, units: Units) -> dict[str, Any]:
     deviating = any(piece["deviation"] for piece in record["calculation"])
     return {
         "checks": [
@@ -173,33 +188,33 @@ def _verification(record: Record) -> dict[str, Any]:
             )
             for check in record["code_verification"]
         ],
-        "calculations": [_methods(piece) for piece in record["calculation"]],
+        "calculations": [_methods(piece, units) for piece in record["calculation"]],
         "methods_figure": svg_address(figures.methods_figure(record)) if deviating else None,
     }
 
 
-def _methods(piece: Record) -> dict[str, Any]:
+def _methods(piece: Record, units: Units) -> dict[str, Any]:
     """Return one worst case by every method, and the largest deviation of each result."""
     keys = list(piece["methods"][0]["numbers"])
     rows: Rows = [
-        (method["name"], *(_with_error(method, key) for key in keys), "yes" if method["valid"] else "no")
+        (method["name"], *(_with_error(method, key, units) for key in keys), "yes" if method["valid"] else "no")
         for method in piece["methods"]
     ]
     deviations = (percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys)
     return {
         "title": ", ".join(NAMES[name].title for name in piece["worst_of"]),
-        "heads": ["method", *map(column_head, keys), "valid"],
+        "heads": ["method", *(column_head(key, units) for key in keys), "valid"],
         "rows": [*rows, ("largest deviation", *deviations, "")],
-        "notes": _grouped_notes(piece["methods"]),
+        "notes": list(map(units.sentence, _grouped_notes(piece["methods"]))),
         "call": piece["call"],
     }
 
 
-def _with_error(method: Record, key: str) -> str:
+def _with_error(method: Record, key: str, units: Units) -> str:
     """Write a result of a method with its error bar; empty if the method does not have it."""
     if key not in method["numbers"]:
         return ""
-    return number(method["numbers"][key]) + error_text(method["errors"].get(key))
+    return bare_number(key, method["numbers"][key], units) + error_text(method["errors"].get(key))
 
 
 def _grouped_notes(methods: Iterable[Record]) -> list[str]:
@@ -238,7 +253,7 @@ def _comparator_rows(comparator: Record) -> Rows:
     return [*rows, *(("ours", name, f"{number(low)} to {number(high)}") for name, (low, high) in ranges)]
 
 
-def _uncertainty(record: Record) -> dict[str, Any] | None:
+def _uncertainty(record: Record, units: Units) -> dict[str, Any] | None:
     """Return bands and Sobol indices of the tolerances; None without tolerances."""
     uncertainty = record["uncertainty"]
     if uncertainty is None:
@@ -246,9 +261,9 @@ def _uncertainty(record: Record) -> dict[str, Any] | None:
     names, indices = next(iter(uncertainty["sobol"].values())), uncertainty["sobol"].values()
     return {
         **uncertainty,
-        "figure": svg_address(figures.bands_figure(record)),
+        "figure": svg_address(in_units(figures.bands_figure(record), units)),
         "bands": [
-            (column_head(key), *(number(band[end]) for end in ("low", "median", "high")))
+            (column_head(key, units), *(bare_number(key, band[end], units) for end in ("low", "median", "high")))
             for key, band in uncertainty["bands"].items()
         ],
         "heads": ["tolerance", *(f"share in the variance of the {KEYS[key].title}" for key in uncertainty["sobol"])],
@@ -256,27 +271,31 @@ def _uncertainty(record: Record) -> dict[str, Any] | None:
     }
 
 
-def _wear(record: Record) -> dict[str, Any] | None:
+def _wear(record: Record, units: Units) -> dict[str, Any] | None:
     """Return the history of the joint that wears most; None without wear."""
     wear = record["wear"]
     if wear is None:
         return None
+    written = [units.of_text(text) for text in ("", "mm³", "mm", "mm", "MPa")]
     names = ("cycles", "volume", "depth", "penetration", "max_pressure")
+    heads = ("cycles", "volume", "depth", "penetration", "pmax")
+    columns = list(zip(names, written, strict=True))
     return {
+        "heads": [head + unit.text_in_brackets for head, unit in zip(heads, written, strict=True)],
         "file": wear["file"],
-        "case": case_text(unloaded(record["worst"]["wear_rate"]["case"])),
-        "figure": svg_address(figures.wear_figure(record)),
-        "history": [tuple(number(row[name]) for name in names) for row in wear["history"]],
+        "case": case_text(unloaded(record["worst"]["wear_rate"]["case"]), units),
+        "figure": svg_address(in_units(figures.wear_figure(record), units)),
+        "history": [tuple(number(row[name] * unit.factor) for name, unit in columns) for row in wear["history"]],
         "bands": [
-            (number(band["cycles"]), *(band_text(band[name]) for name in ("volume", "depth", "penetration")))
+            (number(band["cycles"]), *(band_text(band[name], unit.factor) for name, unit in columns[1:4]))
             for band in wear.get("bands", ())
         ],
-        "notes": wear.get("notes", ()),
+        "notes": list(map(units.sentence, wear.get("notes", ()))),
         "call": wear["call"],
     }
 
 
-def _credibility(record: Record) -> dict[str, Any]:
+def _credibility(record: Record, units: Units) -> dict[str, Any]:
     """Return the credibility factors with their gradations, and the requirements with gaps first."""
     requirements = sorted(record["requirements"], key=lambda row: _STATUS_ORDER.index(row["status"]))
     factors = record["credibility"]
@@ -294,7 +313,7 @@ def _credibility(record: Record) -> dict[str, Any]:
             (factor["factor"], letter, text) for factor in factors for letter, text in factor["gradation"].items()
         ],
         "requirements": [
-            tuple(row[key] for key in ("id", "requirement", "status", "evidence", "gap", "where"))
+            tuple(units.sentence(row[key]) for key in ("id", "requirement", "status", "evidence", "gap", "where"))
             for row in requirements
         ],
         "gaps": sum(row["status"] != MET for row in requirements),

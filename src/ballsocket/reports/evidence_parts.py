@@ -12,7 +12,8 @@ import numpy
 from ..contact.verdict import Bounded, bar_text
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES, Quantity
-from ..evidence.matrix import KEYS, LIMITED, NAMES, number, title_of
+from ..core.unit_systems import Units
+from ..evidence.matrix import KEYS, LIMITED, NAMES, amount_text, number, title_of
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup
 from ..studies.parameters import LOADS, PARAMETERS
@@ -28,10 +29,9 @@ Record = Mapping[str, Any]  # content of the JSON file of an evidence pack, or a
 _LEAST_ERROR = 1e-5  # relative error below which no error bar is written: it is below the digits of the number
 
 
-def case_text(case: Mapping[str, float]) -> str:
+def case_text(case: Mapping[str, float], units: Units = Units.SI) -> str:
     """Describe a case: each input with its value and unit."""
-    inputs = (f"{KEYS[key].title} {number(value)} {KEYS[key].written.text}".strip() for key, value in case.items())
-    return ", ".join(inputs)
+    return ", ".join(f"{KEYS[key].title} {amount_text(KEYS[key], value, units)}" for key, value in case.items())
 
 
 def unloaded(case: Mapping[str, float]) -> dict[str, float]:
@@ -39,31 +39,34 @@ def unloaded(case: Mapping[str, float]) -> dict[str, float]:
     return {key: value for key, value in case.items() if KEYS[key].name not in LOADS}
 
 
-def value_text(name: str, row: Record) -> str:
+def value_text(name: str, row: Record, units: Units = Units.SI) -> str:
     """Write a number of a case with its unit and error bar."""
     quantity = NAMES[name]
-    value = f"{number(row['numbers'][quantity.key])} {quantity.written.text}".strip()
+    value = amount_text(quantity, row["numbers"][quantity.key], units)
     error, (low, high) = row["errors"].get(quantity.key), row["bars"].get(quantity.key, (None, None))
     if error is not None or low is None:
         return value + error_text(error)
-    bar = bar_text(Bounded(row["numbers"][quantity.key], low, inf if high is None else high), number)
+    factor = units.of_text(quantity.written.text).factor
+    bar = bar_text(Bounded(row["numbers"][quantity.key], low, inf if high is None else high).scaled(factor), number)
     return f"{value} ({bar})" if bar else value
 
 
-def column_head(key: str) -> str:
+def column_head(key: str, units: Units = Units.SI) -> str:
     """Return the head of a column: symbol or title with the unit in brackets."""
     quantity = KEYS[key]
-    return f"{quantity.symbol or quantity.title}{quantity.written.text_in_brackets}"
+    return f"{quantity.symbol or quantity.title}{units.of_text(quantity.written.text).text_in_brackets}"
 
 
-def recentred_text(change: Record) -> str:
+def bare_number(key: str, value: float | None, units: Units) -> str:
+    """Write a number of the record without its unit, by its key."""
+    return number(None if value is None else value * units.of_text(KEYS[key].written.text).factor)
+
+
+def recentred_text(change: Record, units: Units = Units.SI) -> str:
     """Describe an input whose tolerance states another nominal value than the joint's file."""
-    quantity = LIMITED[change["name"]]
-    unit = f" {quantity.written.text}".rstrip()
-    return (
-        f"{title_of(change['name'])}: the joint has {number(change['stated'])}{unit}, its tolerance states "
-        f"{number(change['used'])}{unit}; everything is computed with {number(change['used'])}{unit}."
-    )
+    stated, used = (amount_text(LIMITED[change["name"]], change[key], units) for key in ("stated", "used"))
+    title = title_of(change["name"])
+    return f"{title}: the joint has {stated}, its tolerance states {used}; everything is computed with {used}."
 
 
 def quantities_of_interest(record: Record) -> list[str]:
@@ -81,9 +84,9 @@ def percent(share: float) -> str:
     return f"{100 * share:.2g} %"
 
 
-def band_text(band: Record) -> str:
-    """Write the low and the high end of a band."""
-    return f"{number(band['low'])} to {number(band['high'])}"
+def band_text(band: Record, factor: float = 1.0) -> str:
+    """Write the low and the high end of a band, times a factor."""
+    return f"{number(factor * band['low'])} to {number(factor * band['high'])}"
 
 
 def named_number(name: str, value: Any) -> str:
@@ -129,25 +132,27 @@ def _joint(summary: Record) -> Joint:
     )
 
 
-def matrix_figure(record: Record, name: str = "max_pressure") -> Figure:
+def matrix_figure(record: Record, name: str = "max_pressure", units: Units = Units.SI) -> Figure:
     """Draw a result over the matrix, one cell for each case; the worst is framed, a broken limit is crossed."""
     rows, key = record["matrix"], NAMES[name].key
+    unit = units.of_text(NAMES[name].written.text)
     down, across = _sides(rows)
     table = {tuple(row["case"].values()): row for row in rows}
     axis_names = [name for name, _ in (*down, *across)]
     order = [axis_names.index(name) for name in rows[0]["case"]]
     combined = [[(*row, *column) for column in _combinations(across)] for row in _combinations(down)]
     cases = [[tuple(case[index] for index in order) for case in line] for line in combined]
-    values = numpy.array([[table[case]["numbers"].get(key) for case in line] for line in cases], dtype=float)
+    values = unit.factor * numpy.array(
+        [[table[case]["numbers"].get(key) for case in line] for line in cases], dtype=float
+    )
     figure, axes = single_axes(min(11.0, 3.4 + 0.62 * values.shape[1]), min(9.0, 2.2 + 0.34 * values.shape[0]))
     drawn = axes.imshow(values, cmap="cividis", aspect="auto")
-    figure.colorbar(drawn, label=_UNITS.get(name) or NAMES[name].head(NAMES[name].written), pad=0.02)
-    _tick(axes, down, across)
-    _mark(axes, values, record, name, cases)
+    figure.colorbar(drawn, label=NAMES[name].head(unit), pad=0.02)
+    _tick(axes, down, across, units)
+    _mark(axes, values, record, name, cases, unit.factor)
     return figure
 
 
-_UNITS = {"edge_distance": "[mm]", "wear_rate": "[mm³/10⁶]"}
 Axis = tuple[str, list[float]]
 
 
@@ -162,23 +167,28 @@ def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
     return list(product(*(values for _, values in axes)))
 
 
-def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
+def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis], units: Units) -> None:
     for side, set_ticks, set_label in (
         (across, axes.set_xticks, axes.set_xlabel),
         (down, axes.set_yticks, axes.set_ylabel),
     ):
-        texts = [" | ".join(f"{value:.4g}" for value in values) for values in _combinations(side)]
+        written = [units.of_text(_KEYS[key].written.text) for key, _ in side]
+        texts = [
+            " | ".join(f"{value * unit.factor:.4g}" for value, unit in zip(values, written, strict=True))
+            for values in _combinations(side)
+        ]
         step = max(1, len(texts) // 40)
         rotation: Any = {"rotation": 90} if side is across and max(map(len, texts), default=0) > 9 else {}
         set_ticks(range(0, len(texts), step), texts[::step], fontsize=8, **rotation)
-        set_label(" | ".join(f"{_KEYS[key].title}{_KEYS[key].written.text_in_brackets}" for key, _ in side))
+        labels = (f"{_KEYS[key].title}{unit.text_in_brackets}" for (key, _), unit in zip(side, written, strict=True))
+        set_label(" | ".join(labels))
 
 
-def _mark(axes: Axes, values: Numbers, record: Record, name: str, cases: Any) -> None:
+def _mark(axes: Axes, values: Numbers, record: Record, name: str, cases: Any, factor: float) -> None:
     """Write numbers in the cells, frame the worst case, and cross cells that break a limit."""
     from matplotlib.patches import Rectangle
 
-    low, high = _allowed(record, name)
+    low, high = (factor * end for end in _allowed(record, name))
     middle = 0.5 * (numpy.nanmin(values) + numpy.nanmax(values))
     worst = tuple(record["worst"][name]["case"].values()) if name in record["worst"] else None
     for (row, column), value in numpy.ndenumerate(values):

@@ -18,6 +18,7 @@ from typing import Any
 from ...contact.verdict import Verdict
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind
+from ...core.unit_systems import Units
 from ...evidence.folder import SUMS, WORK, names_of, write
 from ...evidence.matrix import limit_text, title_of, verdict_text
 from ...evidence.pack import gather_evidence, plan
@@ -95,7 +96,7 @@ class Evidence(LongView):
         self.channel.put_fields({**self.fields(screen), "evidence.limits": limits})
 
     def show_result(self, screen: Screen, result: EvidencePack | None) -> None:
-        self.put(found=_case_table(screen) if result is None else _pack_html(result))
+        self.put(found=_case_table(screen) if result is None else _pack_html(result, screen.reading.units))
 
     def edit(self, key: str, value: Any) -> None:
         screen = self.page.screen
@@ -125,10 +126,11 @@ class Evidence(LongView):
 
     def document(self, screen: Screen) -> Document:
         pack: EvidencePack = self.result(screen)
-        heads, rows = _worst(pack)
+        units = screen.reading.units
+        heads, rows = _worst(pack, units)
         return Document(
             rows=lambda: [heads, *rows],
-            sections=lambda: {"evidence": ("Evidence", items(pack.conclusions) + table(heads, rows))},
+            sections=lambda: {"evidence": ("Evidence", items(conclusions(pack.record, units)) + table(heads, rows))},
         )
 
     def leave(self) -> None:
@@ -172,20 +174,21 @@ _CONTENTS = (
 )
 
 
-def _pack_html(pack: EvidencePack) -> str:
+def _pack_html(pack: EvidencePack, units: Units) -> str:
     """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
     take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
     limits, decisions = pack.record["limits"], []
     verdicts = [Verdict[limit["verdict"].upper()] for limit in limits]
     for verdict, limit in sorted(zip(verdicts, limits, strict=True), key=itemgetter(0), reverse=True):
-        words = f"{verdict.sign} {limit_text(limit)}: {verdict_text(limit)}"
+        words = f"{verdict.sign} {limit_text(limit, units)}: {verdict_text(limit)}"
         decisions.append(f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>")
-    return f"{''.join(decisions)}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
+    others = items(conclusions(pack.record, units)[len(limits) :])
+    return f"{''.join(decisions)}{others}{table(*_worst(pack, units), kind='words')}{take}"
 
 
-def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:
+def _worst(pack: EvidencePack, units: Units) -> tuple[list[str], list[list[str]]]:
     worst = pack.record["worst"].items()
-    rows = [[title_of(name), value_text(name, row), case_text(row["case"])] for name, row in worst]
+    rows = [[title_of(name), value_text(name, row, units), case_text(row["case"], units)] for name, row in worst]
     return ["worst", "value", "case"], rows
 
 
@@ -261,9 +264,8 @@ def _texts(part: Any) -> Iterator[str]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EvidencePack:
-    """Conclusions in sentences, the record, and the folder as a ZIP file."""
+    """Record of a pack, and its folder as a ZIP file."""
 
-    conclusions: tuple[str, ...]
     record: dict[str, Any]
     content: bytes
 
@@ -291,4 +293,4 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
         for name in sorted({*names_of(question), SUMS}):
             pack.write(path / name, name)
-    return EvidencePack(conclusions=tuple(conclusions(record)), record=record, content=stream.getvalue())
+    return EvidencePack(record=record, content=stream.getvalue())
