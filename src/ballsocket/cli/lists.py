@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,7 @@ import typer
 from ..contact.outcome import ModelInfo
 from ..core.answers import Answer, Column, Row, Table
 from ..core.checks import known_name
-from ..core.kinds import Unit
+from ..core.kinds import MEGAPASCALS, Unit
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import cite as bibtex_of
 from ..core.unit_systems import Amount, Sentence, Units
@@ -195,8 +196,9 @@ def _sources(model: ModelInfo) -> str:
 
 
 def _preset_numbers(preset: Material | Joint) -> str:
-    text = str(preset).removeprefix(preset.name)
+    unnamed = str(replace(preset, name=""))
     if isinstance(preset, Joint):
-        return text.removeprefix(": ")
-    limits = (f"{STRESS_LIMITS[name].title} {value:g} MPa" for name, value in preset.stress_limits.items())
-    return ", ".join([text.strip(" ()"), *limits])
+        return unnamed
+    limits = preset.stress_limits
+    template = ", ".join(["{}", *(f"{STRESS_LIMITS[name].title} {{}}" for name in limits)])
+    return Sentence(template, unnamed, *(Amount(value, MEGAPASCALS) for value in limits.values()))
