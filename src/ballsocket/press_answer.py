@@ -15,7 +15,7 @@ from .core.answers import PAGE, Answer, Column, Row, Table
 from .core.arrays import to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
 from .core.quantities import CONTACT, HEADLINE, LOADS
-from .core.unit_systems import Amount, Sentence, joint_sentence
+from .core.unit_systems import Amount, Sentence
 from .design_checks import checks_of, unchecked_text, verdict_of
 from .model_catalogue import JUDGE, OFF_AXIS, reference
 from .question import PressAnswer
@@ -61,7 +61,7 @@ def describe_press(comparison: Comparison, remarks: Iterable[str] = ()) -> Answe
     deviating = any(row.below for row in rows)
     heads = [Column.of_words("model"), *columns, Column.of_words("valid")]
     return Answer(
-        title=joint_sentence(comparison.joint),
+        title=str(comparison.joint),
         tables=[Table("results", "Results", heads, rows, list(strength_lines(contacts)))],
         notes=[*([f"Δ %: deviation from {reference.name}"] if deviating else []), *remarks, *comparison.notes()],
     )
@@ -83,7 +83,7 @@ def describe_curve(contact: Contact) -> Answer:
         for *numbers, valid in zip(*columns, to_numpy(contact.valid), strict=True)
     ]
     heads = [*map(Column.of, quantities), Column.of_words("valid")]
-    title = Sentence("{} on {}", contact.model.name, joint_sentence(contact.joint))
+    title = Sentence("{} on {}", contact.model.name, str(contact.joint))
     return Answer(title=title, tables=[Table("curve", "Curve", heads, rows)], notes=contact.notes)
 
 

@@ -140,7 +140,7 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
     assert np.degrees(apart.azimuth) == pytest.approx(0.0, abs=1e-9)
     (note,) = (note for note in use.notes if note.startswith("microseparation from"))
     assert "wear by the contact with the rim is not included" in note
-    assert "0.9 ± 0.2 mm and 2.1 ± 0.5 mm medial-lateral" in note
+    assert "0.9 mm ± 0.2 mm and 2.1 mm ± 0.5 mm medial-lateral" in note
     assert len(use.frame.loaded) + len(apart.steps) == 100
     summary = use.after(1e4).summary()["cycle"]["microseparation"]
     assert summary["centre_distance_mm"] == apart.centre_distance

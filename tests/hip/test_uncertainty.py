@@ -278,7 +278,7 @@ def test_notes_state_assumptions_and_limits_and_members_are_predictions_with_an_
     assert "patients wear" not in " ".join(bands(cohort(1), hip(liner=1e6, clearance=0.3)).notes)
     note = bands(distributions={"coefficient": LogNormal(median=1e-6, factor=2.0)}, level=0.95).notes[1]
     unknown = "the wear coefficient is unknown, but the same for all samples: "
-    assert note == f"{unknown}95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
+    assert note == f"{unknown}95 % between 2.57e-07 mm³/(N m) and 3.89e-06 mm³/(N m)"
     assert set(bands().nominal_notes) >= set(hip().notes)
     assert any("nominal sample, in the first cycle" in note for note in bands(use=hip(liner=1.2)).nominal_notes)
     assert bands().subject == "samples"  # of a simulator

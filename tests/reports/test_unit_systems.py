@@ -5,7 +5,7 @@ import re
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.unit_systems import Units, joint_sentence
+from ballsocket.core.unit_systems import Units
 from ballsocket.reports import study_plots
 from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.design import Span, grid, sample
@@ -36,9 +36,9 @@ def test_numbers_with_units_in_a_sentence_are_converted(metric, imperial):
 
 def test_the_name_of_a_joint_stays():
     joint = bs.joints["hip-36"].replace(name="36 mm, 3 kN")
-    assert Units.IMPERIAL.sentence(joint_sentence(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
+    assert Units.IMPERIAL.sentence(str(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
     title = describe_calibration(bs.calibrate(joint)).title
-    assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(joint_sentence(joint))
+    assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(str(joint))
 
 
 @pytest.mark.long

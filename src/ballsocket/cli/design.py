@@ -18,7 +18,6 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
 from ..reports import study_plots
-from ..reports.terminal import print_answer
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
@@ -31,7 +30,6 @@ from ..studies.sensitivity_answer import describe_sensitivity, index_table, sens
 from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
-from ..version import __version__
 from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, ModelName, OutputOptions, expand_groups, needed_load
 from .root import app, print_message
@@ -99,7 +97,7 @@ def design_map(
     load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
-    output.print(lambda: map_summary(result, limits), lambda: print_answer(describe_map(result, limits), output.units))
+    output.print(map_summary(result, limits), describe_map(result, limits))
     output.draw(lambda: study_plots.design_map(result, limits, units=output.units))
 
 
@@ -152,16 +150,13 @@ def optimise(
     if len(goals) == 2:
         result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
         front = pareto(result, both, limits)
-        output.print(lambda: front_summary(front), lambda: print_answer(describe_front(front), output.units))
+        output.print(front_summary(front), describe_front(front))
         output.draw(lambda: study_plots.front_figure(result, front, both, limits))
         return
     if len(goals) != 1:
         raise ValueError(f"one result or two are minimised, got {len(goals)}")
     best = find_optimum(model, file.joint, ranges, choices=choices, minimise=goals[0], limits=limits, load=load)
-    output.print(
-        lambda: {"version": __version__, "model": model.name, **best.summary()},
-        lambda: print_answer(describe_optimum(best), output.units),
-    )
+    output.print({"model": model.name, **best.summary()}, describe_optimum(best))
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
     output.draw(
@@ -251,10 +246,7 @@ def sensitivity(
         second_order=second_order,
         correlation=parse_correlations(correlation or ()),
     )
-    output.print(
-        lambda: {"version": __version__, "model": result.attrs["model"], **sensitivity_summary(result)},
-        lambda: print_answer(describe_sensitivity(result), output.units),
-    )
+    output.print({"model": result.attrs["model"], **sensitivity_summary(result)}, describe_sensitivity(result))
     output.draw(lambda: study_plots.sensitivity_figure(result))
     if csv is not None:
         table = index_table(result)

@@ -74,14 +74,14 @@ def refuse_mesh_options(options: Mapping[str, Any]) -> None:
 
 
 @contextmanager
-def mesh_progress() -> Iterator[None]:
-    """Show the progress of finite elements on stderr."""
+def solver_progress(name: str) -> Iterator[None]:
+    """Show the progress of a solver on stderr."""
     from rich.console import Console
 
     from ..elasticity.finite_elements.progress import progress_to
 
-    status = Console(stderr=True).status("finite elements")
-    with status, progress_to(lambda text: status.update(f"finite elements: {text}")):
+    status = Console(stderr=True).status(name)
+    with status, progress_to(lambda text: status.update(f"{name}: {text}")):
         yield
 
 

@@ -24,7 +24,6 @@ from ..evidence.folder import SUMS, WORK, check_folder, digest, write
 from ..evidence.pack import Listener, count_stored_pieces, gather_evidence, remove_stored_pieces
 from ..evidence.question import Question, read_question
 from ..reports.evidence_page import conclusions, evidence_page
-from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, UnitSystem
 from .root import FAILURE, app, echo_path
@@ -104,7 +103,6 @@ def _check(folder: Path, engine: Engine, as_json: bool, units: Units) -> Record:
     if as_json:
         echo_json(
             {
-                "version": __version__,
                 "valid": not differences,
                 "made_by": record.get("version"),
                 "made_on": record.get("made_on"),

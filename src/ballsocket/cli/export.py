@@ -28,7 +28,7 @@ from ..problem.cup import AXIAL_TILT, Cup
 from ..question import complete
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import MeshTable, mesh_progress
+from .elasticity_options import MeshTable, solver_progress
 from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
@@ -258,7 +258,7 @@ def deck(
     if file.tilt > AXIAL_TILT:
         _write_tilted(file, load, file.tilt, out, mesh, run)
         return
-    with mesh_progress():
+    with solver_progress("finite elements"):
         contact: Any = replace(mesh.model(meshes=1), cup=file.cup).press(file.joint, **load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))

@@ -23,8 +23,6 @@ from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import with_gap
 from ..question import PressQuestion
 from ..reports.film_results import film_figure
-from ..reports.terminal import print_answer
-from ..version import __version__
 from .elasticity_options import ModelNames, RingTable
 from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, OutputOptions, expand_groups, needed_load
@@ -106,10 +104,8 @@ def film(
         compute_film(contact, spin=inputs.spin_of(contact), lubricant=inputs.lubricant(), method=inputs.method)
         for contact in _contacts(model, gap, file, rings)
     ]
-    output.print(
-        lambda: {"version": __version__, "joint": file.joint.summary(), "results": [film.summary() for film in films]},
-        lambda: print_answer(describe_films(films), output.units),
-    )
+    results = [film.summary() for film in films]
+    output.print({"joint": file.joint.summary(), "results": results}, describe_films(films))
     output.draw(lambda: film_figure(films[0]))
     failed = [film for film in films if film.status.failed]
     if failed:

@@ -14,9 +14,8 @@ from rich.progress import BarColumn, Progress, TextColumn
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.atomic_files import check_ending
 from ..core.unit_systems import Units
-from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
+from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor, print_result, write_figure
 from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
@@ -69,16 +68,15 @@ def hip(
     from ..hip.bands_answer import describe_bands
     from ..hip.config import read_hip
     from ..hip.history_answer import HipRun, describe_hips, describe_history
-    from ..reports.figure_files import check_format, save
+    from ..reports.figure_files import check_format
     from ..reports.hip_comparison import comparison_figure, write_table
     from ..reports.hip_report import hip_report
     from ..reports.pages import check_page_path, letterhead, write_page
-    from ..reports.style import in_units
     from ..reports.terminal import print_answer
 
-    for path, check in ((report, check_page_path), (figure, check_format)):
-        if path is not None:
-            check(path)
+    check_format(figure)
+    if report is not None:
+        check_page_path(report)
     if csv is not None:
         check_ending("table", csv, ".csv")
     if method is not None and patients is None:
@@ -117,8 +115,7 @@ def hip(
     if report is not None:  # last: if a file cannot be written, the result is already printed
         page = hip_report(runs[0].history, runs[0].bands, runs[0].name, hip_files[0].report, units)
         write_page(page, report, units.paper)
-    if figure is not None:
-        save(in_units(comparison_figure(runs), units), figure)
+    write_figure(figure, lambda: comparison_figure(runs), units)
     if csv is not None:
         write_table(csv, runs)
     if not all(run.history.converged for run in runs):
@@ -158,12 +155,12 @@ def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
     """Print simulations as JSON: the result of one file, or `results` with an entry for each of several files."""
     answers = [{"name": run.name, **_summarize_run(run)} for run in runs]
     if len(answers) == 1:
-        echo_json({"version": __version__, **answers[0]})
+        echo_json(answers[0])
         return
     results = [{"file": str(path), **answer} for path, answer in zip(files, answers, strict=True)]
     notes = [f"{run.name}: {note}" for run, answer in zip(runs, answers, strict=True) for note in answer["notes"]]
     valid = all(answer["valid"] for answer in answers)
-    echo_json({"version": __version__, "valid": valid, "results": results, "notes": notes})
+    echo_json({"valid": valid, "results": results, "notes": notes})
 
 
 def _summarize_run(run: HipRun) -> dict[str, Any]:
@@ -188,7 +185,6 @@ def _simulate_cohort(
     from ..hip.bands_answer import describe_cohort
     from ..hip.cohort import cohort_store, write_csv
     from ..hip.wear_uncertainty import population
-    from ..reports.terminal import print_answer
 
     scatter = hip_file.uncertain
     if scatter is None:
@@ -206,11 +202,8 @@ def _simulate_cohort(
             progress=progress,
             method=method,
         )
-    if as_json:
-        notes = [*bands.nominal_notes, *bands.notes]
-        echo_json({"version": __version__, "valid": bands.valid, **bands.summary(), "notes": notes})
-    else:
-        print_answer(describe_cohort(bands), units)
+    summary = {"valid": bands.valid, **bands.summary(), "notes": [*bands.nominal_notes, *bands.notes]}
+    print_result(summary, describe_cohort(bands), units, as_json)
     if store is not None:
         path = write_csv(store / "patients.csv", cohort, bands.cohort)
         if not as_json:

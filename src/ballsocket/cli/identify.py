@@ -22,13 +22,10 @@ from ..identification.result_answer import describe_identification
 from ..paper.cases import refit_table_3
 from ..reports import identify_results
 from ..reports.accuracy_results import print_table_3
-from ..reports.figure_files import check_format, save
-from ..reports.style import in_units
-from ..reports.terminal import print_answer
+from ..reports.figure_files import check_format
 from ..studies.calibration import FORCES, Form, describe_calibration
-from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, UnitSystem
+from .options import AsJson, UnitSystem, print_result, write_figure
 from .root import app, echo_path, fail
 
 _FORMATS = "(.png, .svg, .pdf)"
@@ -64,9 +61,7 @@ def identify(
 
     Exit status: 0 success, 2 wrong input, 3 the search did not converge.
     """
-    for path in (figure, corner, experiment):
-        if path is not None:
-            check_format(path)
+    check_format(figure, corner, experiment)
     if _has_measured_wear(file):
         for option, value in {"--samples": samples, "--corner": corner, "--experiment": experiment}.items():
             if value is not None:
@@ -75,24 +70,16 @@ def identify(
         return
     result = read_identify(file).identify_unknowns()
     posterior = None if samples is None else result.posterior(samples)
-    if as_json:
-        echo_json(
-            {
-                "version": __version__,
-                "joint": result.joint.summary(),
-                **result.summary(),
-                "posterior": None if posterior is None else posterior.summary(),
-                "experiment": result.next.summary(),
-            }
-        )
-    else:
-        print_answer(describe_identification(result, posterior), units)
-    if figure is not None:
-        save(in_units(identify_results.fit_figure(result), units), figure)
-    if corner is not None:
-        save(in_units(identify_results.corner_figure(result, posterior), units), corner)
-    if experiment is not None:
-        save(in_units(identify_results.experiment_figure(result.next), units), experiment)
+    summary = {
+        "joint": result.joint.summary(),
+        **result.summary(),
+        "posterior": None if posterior is None else posterior.summary(),
+        "experiment": result.next.summary(),
+    }
+    print_result(summary, describe_identification(result, posterior), units, as_json)
+    write_figure(figure, lambda: identify_results.fit_figure(result), units)
+    write_figure(corner, lambda: identify_results.corner_figure(result, posterior), units)
+    write_figure(experiment, lambda: identify_results.experiment_figure(result.next), units)
     if not result.best.converged:
         fail("the search did not converge (see the notes)")
 
@@ -116,13 +103,10 @@ def _fit_wear(file: Path, figure: Path | None, units: Units, as_json: bool) -> N
 
     hip_file = read_wear_test(file)
     fit = fit_wear_coefficient(hip_file.use, hip_file.data)
-    if as_json:
-        valid = all(check.valid for check in fit.simulation.unworn_checks)
-        echo_json({"version": __version__, "joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()})
-    else:
-        print_answer(describe_wear_fit(fit), units)
-    if figure is not None:
-        save(in_units(wear_fit_figure(fit, hip_file.cycles), units), figure)
+    valid = all(check.valid for check in fit.simulation.unworn_checks)
+    summary = {"joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()}
+    print_result(summary, describe_wear_fit(fit), units, as_json)
+    write_figure(figure, lambda: wear_fit_figure(fit, hip_file.cycles), units)
 
 
 @app.command()
@@ -151,7 +135,7 @@ def calibrate(
             raise ValueError("--force, --thickness and --form need a joint; without a joint Table 3 is fitted")
         columns = refit_table_3()
         if as_json:
-            echo_json({"version": __version__, "table_3": [column.summary() for column in columns]})
+            echo_json({"table_3": [column.summary() for column in columns]})
         else:
             print_table_3(columns, units)
         return
@@ -162,10 +146,7 @@ def calibrate(
         fitted_joint = dataclasses.replace(fitted_joint, liner_thickness=numpy.array(lengths))
     loads = [parse("force", text, Kind.FORCE) for text in force or []] or FORCES
     fit = fit_modulus(fitted_joint, force=loads, form=_FORMS[form])
-    if as_json:
-        echo_json({"version": __version__, "joint": fitted_joint.summary(), **fit.summary()})
-    else:
-        print_answer(describe_calibration(fit), units)
+    print_result({"joint": fitted_joint.summary(), **fit.summary()}, describe_calibration(fit), units, as_json)
 
 
 @app.command(hidden=True)  # for developers of the tables

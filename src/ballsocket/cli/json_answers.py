@@ -20,18 +20,20 @@ from ..model_catalogue import JUDGE, OFF_AXIS, listed_models, reference
 from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS
 from ..problem.presets import joints, materials
+from ..version import __version__
 
 Answer = Mapping[str, Any]  # JSON answer of a command
 Arguments = Sequence[str]  # name of a command, and its arguments
 
 
 def echo_json(answer: Answer) -> None:
-    """Print one JSON object with provenance and next steps; a missing number is null.
+    """Print one JSON object with version, provenance and next steps; a missing number is null.
 
     Raises ArithmeticError: a number is infinite.
     """
     try:
-        text = json.dumps(add_provenance(answer, sys.argv[1:]), indent=2, allow_nan=False)
+        full = add_provenance({"version": __version__, **answer}, sys.argv[1:])
+        text = json.dumps(full, indent=2, allow_nan=False)
     except ValueError as error:
         raise ArithmeticError("a result is infinite") from error
     typer.echo(text)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,7 @@ import typer
 from ..contact.outcome import ModelInfo
 from ..core.answers import Answer, Column, Row, Table
 from ..core.checks import known_name
-from ..core.kinds import Unit
+from ..core.kinds import MEGAPASCALS, Unit
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import cite as bibtex_of
 from ..core.unit_systems import Amount, Sentence, Units
@@ -22,10 +23,7 @@ from ..mcp.tools import FILE_TABLES, file_table
 from ..model_catalogue import listed_models
 from ..problem import Joint, Material
 from ..problem.presets import find_material, joints, materials
-from ..reports.terminal import print_answer
-from ..version import __version__
-from .json_answers import echo_json
-from .options import AsJson, UnitSystem
+from .options import AsJson, UnitSystem, print_result
 from .root import app
 
 if TYPE_CHECKING:
@@ -40,10 +38,8 @@ def models(
 ) -> None:
     """List contact models with their ranges and sources."""
     chosen = list(listed_models.values()) if name is None else [listed_models[known_name("model", name, listed_models)]]
-    if as_json:
-        echo_json({"version": __version__, "models": list(map(_model_summary, chosen))})
-    else:
-        print_answer(_describe_models(chosen) if name is None else _describe_model(chosen[0]))
+    description = _describe_models(chosen) if name is None else _describe_model(chosen[0])
+    print_result({"models": list(map(_model_summary, chosen))}, description, Units.SI, as_json)
 
 
 @app.command()
@@ -58,12 +54,11 @@ def presets(
     """List materials and joints by name, with their sources."""
     known = [*materials, *joints]
     names = known if name is None else [find_material(name) or known_name("preset", name, known)]
-    if as_json:
-        chosen_materials = {key: _preset_summary(preset) for key, preset in materials.items() if key in names}
-        chosen_joints = {key: _preset_summary(preset) for key, preset in joints.items() if key in names}
-        echo_json({"version": __version__, "materials": chosen_materials, "joints": chosen_joints})
-    else:
-        print_answer(_describe_presets() if name is None else _describe_preset(names[0]), units)
+    summary = {
+        title: {key: _preset_summary(preset) for key, preset in presets.items() if key in names}
+        for title, presets in _PRESETS.items()
+    }
+    print_result(summary, _describe_presets() if name is None else _describe_preset(names[0]), units, as_json)
 
 
 @app.command()
@@ -90,6 +85,9 @@ def schema(
     Editors complete and check TOML files with it.
     """
     typer.echo(json.dumps(json_schema(file_table(kind)), indent=2))
+
+
+_PRESETS: Mapping[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
 
 
 def _model_summary(model: ModelInfo) -> dict[str, Any]:
@@ -143,7 +141,7 @@ def _describe_models(models: Iterable[ModelInfo]) -> Answer:
 def _describe_presets() -> Answer:
     """List materials and joints with the sources of their numbers."""
     tables = []
-    for title, presets in (("materials", materials), ("joints", joints)):
+    for title, presets in _PRESETS.items():
         columns = [Column.of_words(head) for head in (title, "numbers", "source")]
         rows = [Row((name, _preset_numbers(preset), preset.source)) for name, preset in presets.items()]
         tables.append(Table(title, title, columns, [*rows[:-1], rows[-1]._replace(below=[("",) * 3])]))
@@ -198,8 +196,9 @@ def _sources(model: ModelInfo) -> str:
 
 
 def _preset_numbers(preset: Material | Joint) -> str:
-    text = str(preset).removeprefix(preset.name)
+    unnamed = str(replace(preset, name=""))
     if isinstance(preset, Joint):
-        return text.removeprefix(": ")
-    limits = (f"{STRESS_LIMITS[name].title} {value:g} MPa" for name, value in preset.stress_limits.items())
-    return ", ".join([text.strip(" ()"), *limits])
+        return unnamed
+    limits = preset.stress_limits
+    template = ", ".join(["{}", *(f"{STRESS_LIMITS[name].title} {{}}" for name in limits)])
+    return Sentence(template, unnamed, *(Amount(value, MEGAPASCALS) for value in limits.values()))

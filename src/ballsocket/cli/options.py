@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
+from ..core.answers import Answer
 from ..core.quantities import LOADS
 from ..core.unit_systems import Units
 from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
@@ -20,6 +21,7 @@ from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
 from ..reports.style import in_units
+from ..reports.terminal import print_answer
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
@@ -122,6 +124,20 @@ def needed_load(file: JointFile) -> dict[str, float]:
     return file.load
 
 
+def print_result(summary: Mapping[str, Any], description: Answer, units: Units, as_json: bool) -> None:
+    """Print the summary of a result as JSON, or its description."""
+    if as_json:
+        echo_json(summary)
+    else:
+        print_answer(description, units)
+
+
+def write_figure(path: Path | None, draw: Callable[[], Figure], units: Units) -> None:
+    """Draw and write a figure if there is a file for it."""
+    if path is not None:
+        save(in_units(draw(), units), path)
+
+
 @dataclass(frozen=True, kw_only=True)
 class OutputOptions:
     """Options of a command that prints one result and can draw it."""
@@ -132,20 +148,15 @@ class OutputOptions:
 
     def check(self) -> None:
         """Raise ValueError for a figure format that cannot be written."""
-        if self.figure is not None:
-            check_format(self.figure)
+        check_format(self.figure)
 
-    def print(self, summary: Callable[[], dict[str, Any]], print_table: Callable[[], None]) -> None:
-        """Print the result as JSON or as a table."""
-        if self.as_json:
-            echo_json(summary())
-        else:
-            print_table()
+    def print(self, summary: Mapping[str, Any], description: Answer) -> None:
+        """Print the result as JSON, or its description."""
+        print_result(summary, description, self.units, self.as_json)
 
     def draw(self, draw: Callable[[], Figure]) -> None:
         """Draw and write the figure if there is a file for it."""
-        if self.figure is not None:
-            save(in_units(draw(), self.units), self.figure)
+        write_figure(self.figure, draw, self.units)
 
 
 def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:

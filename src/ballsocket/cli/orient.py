@@ -8,13 +8,11 @@ from typing import Annotated, Any
 
 import numpy
 import typer
-from rich.console import Console
 
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import Kind
 from ..core.quantities import CUP
-from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
@@ -22,11 +20,10 @@ from ..files.inputs import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_plots import orientation_figure
-from ..reports.terminal import print_answer
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
 from ..studies.orientation_answer import LIMITED_FIELDS, describe_orientations, limits_summary
-from .elasticity_options import RingTable
+from .elasticity_options import RingTable, solver_progress
 from .options import (
     GapName,
     JointName,
@@ -151,13 +148,10 @@ def orient(
     if "tilt" in file.aim:
         raise ValueError("the load of the file has a tilt from the cup's axis; give its --direction in the body")
     model = replace(with_gap(rings.model() or Sphere(), orientation.gap), cup=file.cup).with_direction(**file.aim)
-    status = Console(stderr=True).status("sphere")
-    with status, progress_to(lambda text: status.update(f"sphere: {text}")):
+    with solver_progress("sphere"):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))
-    output.print(
-        lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
-        lambda: print_answer(describe_orientations(orientations, limits), output.units),
-    )
+    summary = {**orientations.summary(), **limits_summary(orientations, limits)}
+    output.print(summary, describe_orientations(orientations, limits))
     output.draw(lambda: orientation_figure(orientations, output.units, limits))
     if not orientations.held.any():
         fail("no orientation has an answer (see the statuses)")

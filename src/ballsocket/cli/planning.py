@@ -21,11 +21,9 @@ from ..planning.meshes import read_mesh
 from ..planning.pelvis import pelvic_frame
 from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
 from ..planning.plan_answer import describe_plan
-from ..planning.worn_bores import WornBore, measure_wear
-from ..reports.terminal import print_answer
+from ..planning.worn_bores import measure_wear
 from .elasticity_options import orientation_remark, orientation_summary
-from .json_answers import echo_json
-from .options import AsJson, UnitSystem, expand_groups
+from .options import AsJson, UnitSystem, expand_groups, print_result
 from .root import app, echo_path
 
 
@@ -110,6 +108,11 @@ class PlanInputs(Table, frozen=True, kw_only=True):
             frame = pelvic_frame(landmarks, vertical=self.vertical, **quantities_of(self, "pelvic_tilt"))
         liner = None if files.liner is None else read_mesh(files.liner, units=self.stl_units)
         head = None if files.head is None else fit_head(read_mesh(files.head, units=self.stl_units))
+        worn, head_radius = None, None if self.head_diameter is None else float(self.head_diameter) / 2.0
+        if files.worn is not None:
+            worn = measure_wear(read_points(files.worn, units=self.stl_units), head_radius=head_radius)
+        elif head_radius is not None:
+            raise ValueError("--head-diameter is the head that wore a measured bore: it needs --worn")
         return make_plan(
             frame=frame,
             landmarks=landmarks,
@@ -117,17 +120,8 @@ class PlanInputs(Table, frozen=True, kw_only=True):
             head=head,
             side=self.side,
             space=self.placed or (None if liner is None else liner.space),
-            worn=self._wear(files.worn),
+            worn=worn,
         )
-
-    def _wear(self, worn: Path | None) -> WornBore | None:
-        """Measure the wear of the points, if there are any."""
-        if worn is None:
-            if self.head_diameter is not None:
-                raise ValueError("--head-diameter is the head that wore a measured bore: it needs --worn")
-            return None
-        head_radius = None if self.head_diameter is None else float(self.head_diameter) / 2.0
-        return measure_wear(read_points(worn, units=self.stl_units), head_radius=head_radius)
 
 
 @app.command()
@@ -147,16 +141,14 @@ def planning(*, files: PlanFiles, inputs: PlanInputs, units: UnitSystem = Units.
         numbers = quantities_of(inputs, "clearance", "liner_thickness", "force")
         file = plan.joint_file(**numbers, liner=inputs.liner_material, ball=inputs.head_material, name=files.out.stem)
         write_text(files.out, toml_of(file))
-    if as_json:
-        orientation = {} if plan.orientation is None else orientation_summary(plan.cup)
-        path = None if files.out is None else str(files.out)
-        echo_json({**plan.summary(), "orientation": orientation or None, "file": path})
-        return
-    remarks = [] if plan.orientation is None else [orientation_remark(plan.cup)]
+    orientation = {} if plan.orientation is None else orientation_summary(plan.cup)
+    path = None if files.out is None else str(files.out)
+    remarks = [orientation_remark(plan.cup)] if orientation else []
     remarks += [note for note in plan.notes if inputs.clearance is None or note != CLEARANCE_REFUSAL]
     if inputs.clearance is not None:
         ball = inputs.head_material or "rigid"
         remarks.append(f"materials: liner {inputs.liner_material}, head {ball}")
-    print_answer(describe_plan(plan, remarks), units)
-    if files.out is not None:
+    summary = {**plan.summary(), "orientation": orientation or None, "file": path}
+    print_result(summary, describe_plan(plan, remarks), units, as_json)
+    if files.out is not None and not as_json:
         echo_path(files.out)

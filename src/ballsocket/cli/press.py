@@ -25,16 +25,15 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
 from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
-from ..reports.terminal import print_answer, print_press
-from ..version import __version__
+from ..reports.terminal import print_press
 from .elasticity_options import (
     MeshTable,
     ModelNames,
     RingTable,
-    mesh_progress,
     orientation_remark,
     orientation_summary,
     refuse_mesh_options,
+    solver_progress,
 )
 from .json_answers import echo_json, several_joints
 from .model_file import is_model_file, requested_model
@@ -47,6 +46,7 @@ from .options import (
     UnitSystem,
     expand_groups,
     needed_load,
+    print_result,
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import app, fail
@@ -238,7 +238,7 @@ def press(
         files.check_models(question.chosen)
         if OFF_AXIS not in question.chosen:
             rings.refuse()
-        with mesh_progress() if model_options.has_finite_elements else nullcontext():
+        with solver_progress("finite elements") if model_options.has_finite_elements else nullcontext():
             answered = answer(question)
         orientation = {} if "tilt" in file.aim else orientation_summary(file.cup)
         remarks = [orientation_remark(file.cup)] if orientation and joint_options.orients else []
@@ -298,11 +298,8 @@ def curve(
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
     contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
-    if as_json:
-        summary: Any = contact.summary()
-        valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
-        echo_json({"version": __version__, "joint": file.joint.summary(), **summary, **valid})
-    else:
-        print_answer(describe_curve(contact), units)
+    summary: Any = contact.summary()
+    valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
+    print_result({"joint": file.joint.summary(), **summary, **valid}, describe_curve(contact), units, as_json)
     if not numpy.isfinite(contact.indentation[1:]).any():
         fail(f"no answer from {named.name} at any load (see the notes)")

@@ -46,9 +46,7 @@ class FigureOptions:
 
     def check(self) -> None:
         """Raise ValueError for a file format that cannot be written."""
-        for figure in (self.figure, self.section):
-            if figure is not None:
-                check_format(figure)
+        check_format(self.figure, self.section)
         if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
             raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
         if self.vtk is not None:

@@ -20,7 +20,6 @@ from ..core.unit_systems import Units
 from ..model_catalogue import with_gap
 from ..reports import study_plots
 from ..reports.figure_files import check_format, save
-from ..reports.terminal import print_answer
 from ..studies.file import StudyFile, read_study
 from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener
@@ -28,9 +27,7 @@ from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
 from ..studies.store import check_store
 from ..studies.study_answer import describe_study, study_summary
-from ..version import __version__
-from .json_answers import echo_json
-from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor
+from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor, print_result
 from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
@@ -85,11 +82,8 @@ def study(
             engine=choose_executor(workers, scheduler, study_file.engine),
             listen=progress,
         )
-    if as_json:
-        summary = study_summary(result)
-        echo_json({"version": __version__, "joint": study_file.joint.summary(), **summary})
-    else:
-        print_answer(describe_study(result), units)
+    summary = {"joint": study_file.joint.summary(), **study_summary(result)}
+    print_result(summary, describe_study(result), units, as_json)
     if out is not None:
         export(result, out)
     if draw is not None and figure is not None:

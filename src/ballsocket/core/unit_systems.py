@@ -116,10 +116,13 @@ class Units(StrEnum):
         return Unit(converted.text, unit.factor * converted.factor)
 
     def amount(self, amount: Amount) -> str:
-        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer."""
+        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer.
+
+        A number that is converted has at most four significant digits.
+        """
         unit = self.written(amount.unit)
         if amount.decimals is None:
-            return _written(amount.value, unit, amount.digits)
+            return _written(amount.value, unit, amount.digits if self is Units.SI else min(amount.digits, 4))
         decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
         text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
         return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
@@ -183,12 +186,6 @@ class Sentence(str):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Sentence, (self.template, *self.parts)
-
-
-def joint_sentence(joint: Any) -> Sentence:
-    """Describe a joint in one sentence, in which its name stays as it is."""
-    head = f"{joint.name}: " if joint.name else ""
-    return Sentence("{}{}", head, Sentence(str(joint).removeprefix(head)))
 
 
 def _written(number: float, unit: Unit, digits: int = 4) -> str:

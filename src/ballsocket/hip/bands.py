@@ -13,6 +13,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.display import finite_or_none
+from ..core.kinds import Unit
+from ..core.unit_systems import Amount, Sentence
 from .contact_checks import list_check_notes
 from .series_accuracy import SeriesAccuracy
 from .variability import (
@@ -188,9 +190,9 @@ class Bands:
         if COEFFICIENT in variability.distributions:
             low, high = variability.distributions[COEFFICIENT].frozen.ppf(self.ends)
             coefficient = coefficient_field(variability.use.wear)
-            unit = "" if coefficient is None else coefficient.unit.text
-            band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
-            yield f"the wear coefficient is unknown, but the same for all {noun}: {band}"
+            unit = Unit("" if coefficient is None else coefficient.unit.text)
+            text = f"the wear coefficient is unknown, but the same for all {noun}: {100 * self.level:g} % between"
+            yield Sentence(f"{text} {{}} and {{}}", Amount(float(low), unit, 3), Amount(float(high), unit, 3))
         if not patients.uses_springs:
             rings = degrees(patients.ring_width)
             yield f"the bands are for full elasticity ({type(patients.surface).__name__}) on rings of {rings:.2g}°"

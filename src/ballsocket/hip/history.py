@@ -17,8 +17,10 @@ from ..core import answers
 from ..core.answers import QUIET, Column, Row, Table
 from ..core.arrays import Numbers
 from ..core.display import OneLine, load_plot, plain_number
+from ..core.kinds import MEGAPASCALS, MILLIMETRES
 from ..core.quantities import QUANTITIES
 from ..core.records import Record
+from ..core.unit_systems import Amount, Sentence
 from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
 from .film import Film
@@ -247,19 +249,23 @@ class History(OneLine):
         for limit, sentence in ((1.0, _WORN_THROUGH), (_THIN_LINER, _WORN_THIN)):
             first = next((report for report in self.reports if report.depth > limit * liner), None)
             if first is not None:
-                yield sentence.format(plain_number(first.cycles), first.depth, liner)
+                depths = Amount(first.depth, MILLIMETRES, 3), Amount(liner, MILLIMETRES)
+                yield Sentence(sentence, plain_number(first.cycles), *depths)
                 break
         approaches = [self.worst, *(report.edge.closest_approach(use.frame) for report in self.reports)]
         first_stages: dict[str, tuple[str, ClosestApproach]] = {}  # by the kind of contact at the rim
         for stage, nearest in zip([_FIRST_CYCLE, *later], approaches, strict=True):
             if nearest is not None and nearest.steps_at_rim:
                 first_stages.setdefault(nearest.kind, (stage, nearest))
-        count, unworn_distance = len(use.frame.loaded), 0.0 if self.worst is None else self.worst.distance
+        count = str(len(use.frame.loaded))
+        unworn_distance = Amount(0.0 if self.worst is None else self.worst.distance, MILLIMETRES, 3)
         for _, (stage, nearest) in sorted(first_stages.items()):
+            pressure = Amount(nearest.pressure, MEGAPASCALS, 3)
             if nearest.steps_edge_loaded:
-                yield _EDGE_LOADING.format(stage, nearest.steps_edge_loaded, count, nearest.location, nearest.pressure)
+                steps = str(nearest.steps_edge_loaded)
+                yield Sentence(_EDGE_LOADING, stage, steps, count, nearest.location, pressure)
             else:
-                yield _WORN_TO_RIM.format(stage, nearest.steps_at_rim, count, unworn_distance, nearest.pressure)
+                yield Sentence(_WORN_TO_RIM, stage, str(nearest.steps_at_rim), count, unworn_distance, pressure)
         if not self.converged:
             yield "a contact did not balance its load: the results of this run are invalid"
 
@@ -357,19 +363,17 @@ _WEAR_RANKS = {
 """Quantities of the table of wear; those that a hip does not have are in data only."""
 
 _THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
-_WORN_THROUGH = "worn through: after {} cycles the depth is {:.3g} mm in a liner of {:g} mm; later reports are void"
-_WORN_THIN = (
-    "after {} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
-)
+_WORN_THROUGH = "worn through: after {} cycles the depth is {} in a liner of {}; later reports are void"
+_WORN_THIN = "after {} cycles {} of a liner of {} are worn away; its stiffness is still that of the unworn liner"
 _FIRST_CYCLE = "in the first cycle"
 _EDGE_LOADING = (
     "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
-    "the pressure in the outermost ring is at most {:.3g} MPa"
+    "the pressure in the outermost ring is at most {}"
 )
 _WORN_TO_RIM = (
     "worn to the rim: {} the worn bore fits the ball and touches it up to the rim in {} of {} instants; this is not "
-    "edge loading, since under the same loads the unworn contact ends {:.3g} mm before the rim; the pressure in the "
-    "outermost ring is at most {:.3g} MPa"
+    "edge loading, since under the same loads the unworn contact ends {} before the rim; the pressure in the "
+    "outermost ring is at most {}"
 )
 
 

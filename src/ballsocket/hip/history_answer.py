@@ -24,7 +24,7 @@ from ..core.kinds import (
     Unit,
 )
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.unit_systems import Amount, Sentence
 from ..lubrication.friction import Stribeck
 from ..lubrication.lubricant import Lubricant
 from .bands import Bands
@@ -39,7 +39,7 @@ def describe_history(history: History, name: str = "") -> Answer:
     wear = history.table()._replace(lines=list(_wear_lines(history)))
     contacts = [contact_table(history)] if use.unworn_checks else []
     return Answer(
-        title=Sentence("{}{}; {}", f"{name}: " if name else "", joint_sentence(use.joint), use.cycle.name),
+        title=Sentence("{}{}; {}", f"{name}: " if name else "", str(use.joint), use.cycle.name),
         lines=list(_first_cycle(history)),
         tables=[wear, *contacts, *([] if film is None else [film_table(film)])],
         notes=[note for note in history.notes if note != use.cycle.remark],
@@ -188,7 +188,7 @@ class HipRun:
 def describe_hips(runs: Sequence[HipRun]) -> Answer:
     """Describe several hips: one below the other at each report."""
     named_uses = [(run.name, run.history.use) for run in runs]
-    joints = [Sentence("{}: {}; {}", name, joint_sentence(use.joint), use.cycle.name) for name, use in named_uses]
+    joints = [Sentence("{}: {}; {}", name, str(use.joint), use.cycle.name) for name, use in named_uses]
     notes = list(_comparison_notes(runs))
     return Answer(title="hips side by side", lines=joints, tables=[_comparison_table(runs)], notes=notes)
 

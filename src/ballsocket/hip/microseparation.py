@@ -12,6 +12,8 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.kinds import MILLIMETRES
+from ..core.unit_systems import Amount, Sentence
 from .cycle import Cycle, Spring
 from .mix import Mix
 
@@ -66,14 +68,21 @@ class Microseparation:
     def describe(self, cycle: Cycle | Mix) -> str:
         """Describe the microseparation in one sentence for reports."""
         values = self.summary(cycle)
-        measured = " and ".join(f"{value} ± {spread} mm" for value, spread in MEASURED_SEPARATIONS.values())
-        return (
-            f"microseparation from {values['from']} to {values['to']}: the ball sits on the rim, "
-            f"{abs(values['place_deg']):.0f}° from the cup's uppermost point; medial-lateral separation up to "
-            f"{values['medial_lateral_mm']:.2g} mm, centres up to {values['centre_distance_mm']:.2g} mm apart; Ali et "
-            f"al. measured {measured} medial-lateral (36 mm, cup at {' and '.join(MEASURED_SEPARATIONS)}, 4 mm "
-            "mismatch): without inertia and friction the model separates further; wear by the contact with the rim is "
-            "not included"
+        measured = [Amount(length, MILLIMETRES) for pair in MEASURED_SEPARATIONS.values() for length in pair]
+        return Sentence(
+            "microseparation from {} to {}: the ball sits on the rim, {} from the cup's uppermost point; "
+            "medial-lateral separation up to {}, centres up to {} apart; Ali et al. measured {} ± {} and {} ± {} "
+            "medial-lateral ({}, cup at {}, {} mismatch): without inertia and friction the model separates further; "
+            "wear by the contact with the rim is not included",
+            str(values["from"]),
+            str(values["to"]),
+            f"{abs(values['place_deg']):.0f}°",
+            Amount(values["medial_lateral_mm"], MILLIMETRES, 2),
+            Amount(values["centre_distance_mm"], MILLIMETRES, 2),
+            *measured,
+            Amount(36.0, MILLIMETRES),
+            " and ".join(MEASURED_SEPARATIONS),
+            Amount(4.0, MILLIMETRES),
         )
 
 

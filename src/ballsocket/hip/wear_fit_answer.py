@@ -7,7 +7,7 @@ from math import isfinite
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.display import plain_number
 from ..core.kinds import Unit
-from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.unit_systems import Amount, Sentence
 from .wear_fit import WearFit
 
 
@@ -17,7 +17,7 @@ def describe_wear_fit(fit: WearFit) -> Answer:
     law = str(getattr(use.wear, "name", type(use.wear).__name__))
     title = "{}; {}: coefficient of the wear law {}"
     return Answer(
-        title=Sentence(title, joint_sentence(use.joint), use.cycle.name, repr(law)),
+        title=Sentence(title, str(use.joint), use.cycle.name, repr(law)),
         tables=[_coefficients(fit), *([_readings(fit)] if fit.readings else []), _measured(fit)],
         notes=fit.notes,
     )

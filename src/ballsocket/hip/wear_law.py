@@ -14,7 +14,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
-from ..core.kinds import Kind
+from ..core.kinds import Kind, Unit
+from ..core.unit_systems import Amount, Sentence
 from ..files.units import convert, parse, parse_units, split_quantity
 from .kinematics import SurfaceSliding
 from .law_fields import Law, LawField, LawUnit
@@ -157,10 +158,9 @@ def plausibility_notes(*factors: float) -> tuple[str, ...]:
     unusual_factor = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
     if unusual_factor is None:
         return ()
-    return (
-        f"a wear factor of {unusual_factor:g} mm^3/(N m) is out of the usual range of {low:g} to {high:g}; "
-        "one in mm^3/(N mm) is 1000 times smaller",
-    )
+    factors_in_text = (Amount(factor, Unit(_WEAR_FACTOR), 6) for factor in (unusual_factor, low, high))
+    text = "a wear factor of {} is out of the usual range of {} to {}; one in mm^3/(N mm) is 1000 times smaller"
+    return (Sentence(text, *factors_in_text),)
 
 
 def max_wear_sensitivity(law: AnyWearLaw, cycle: CycleExposure) -> float:

@@ -8,7 +8,7 @@ import numpy
 
 from ..core.answers import Answer, Column, Row, Table
 from ..core.kinds import NANOMETRES, PERCENT, Unit
-from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.unit_systems import Amount, Sentence
 from .film import FilmResult
 
 _COLUMNS = (
@@ -32,7 +32,7 @@ def describe_films(films: Sequence[FilmResult]) -> Answer:
         for one in films
     ]
     return Answer(
-        title=joint_sentence(first.contact.joint),
+        title=str(first.contact.joint),
         lines=[Sentence("film at {}, {}, viscosity {}", *motion, viscosity)],
         tables=[Table("film", "Film", _COLUMNS, rows, ["λ minimum film over the combined roughness of both surfaces"])],
         notes=[Sentence("{}: {}", one.contact.model.name, Sentence(note)) for one in films for note in one.notes],

@@ -14,15 +14,13 @@ from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
 from ..files.cells import NumberedRow, decode_text, is_data, split_text
 from ..files.columns import CellTable, find_cells
-from .meshes import LENGTH_UNITS, check_extent, length_of, read_mesh
+from .meshes import LENGTH_UNITS, MICRON, check_extent, length_of, read_mesh
 
-_MESH_SUFFIXES = (".stl", ".obj", ".ply")
 _CLOUD_SUFFIXES = (".xyz", ".csv", ".txt", ".asc", ".pts")
 _MAX_BYTES = 100_000_000  # largest size of a file of points
 _COMMENTS = ("#", "//", "%", "!")
 _AXES = ("x", "y", "z")
 _HEAD_LINES = 100  # number of lines in which heads, separators and the first points are searched
-_MICRON = {"µm": "um", "μm": "um", "micron": "um"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,23 +64,20 @@ def read_points(path: str | Path, *, units: str = "mm") -> PointCloud:
     OSError
         The file cannot be read.
     """
-    path, length = Path(path), length_of(units)
+    path, _ = Path(path), length_of(units)
     suffix = path.suffix.lower()
     notes: tuple[str, ...] = ()
-    if suffix == ".ply":
-        points, _ = read_mesh_file(path)
-        length = check_extent(points, units, path.name)
-    elif suffix in _MESH_SUFFIXES:
-        points, length = read_mesh(path, units=units).triangles.reshape(-1, 3), 1.0
-    elif suffix in _CLOUD_SUFFIXES:
-        points, notes = _read_text(path, units)
-        length = check_extent(points, units, path.name)
+    if suffix in (".stl", ".obj"):
+        points = read_mesh(path, units=units).triangles.reshape(-1, 3)
+    elif suffix in (".ply", *_CLOUD_SUFFIXES):
+        points, notes = (read_mesh_file(path)[0], ()) if suffix == ".ply" else _read_text(path, units)
+        points = points * check_extent(points, units, path.name)
     else:
-        kinds = ", ".join((*_CLOUD_SUFFIXES, *_MESH_SUFFIXES))
+        kinds = ", ".join((*_CLOUD_SUFFIXES, ".stl", ".obj", ".ply"))
         raise ValueError(
             f"{path.name} is not read: {shown(suffix)} is no suffix of points or meshes; save it as {kinds}"
         )
-    return PointCloud(numpy.unique(points * length, axis=0), path.name, notes)
+    return PointCloud(numpy.unique(points, axis=0), path.name, notes)
 
 
 def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
@@ -154,7 +149,7 @@ def _find_columns(table: CellTable, units: str) -> list[int]:
     if not set(_AXES) <= set(heads):
         names = ", ".join(shown(head.text) for head in table.heads)
         raise ValueError(f"it has the columns {names[:200]}: name three of them x, y and z")
-    stated = {_MICRON.get(unit, unit) for axis in _AXES if (unit := heads[axis].unit.lower())}
+    stated = {MICRON.get(unit, unit) for axis in _AXES if (unit := heads[axis].unit.lower())}
     if len(stated) > 1:
         raise ValueError(f"it has columns in different units, {' and '.join(sorted(stated))}: write all in one unit")
     if stated - {units}:

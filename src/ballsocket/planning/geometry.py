@@ -1,4 +1,4 @@
-"""Least-squares planes and spheres through points."""
+"""Least-squares planes through points, angles and distances."""
 
 from __future__ import annotations
 
@@ -73,22 +73,11 @@ def robust_scale(residuals: Numbers) -> float:
     return _NORMAL_MAD * float(numpy.median(abs(residuals)))
 
 
-def fit_sphere(points: Numbers, weights: Numbers) -> tuple[Numbers, float]:
-    """Fit a sphere to points (n, 3) with weights (n,), by orthogonal distances; return its centre and radius."""
-    origin = weights @ points / weights.sum()
-    local, root = points - origin, numpy.sqrt(weights)
-    terms = numpy.column_stack([2.0 * local, numpy.ones(len(local))])
-    solution = numpy.linalg.lstsq(root[:, None] * terms, root * numpy.sum(local**2, axis=1), rcond=None)[0]
-    centre, radius = solution[:3], float(numpy.sqrt(max(solution[3] + solution[:3] @ solution[:3], 0.0)))
-    for _ in range(_ITERATIONS):
-        offset = local - centre
-        distance = numpy.linalg.norm(offset, axis=1)
-        jacobian = numpy.column_stack([-offset / numpy.maximum(distance, 1e-12)[:, None], -numpy.ones(len(local))])
-        step = numpy.linalg.lstsq(root[:, None] * jacobian, root * (radius - distance), rcond=None)[0]
-        centre, radius = centre + step[:3], radius + float(step[3])
-        if numpy.linalg.norm(step) < 1e-9 * abs(radius):
-            break
-    return origin + centre, radius
+def polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the unit vectors (n, 3) and the distances (n,) of points from a centre."""
+    offsets = points - centre
+    distances = numpy.linalg.norm(offsets, axis=1)
+    return offsets / numpy.maximum(distances, 1e-12)[:, None], distances
 
 
 def angle_between(first: Numbers, second: Numbers) -> float:

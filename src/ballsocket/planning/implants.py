@@ -8,7 +8,10 @@ from math import acos, cos, degrees, pi, radians
 import numpy
 
 from ..core.arrays import Numbers
-from .geometry import angle_between, fit_sphere, robust_scale
+from ..core.kinds import MILLIMETRES, Kind
+from ..core.unit_systems import Amount, Sentence
+from ..elasticity.off_axis.scans import fit_sphere
+from .geometry import angle_between, polar, robust_scale
 from .meshes import Mesh
 from .rims import (
     DISTINCT_AXES,
@@ -105,16 +108,19 @@ class ImplantFit:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on facets and rims that limit the accuracy."""
-        notes = []
+        notes: list[str] = []
         if self.facet_depth > _FLAT_FACETS:
             notes.append(
-                f"{self.name}: the radius is that of the sphere through the corners of the facets, whose middles lie "
-                f"{self.facet_depth:.2g} mm inside it; a mesh whose facets straddle the surface has a smaller one"
+                Sentence(
+                    "{}: the radius is that of the sphere through the corners of the facets, whose middles lie {} "
+                    "inside it; a mesh whose facets straddle the surface has a smaller one",
+                    self.name,
+                    Amount(self.facet_depth, MILLIMETRES, 2),
+                )
             )
         if len(self.rim) > 1:
-            notes.append(
-                f"{self.name}: the rim lies in two planes, {self.rim_step} apart: the arc of cover ends at the main one"
-            )
+            text = "{}: the rim lies in two planes, {} apart: the arc of cover ends at the main one"
+            notes.append(Sentence(text, self.name, self.rim_step))
         elif self.rim_deviation > _UNEVEN_RIM:
             notes.append(
                 f"{self.name}: the end of the sphere is not plane and deviates by up to "
@@ -122,8 +128,12 @@ class ImplantFit:
             )
         if self.ambiguous:
             notes.append(
-                f"{self.name}: the outer surface does not show which plane of the rim is the main one: if it is the "
-                f"lip, the axis is {self.rim_step} off; look at the liner"
+                Sentence(
+                    "{}: the outer surface does not show which plane of the rim is the main one: if it is the lip, the "
+                    "axis is {} off; look at the liner",
+                    self.name,
+                    self.rim_step,
+                )
             )
         return tuple(notes)
 
@@ -133,11 +143,13 @@ class ImplantFit:
         return angle_between(self.rim[0].normal, self.rim[1].normal) if len(self.rim) > 1 else None
 
     @property
-    def rim_step(self) -> str:
-        """Angle between both planes of the rim as text; if they are parallel, their distance."""
+    def rim_step(self) -> Amount:
+        """Angle between both planes of the rim; if they are parallel, their distance."""
         main, lip = self.rim
         angle = angle_between(main.normal, lip.normal)
-        return f"{degrees(angle):.1f}°" if angle > DISTINCT_AXES else f"{abs(lip.height - main.height):.1f} mm"
+        if angle > DISTINCT_AXES:
+            return Amount(angle, Kind.ANGLE.written, decimals=1)
+        return Amount(abs(lip.height - main.height), MILLIMETRES, decimals=1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -273,11 +285,9 @@ def _describe(mesh: Mesh, sphere: _SphereFit, passes: int = 2) -> tuple[ImplantF
         end = _find_tangent_end(corners, part, -axis, angle)
         inner = middles @ -axis > cos(end) * numpy.linalg.norm(middles, axis=1)
         if passes and end < angle and not inner.all():
-            facets = numpy.flatnonzero(sphere.facets)[inner]
-            reduced = _fit_facets(mesh, facets)
-            return _describe(
-                mesh, replace(reduced, facets=numpy.isin(numpy.arange(len(mesh.areas)), facets)), passes - 1
-            )
+            facets = sphere.facets.copy()
+            facets[facets] = inner
+            return _describe(mesh, _fit_facets(mesh, facets), passes - 1)
     fit = ImplantFit(
         radius=sphere.radius,
         centre=sphere.centre,
@@ -324,11 +334,10 @@ def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
     """
     part, centre = mesh.part(bore.facets), bore.centre
     points = edge_points((part.triangles - centre) / bore.radius)
-    offsets = mesh.triangles.mean(axis=1) - centre
-    distances = numpy.linalg.norm(offsets, axis=1)
-    outwards = numpy.sum(offsets * mesh.normals, axis=1) > _MIN_OUTWARDS * distances
+    radial, distances = polar(mesh.middles, centre)
+    outwards = numpy.sum(radial * mesh.normals, axis=1) > _MIN_OUTWARDS
     outer = mesh.part(outwards & (distances > 1.02 * bore.radius))
-    moments = numpy.cross(outer.triangles.mean(axis=1) - centre, _smooth_normals(outer)) * outer.areas[:, None]
+    moments = numpy.cross(outer.middles - centre, _smooth_normals(outer)) * outer.areas[:, None]
     axis, ambiguous = numpy.asarray(fit.axis), False
     for _ in range(3):
         ends = farthest_points(points, -axis)
@@ -348,19 +357,16 @@ def _smooth_normals(mesh: Mesh) -> Numbers:
     """Return the normals (n, 3) of a mesh, on a convex sphere those of the sphere."""
     sphere, normals = _find_sphere(mesh, 1.0, (RADII[0], _MAX_OUTER_RADIUS)), mesh.normals
     if sphere is not None:
-        radial = mesh.triangles.mean(axis=1) - sphere.centre
-        radial /= numpy.maximum(numpy.linalg.norm(radial, axis=1), 1e-12)[:, None]
-        normals = numpy.where(sphere.facets[:, None], radial, normals)
+        normals = numpy.where(sphere.facets[:, None], polar(mesh.middles, sphere.centre)[0], normals)
     return normals
 
 
 def _with_wall(mesh: Mesh, fit: ImplantFit) -> ImplantFit:
     """Add the wall thickness of a liner to its fit, if the outer surface is a sphere."""
     dome = -numpy.asarray(fit.axis)
-    offset = mesh.triangles.mean(axis=1) - fit.centre
-    distance = numpy.linalg.norm(offset, axis=1)
-    behind = (distance > 1.02 * fit.radius) & (offset @ dome > distance * cos(fit.arc_of_cover / 2))
-    outwards = numpy.sum(offset * mesh.normals, axis=1) > 0
+    radial, distance = polar(mesh.middles, fit.centre)
+    behind = (distance > 1.02 * fit.radius) & (radial @ dome > cos(fit.arc_of_cover / 2))
+    outwards = numpy.sum(radial * mesh.normals, axis=1) > 0
     outer = _find_sphere(mesh.part(behind & outwards), 1.0, (fit.radius, _MAX_OUTER_RADIUS))
     if outer is None or numpy.linalg.norm(outer.centre - fit.centre) > 0.5 * fit.radius:
         return fit

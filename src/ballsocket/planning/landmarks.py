@@ -18,13 +18,13 @@ from ..core.checks import shown
 from ..core.input_files import open_input
 from ..files.cells import decode_text
 from ..problem.cup import Side
+from .meshes import LENGTH_UNITS, MICRON
 
 _MAX_FILE_SIZE = 10_000_000  # largest size of a landmark file in bytes
 _MAX_POINTS = 10_000
 _MAX_COORDINATE = 1e5  # mm
 _SIGNS = MappingProxyType({"RAS": (1.0, 1.0, 1.0), "LPS": (-1.0, -1.0, 1.0)})  # factors to RAS
 _NUMBERED_SYSTEMS = MappingProxyType({"0": "RAS", "1": "LPS"})  # coordinate systems by their numbers in older files
-_LENGTH_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "µm": 0.001})
 _SIDES = MappingProxyType({"right": ("right", "r"), "left": ("left", "l")})
 _ASIS = ("asis", "sias", "anteriorsuperioriliacspine")
 _TUBERCLE = ("pubictubercle", "tubercle", "pt")
@@ -240,15 +240,16 @@ def _read_markups(text: str, coordinates: str | None) -> Iterator[tuple[str, Num
         raise ValueError("the list `markups` of a 3D Slicer file is missing")
     for markup in markups:
         signs, unit = _signs(markup.get("coordinateSystem"), coordinates), markup.get("coordinateUnits", "mm")
-        units = {str(word) for word in (unit if isinstance(unit, list) else [unit])}
-        if len(units) != 1 or not units <= set(_LENGTH_UNITS):
-            raise ValueError(f"coordinateUnits = {shown(unit)} is not allowed: {', '.join(_LENGTH_UNITS)}")
+        units = {MICRON.get(str(word), str(word)) for word in (unit if isinstance(unit, list) else [unit])}
+        if len(units) != 1 or not units <= set(LENGTH_UNITS):
+            raise ValueError(f"coordinateUnits = {shown(unit)} is not allowed: {', '.join(LENGTH_UNITS)}")
+        (length,) = (LENGTH_UNITS[word] for word in units)
         for point in markup.get("controlPoints") or ():
             if not isinstance(point, dict):
                 raise ValueError(f"a control point is not an object: {shown(point)}")
             if point.get("positionStatus", "defined") == "defined":
                 name = str(point.get("label", ""))
-                yield name, signs * _LENGTH_UNITS[units.copy().pop()] * _point(name, point.get("position"))
+                yield name, signs * length * _point(name, point.get("position"))
 
 
 _READERS = {".fcsv": _read_fcsv, ".mrk.json": _read_markups, ".json": _read_markups}

@@ -24,6 +24,9 @@ _MAX_LINE = 1000  # largest length of a line of an ASCII STL file in bytes; the 
 LENGTH_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4})
 """Length in mm of each unit of a file."""
 
+MICRON = MappingProxyType({"µm": "um", "μm": "um", "micron": "um"})
+"""Other names of the micrometre in files."""
+
 _SIZES = (12.0, 200.0)  # allowed largest extent of a liner or head in mm
 _MAX_OPEN_AREA = 0.2  # sum of area vectors over total area below which a mesh with holes has a signed volume
 
@@ -52,13 +55,18 @@ class Mesh:
         first, second, third = self.triangles.transpose(1, 0, 2)
         vectors: Numbers = numpy.cross(second - first, third - first) / 2
         closed = numpy.linalg.norm(vectors.sum(axis=0)) < _MAX_OPEN_AREA * numpy.linalg.norm(vectors, axis=1).sum()
-        volume = numpy.sum((self.triangles.mean(axis=1) - self.triangles.mean(axis=(0, 1))) * vectors)
+        volume = numpy.sum((self.middles - self.middles.mean(axis=0)) * vectors)
         return -vectors if closed and volume < 0 else vectors
 
     @cached_property
     def areas(self) -> Numbers:
         """Areas of the triangles in mm²: (n,)."""
         return numpy.linalg.norm(self._area_vectors, axis=1)
+
+    @cached_property
+    def middles(self) -> Numbers:
+        """Centroids of the triangles in mm: (n, 3)."""
+        return self.triangles.mean(axis=1)
 
     @cached_property
     def normals(self) -> Numbers:

@@ -12,7 +12,7 @@ from ..core.arrays import Numbers
 from ..core.checks import check_vectors
 from ..problem.cup import Cup, Side
 from .geometry import fit_plane
-from .landmarks import Landmarks, missing_landmarks, read_side
+from .landmarks import ROLES, Landmarks, missing_landmarks, read_side
 
 _ASIS_DISTANCES = (100.0, 400.0)
 """Allowed distance in mm of the two anterior superior iliac spines; adults have about 200 to 280."""
@@ -126,24 +126,23 @@ def pelvic_frame(landmarks: Landmarks, *, vertical: Any = None, pelvic_tilt: flo
 
 def _landmarks_of_plane(landmarks: Landmarks) -> tuple[Numbers, Numbers, Numbers, float | None]:
     """Return both spines, the pubis, and the distance of the tubercles across the line of the spines."""
-    right_spine, left_spine = landmarks.find("right_asis"), landmarks.find("left_asis")
-    tubercles = landmarks.find("right_tubercle"), landmarks.find("left_tubercle")
-    symphysis = landmarks.find("symphysis")
-    lacking = [
-        name for name, point in (("the right ASIS", right_spine), ("the left ASIS", left_spine)) if point is None
-    ]
-    if symphysis is None and (tubercles[0] is None or tubercles[1] is None):
+    points: dict[str, Any] = {role: landmarks.find(role) for role in ROLES}
+    lacking = [f"the {side} ASIS" for side in ("right", "left") if points[f"{side}_asis"] is None]
+    right_tubercle, left_tubercle = points["right_tubercle"], points["left_tubercle"]
+    has_tubercles = right_tubercle is not None and left_tubercle is not None
+    if points["symphysis"] is None and not has_tubercles:
         lacking.append("the pubic symphysis or both pubic tubercles")
-    if right_spine is None or left_spine is None or lacking:
+    if lacking:
         raise missing_landmarks(landmarks, ", ".join(lacking))
-    if tubercles[0] is None or tubercles[1] is None:
-        return right_spine, left_spine, numpy.asarray(symphysis), None
+    right_spine, left_spine = points["right_asis"], points["left_asis"]
+    if not has_tubercles:
+        return right_spine, left_spine, points["symphysis"], None
     x = (right_spine - left_spine) / max(float(numpy.linalg.norm(right_spine - left_spine)), 1e-9)
-    middle = (tubercles[0] + tubercles[1]) / 2
-    across = tubercles[0] - tubercles[1]
+    across = right_tubercle - left_tubercle
     if across @ x < 0:
         raise ValueError("the right pubic tubercle lies to the left of the left one: the names are mirrored")
-    return right_spine, left_spine, middle, float(numpy.linalg.norm(across - (across @ x) * x))
+    offset = float(numpy.linalg.norm(across - (across @ x) * x))
+    return right_spine, left_spine, (right_tubercle + left_tubercle) / 2, offset
 
 
 def _check_distance(text: str, distance: float, allowed: tuple[float, float]) -> None:

@@ -10,6 +10,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
+from ..core.kinds import MILLIMETRES
+from ..core.unit_systems import Amount, Sentence
 from ..files.joint_file import JointFile, joint_of
 from ..problem.cup import Cup, Side
 from .implants import ImplantFit
@@ -17,9 +19,11 @@ from .landmarks import Landmarks, read_side
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis
 from .worn_bores import WornBore
 
-CLEARANCE_REFUSAL = (
-    "no clearance is derived from two files, because their radii are nominal: public sets give -0.098 and "
-    "+0.002 mm; state it with --clearance"
+CLEARANCE_REFUSAL = Sentence(
+    "no clearance is derived from two files, because their radii are nominal: public sets give {} and {}; state it "
+    "with --clearance",
+    Amount(-0.098, MILLIMETRES),
+    Amount(0.002, MILLIMETRES),
 )
 """Sentence on the difference of the radii of two files."""
 
@@ -85,12 +89,12 @@ class HipPlan:
         return tuple(notes)
 
     def _orientation_notes(self) -> list[str]:
-        frame, orientation, notes = self.frame, self.orientation, []
+        frame, orientation = self.frame, self.orientation
+        notes: list[str] = []
         if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
-            notes.append(
-                f"the pubic tubercles are {frame.tubercle_offset:.0f} mm apart across the line of the spines: "
-                "look at the landmarks"
-            )
+            offset = Amount(frame.tubercle_offset or 0.0, MILLIMETRES, decimals=0)
+            text = "the pubic tubercles are {} apart across the line of the spines: look at the landmarks"
+            notes.append(Sentence(text, offset))
         if orientation is None and frame is not None:
             notes.append(
                 "the orientation of the cup is not known: the landmarks have no points named rim, and no liner lies in "
@@ -100,10 +104,9 @@ class HipPlan:
             return notes
         if (orientation.residual or 0.0) > _ROUGH_RIM and orientation.largest_deviation is not None:
             name, distance = orientation.largest_deviation
-            notes.append(
-                f"the rim's points are {orientation.residual:.1f} mm from their plane (rms), {shown(name)} "
-                f"{distance:.1f} mm: look at it"
-            )
+            ends = (Amount(length, MILLIMETRES, decimals=1) for length in (orientation.residual or 0.0, distance))
+            text = "the rim's points are {} from their plane (rms), {} {}: look at it"
+            notes.append(Sentence(text, next(ends), shown(name), next(ends)))
         if orientation.points == 3:
             notes.append("three points on the rim leave no residual: more points show how exact the angles are")
         if (orientation.angle_error or 0.0) > _UNCERTAIN_AXIS:

@@ -128,7 +128,7 @@ def main_plane_first(
     moments, but may end in one plane.
     """
     sums = [float(abs(moments @ plane.normal).sum()) for plane in planes]
-    arms = numpy.linalg.norm(outer.triangles.mean(axis=1) - centre, axis=1)
+    arms = numpy.linalg.norm(outer.middles - centre, axis=1)
     scale = max(numpy.linalg.norm(moments, axis=1).sum(), _SPHERE_MOMENTS * float(outer.areas @ arms))
     if abs(sums[0] - sums[1]) > _MIN_EVIDENCE * scale * sin(angle_between(planes[0].normal, planes[1].normal)):
         main, lip = planes if sums[0] < sums[1] else planes[::-1]

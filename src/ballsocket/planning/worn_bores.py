@@ -14,8 +14,12 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.kinds import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, PERCENT
+from ..core.unit_systems import Amount, Sentence
+from ..elasticity.off_axis.directions import tangents
+from ..elasticity.off_axis.scans import fit_sphere
 from .clouds import PointCloud
-from .geometry import fit_sphere, robust_scale
+from .geometry import polar, robust_scale
 from .implants import RADII
 
 _SEED = 20260103
@@ -118,9 +122,14 @@ class WornBore:
         """Sentences on what limits the numbers."""
         notes = [
             *self.reading_notes,
-            f"{self.name}: the original bore is the sphere through the unworn {100 * self.unworn:.0f} % of the points' "
-            "surface; creep counts as wear, and each µm that this bore was out of round adds about "
-            f"{_OUT_OF_ROUND * self.area:.1g} mm³ to the error",
+            Sentence(
+                "{}: the original bore is the sphere through the unworn {} of the points' surface; creep counts as "
+                "wear, and {} that this bore was out of round adds about {} to the error",
+                self.name,
+                Amount(self.unworn, PERCENT, decimals=0),
+                Amount(1e-3, MICROMETRES),
+                Amount(_OUT_OF_ROUND * self.area, CUBIC_MILLIMETRES, 1),
+            ),
         ]
         if self.volume < self.volume_error and self.depth < self.depth_error:
             notes.append(f"{self.name}: no wear is found above the error")
@@ -131,10 +140,15 @@ class WornBore:
             )
         if self.hidden_shift:
             notes.append(
-                f"{self.name}: the points do not show if the sphere is unworn: a head of its radius may have worn it, "
-                f"by a shift of up to {self.hidden_shift:.2g} mm, which the errors contain; the measured diameter of "
-                f"the head (--head-diameter) excludes this if it is more than {2e3 * self.radius_error:.2g} µm below "
-                "that of the bore, as does measured surface more than 90° from the direction of the load"
+                Sentence(
+                    "{}: the points do not show if the sphere is unworn: a head of its radius may have worn it, by a "
+                    "shift of up to {}, which the errors contain; the measured diameter of the head (--head-diameter) "
+                    "excludes this if it is more than {} below that of the bore, as does measured surface more than "
+                    "90° from the direction of the load",
+                    self.name,
+                    Amount(self.hidden_shift, MILLIMETRES, 2),
+                    Amount(2 * self.radius_error, MICROMETRES, 2),
+                )
             )
         if self.ambiguous:
             notes.append(
@@ -181,16 +195,18 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
     extents = numpy.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if extents[2] < _MIN_FLATNESS * extents[0]:
         raise ValueError(f"{name} is not a bore: its points lie in a plane or on a line")
-    radius = fit_sphere(points, numpy.ones(len(points)))[1]
+    radius = fit_sphere(points)[1]
     if not RADII[0] / 2.0 < radius < 2.0 * RADII[1]:
         raise ValueError(
             f"{name} is not a bore: its best sphere has a radius of {radius:.3g} mm; a bore has {RADII[0]:g} to "
             f"{RADII[1]:g} mm"
         )
     local = _Neighbourhoods.of(points)
-    spheres = _find_unworn(points, local, name)
+    spheres = _find_unworn(local, name)
     bores = [_integrate(cloud, local, sphere) for sphere in spheres]
     unworn = bores[0]
+    if unworn.radius - bores[-1].radius > hypot(unworn.radius_error, bores[-1].radius_error):
+        del bores[1]
     if head_radius is not None and not 0.0 < head_radius <= unworn.radius + unworn.radius_error:
         raise ValueError(
             f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
@@ -198,27 +214,27 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
         )
     if len(bores) == 1:
         larger = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
-        return unworn if larger else _add_hidden_shift(unworn, points, local, spheres[0])
+        return unworn if larger else _add_hidden_shift(unworn, local, spheres[0])
     errors = {}
     for quantity in ("volume", "depth"):
         difference = abs(getattr(bores[0], quantity) - getattr(bores[1], quantity))
         own, other = (getattr(bore, f"{quantity}_error") for bore in bores)
         errors[f"{quantity}_error"] = max(difference + other, own)
-    return replace(bores[0], **errors, ambiguous=True)
+    return replace(unworn, **errors, ambiguous=True)
 
 
 def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
     points, name = cloud.points, cloud.name
-    radial, distance = _polar(points, sphere.centre)
+    radial, distance = polar(points, sphere.centre)
     depth = distance - sphere.radius
-    pole = _unit(radial[_thin(radial)].mean(axis=0))  # dense parts count as much as sparse ones
+    pole = radial[_thin(radial)].mean(axis=0)  # dense parts count as much as sparse ones
+    pole /= max(float(numpy.linalg.norm(pole)), 1e-12)
     reach = float(numpy.arccos(numpy.clip(radial @ pole, -1.0, 1.0)).max())
     allowed = "a bore has points up to 25° (0.436 rad) from its middle"
     require(f"reach of {name} in rad", reach, reach >= _MIN_REACH, allowed)
     areas = _vertex_areas(radial, pole)
     covered = float(areas.sum())
-    noise = local.noise(depth, sphere.mask)
-    errors = _Errors.of(radial, depth, sphere.mask, noise)
+    errors = _Errors.of(local, sphere)
     form = errors.form + _RESOLUTION
     integrand = (distance**3 - sphere.radius**3) / 3.0
     volume = float(areas @ integrand)
@@ -236,7 +252,7 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
         centre=sphere.centre,
         pole=pole,
         deepest=deepest,
-        noise=noise,
+        noise=errors.noise,
         form=errors.form,
         unworn=float(areas[sphere.mask].sum()) / covered,
         reach=reach,
@@ -248,15 +264,15 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
     )
 
 
-def _add_hidden_shift(bore: WornBore, points: Numbers, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
+def _add_hidden_shift(bore: WornBore, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
     """Add the wear to the errors that a head of the bore's own radius may have left as a shifted sphere.
 
     A shift s wears the depth n·s in each direction n with n·s > 0, and leaves the sphere of the others outside by -n·s.
     It is possible as long as the points outside the found sphere are few, and deepest at the edge of the points. Its
     largest length towards the pole is that of which the points with n·s < 0 show nothing else.
     """
-    radial, distance = _polar(points, sphere.centre)
-    outside = float((local.smooth(distance - sphere.radius) > sphere.limit).mean())
+    radial, _ = polar(local.points, sphere.centre)
+    outside = float((local.depth(sphere.centre, sphere.radius) > sphere.limit).mean())
     at_edge = bore.deepest @ bore.pole < cos(bore.reach - _PATCH)
     if outside > (_MAX_EDGE if at_edge else _SPHERICAL_WEAR):
         return bore
@@ -272,17 +288,6 @@ def _add_hidden_shift(bore: WornBore, points: Numbers, local: _Neighbourhoods, s
     )
 
 
-def _polar(points: Numbers, centre: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the unit vectors (n, 3) and the distances (n,) of points from a centre."""
-    offset = points - centre
-    distance = numpy.linalg.norm(offset, axis=1)
-    return offset / numpy.maximum(distance, 1e-9)[:, None], distance
-
-
-def _unit(vector: Numbers) -> Numbers:
-    return vector / max(float(numpy.linalg.norm(vector)), 1e-12)
-
-
 def _boxes(radial: Numbers, size: float) -> Numbers:
     """Return the number of the box of this size in which each unit vector (n, 3) lies."""
     index = numpy.unique(numpy.floor(radial / size).astype(int), axis=0, return_inverse=True)[1]
@@ -296,8 +301,9 @@ def _thin(radial: Numbers) -> Numbers:
 
 @dataclass(frozen=True, eq=False)
 class _Neighbourhoods:
-    """Nearest points of each point (n, k), itself included, and their weights in the smoothed value there (n, k)."""
+    """Points (n, 3), the nearest ones of each (n, k), itself included, and their weights in its smoothed value."""
 
+    points: Numbers
     index: Numbers
     weights: Numbers
 
@@ -306,29 +312,27 @@ class _Neighbourhoods:
         """Find the neighbours within a few degrees."""
         from scipy.spatial import cKDTree  # slow to import
 
-        centre, radius = fit_sphere(points, numpy.ones(len(points)))
+        centre, radius = fit_sphere(points)
         tree = cKDTree(points)
         sample = points[numpy.random.default_rng(_SEED).permutation(len(points))[:200]]
         near = tree.query_ball_point(sample, radius * _SMOOTHING, return_length=True)
         count = int(numpy.clip(numpy.median(near), _NEIGHBOURS, _MAX_NEIGHBOURS))
         distance, index = tree.query(points, k=count)
-        normal = (points - centre) / numpy.linalg.norm(points - centre, axis=1)[:, None]
-        first = numpy.cross(normal, numpy.eye(3)[abs(normal).argmin(axis=1)])
-        first /= numpy.linalg.norm(first, axis=1)[:, None]
-        second = numpy.cross(normal, first)
+        axes = numpy.stack(tangents(polar(points, centre)[0].T)).transpose(2, 1, 0)  # (n, 3, 2)
         offset = (points[index] - points[:, None]) / numpy.maximum(distance[:, -1:, None], 1e-12)
-        terms = numpy.stack(
-            [numpy.ones(index.shape), (offset * first[:, None]).sum(axis=2), (offset * second[:, None]).sum(axis=2)],
-            axis=2,
-        )
+        terms = numpy.concatenate([numpy.ones((*index.shape, 1)), offset @ axes], axis=2)
         normal_matrix = terms.swapaxes(1, 2) @ terms + 1e-9 * numpy.eye(3)
         weights = (numpy.linalg.inv(normal_matrix)[:, :1] @ terms.swapaxes(1, 2))[:, 0]
-        return cls(index, weights)
+        return cls(points, index, weights)
 
     def smooth(self, values: Numbers) -> Numbers:
         """Return the values (n,) of planes through the neighbours."""
         smoothed: Numbers = numpy.einsum("nk,nk->n", self.weights, values[self.index])
         return smoothed
+
+    def depth(self, centre: Numbers, radius: float) -> Numbers:
+        """Return the smoothed distances (n,) of the points outside a sphere."""
+        return self.smooth(polar(self.points, centre)[1] - radius)
 
     def noise(self, values: Numbers, mask: Numbers) -> float:
         """Estimate the standard deviation of single values (n,), of a mask, from their distances from the planes."""
@@ -337,41 +341,31 @@ class _Neighbourhoods:
         return robust_scale((residual / numpy.sqrt(numpy.maximum(1.0 - own, 0.1)))[mask])
 
 
-def _find_unworn(points: Numbers, local: _Neighbourhoods, name: str) -> list[_Unworn]:
-    """Find the sphere of the unworn part; return two, the likelier first, if the worn part may be the unworn one.
+def _find_unworn(local: _Neighbourhoods, name: str) -> list[_Unworn]:
+    """Find the sphere of the unworn part; return two, the larger first, if the worn part may be the unworn one.
 
     A worn part with the shape of a head is a sphere too. No points lie inside the unworn one, and it has the larger
     radius: the head had clearance.
     """
-    sphere = _refine(points, local, _trimmed_sphere(points))
-    _check_bore(points, local, sphere, name)
-    worn = ~_grown(points, sphere, _smoothed_depth(points, local, sphere), 0.0)
+    points = local.points
+    sphere = _refine(local, _trimmed_sphere(points))
+    _check_bore(local, sphere, name)
+    worn = ~_grown(points, sphere.centre, abs(local.depth(sphere.centre, sphere.radius)) >= sphere.limit, 0.0)
     if worn.sum() < max(_SPHERICAL_WEAR * len(points), _MIN_SPHERE_POINTS):
         return [sphere]
-    other = _refine(points, local, _trimmed_sphere(points[worn]))
+    other = _refine(local, _trimmed_sphere(points[worn]))
     same = numpy.linalg.norm(other.centre - sphere.centre) < 0.5 * (sphere.limit + other.limit)
     rough = other.limit > _WORN_SIGMAS * _MAX_FORM * other.radius
-    inside = _smoothed_depth(points, local, other) < -max(2.0 * other.limit, _SMOOTHED_EDGE)
+    inside = local.depth(other.centre, other.radius) < -max(2.0 * other.limit, _SMOOTHED_EDGE)
     if same or rough or inside.mean() > _MAX_INSIDE or other.mask.sum() < _MIN_SPHERE_POINTS / 2:
         return [sphere]
-    scatter = [
-        _SIGMAS * errors.of_radius() + _FORM_FACTOR * errors.form
-        for part in (sphere, other)
-        for radial, distance in (_polar(points, part.centre),)
-        for errors in (_Errors.of(radial, distance - part.radius, part.mask, local.noise(distance, part.mask)),)
-    ]
-    larger, smaller = sorted((sphere, other), key=lambda part: -part.radius)
-    return [larger] if larger.radius - smaller.radius > hypot(*scatter) else [larger, smaller]
-
-
-def _smoothed_depth(points: Numbers, local: _Neighbourhoods, sphere: _Unworn) -> Numbers:
-    return local.smooth(_polar(points, sphere.centre)[1] - sphere.radius)
+    return sorted((sphere, other), key=lambda part: -part.radius)
 
 
 def _trimmed_sphere(points: Numbers) -> tuple[Numbers, float, float]:
     """Return centre, radius and scatter of the sphere with the smallest residuals of two fifths of the points."""
-    centre, _ = fit_sphere(points, numpy.ones(len(points)))
-    chosen = points[_thin(_polar(points, centre)[0])]
+    centre, _ = fit_sphere(points)
+    chosen = points[_thin(polar(points, centre)[0])]
     size = max(int(_TRIMMED * len(chosen)), 8)
     generator = numpy.random.default_rng(_SEED)
     terms = numpy.column_stack([2.0 * (chosen - centre), numpy.ones(len(chosen))])
@@ -394,35 +388,34 @@ def _trimmed_sphere(points: Numbers) -> tuple[Numbers, float, float]:
     return centre + solution[best, :3], float(radii[best]), scatter
 
 
-def _refine(points: Numbers, local: _Neighbourhoods, start: tuple[Numbers, float, float]) -> _Unworn:
+def _refine(local: _Neighbourhoods, start: tuple[Numbers, float, float]) -> _Unworn:
     """Fit the sphere to all points that are not worn, without a margin around the worn ones."""
-    centre, radius, scatter = start
+    points, (centre, radius, scatter) = local.points, start
     limit, before = _WORN_SIGMAS * max(scatter, _RESOLUTION), numpy.zeros(len(points), dtype=bool)
     for _ in range(_PASSES):
-        smoothed = local.smooth(_polar(points, centre)[1] - radius)
-        mask = abs(smoothed) < limit
+        mask = abs(local.depth(centre, radius)) < limit
         if mask.sum() < 8:
             break
-        sphere = _Unworn(centre=centre, radius=radius, mask=mask, limit=limit)
-        inner = _grown(points, sphere, smoothed, _SMOOTHING)
+        inner = _grown(points, centre, ~mask, _SMOOTHING)
         mask = inner if inner.sum() > 0.5 * mask.sum() else mask
         if (mask == before).all():
             break
         before = mask
-        centre, radius = fit_sphere(points[mask], mask[mask].astype(float))
-        smoothed = local.smooth(_polar(points, centre)[1] - radius)
-        limit = _WORN_SIGMAS * max(robust_scale(smoothed[mask]), _RESOLUTION)
+        centre, radius = fit_sphere(points[mask])
+        limit = _WORN_SIGMAS * max(robust_scale(local.depth(centre, radius)[mask]), _RESOLUTION)
     return _Unworn(centre=centre, radius=radius, mask=mask, limit=limit)
 
 
-def _grown(points: Numbers, sphere: _Unworn, smoothed: Numbers, margin: float) -> Numbers:
-    """Return the mask of the points that are farther than a margin in rad from worn ones; single ones do not count."""
+def _grown(points: Numbers, centre: Numbers, off: Numbers, margin: float) -> Numbers:
+    """Return the mask of the points that are farther than a margin in rad from those off the sphere.
+
+    A point without neighbours off the sphere does not count as off it.
+    """
     from scipy.spatial import cKDTree  # slow to import
 
-    off = abs(smoothed) >= sphere.limit
     if not off.any() or off.all():
         return ~off
-    radial, _ = _polar(points, sphere.centre)
+    radial, _ = polar(points, centre)
     neighbours = cKDTree(radial).query(radial[off], k=min(_NEIGHBOURS, len(points)))[1]
     worn = radial[off][off[neighbours].mean(axis=1) > 0.5]
     if not len(worn):
@@ -432,9 +425,9 @@ def _grown(points: Numbers, sphere: _Unworn, smoothed: Numbers, margin: float) -
     return mask
 
 
-def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: str) -> None:
+def _check_bore(local: _Neighbourhoods, sphere: _Unworn, name: str) -> None:
     low, high = RADII
-    depth = _polar(points, sphere.centre)[1] - sphere.radius
+    depth = polar(local.points, sphere.centre)[1] - sphere.radius
     smoothed = local.smooth(depth)
     scatter = sphere.limit / _WORN_SIGMAS
     if not low <= sphere.radius <= high or scatter > _MAX_FORM * sphere.radius:
@@ -465,15 +458,14 @@ def _check_bore(points: Numbers, local: _Neighbourhoods, sphere: _Unworn, name: 
 def _vertex_areas(radial: Numbers, pole: Numbers) -> Numbers:
     """Return the solid angle in sr of each of the unit vectors (n, 3), from triangles between them.
 
-    The triangulation is Delaunay's in the stereographic plane. Triangles across wide gaps are left out. Solid angles
-    follow Van Oosterom and Strackee (1983, doi:10.1109/TBME.1983.325207).
+    The triangles are those of the convex hull that the antipode of the pole is not outside of: Delaunay's in the
+    stereographic plane. Triangles across wide gaps are left out. Solid angles follow Van Oosterom and Strackee (1983,
+    doi:10.1109/TBME.1983.325207).
     """
-    from scipy.spatial import Delaunay  # slow to import
+    from scipy.spatial import ConvexHull  # slow to import
 
-    first = _unit(numpy.cross(pole, numpy.eye(3)[abs(pole).argmin()]))
-    second = numpy.cross(pole, first)
-    stretch = numpy.maximum(1.0 + radial @ pole, 1e-3)
-    corners = Delaunay(numpy.column_stack([radial @ first, radial @ second]) / stretch[:, None]).simplices
+    hull = ConvexHull(radial)
+    corners = hull.simplices[hull.equations @ [*-pole, 1.0] <= 0.0]
     a, b, c = radial[corners].transpose(1, 0, 2)
     sides = numpy.stack(
         [numpy.linalg.norm(a - b, axis=1), numpy.linalg.norm(b - c, axis=1), numpy.linalg.norm(c - a, axis=1)]
@@ -487,8 +479,7 @@ def _vertex_areas(radial: Numbers, pole: Numbers) -> Numbers:
 def _deepest(radial: Numbers, depth: Numbers, smoothed: Numbers) -> tuple[Numbers, float, Numbers]:
     """Find direction, depth and weights (n,) of the deepest wear, by a paraboloid within 10° of the deepest point."""
     top = radial[smoothed.argmax()]
-    first = _unit(numpy.cross(top, numpy.eye(3)[abs(top).argmin()]))
-    x, y = radial @ first, radial @ numpy.cross(top, first)
+    x, y = (radial @ tangent for tangent in tangents(top))
     near = numpy.flatnonzero(radial @ top > min(cos(_PATCH), float(numpy.sort(radial @ top)[-30])) - 1e-12)
     terms = numpy.column_stack([numpy.ones(len(near)), x[near], y[near], x[near] ** 2, x[near] * y[near], y[near] ** 2])
     inverse = numpy.linalg.pinv(terms)
@@ -511,8 +502,11 @@ class _Errors:
     form: float
 
     @classmethod
-    def of(cls, radial: Numbers, depth: Numbers, mask: Numbers, noise: float) -> _Errors:
+    def of(cls, local: _Neighbourhoods, sphere: _Unworn) -> _Errors:
         """Estimate the errors of form from the mean depths of patches of the unworn part."""
+        radial, distance = polar(local.points, sphere.centre)
+        depth, mask = distance - sphere.radius, sphere.mask
+        noise = local.noise(depth, mask)
         jacobian = numpy.column_stack([radial, numpy.ones(len(radial))])
         boxes = _boxes(radial, _PATCH)
         counts = numpy.bincount(boxes, mask)

@@ -12,10 +12,20 @@ from typing import Any, Unpack
 from ..core.arrays import Array, is_plain_number, read_only, to_list, where
 from ..core.checks import check_names, require, shown
 from ..core.display import OneLine, html_list
-from ..core.kinds import Choice
+from ..core.kinds import MILLIMETRES, Choice
 from ..core.quantities import JOINT
+from ..core.unit_systems import Sentence
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, check_given, lost_lengths, resolve_lengths
-from .material import ByValue, Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
+from .material import (
+    ByValue,
+    Layer,
+    Material,
+    elementwise_maximum,
+    make_unchecked,
+    number_with_unit,
+    set_fields,
+    short_text,
+)
 
 
 class Support(Choice):
@@ -286,11 +296,13 @@ class Joint(OneLine, ByValue, Dimensions):
         }
 
     @property
-    def dimensions(self) -> str:
+    def dimensions(self) -> Sentence:
         """Text of ball radius, clearance or interference, and liner thickness, with units."""
-        (name, fit), thickness = self.fit, short_text(self.liner_thickness)
-        liner = "massive socket" if thickness == "inf" else f"liner {thickness} mm"
-        return f"R1 {short_text(self.ball_radius)} mm, {name} {short_text(fit)} mm, {liner}"
+        name, fit = self.fit
+        massive = short_text(self.liner_thickness) == "inf"
+        lengths = [self.ball_radius, fit, *([] if massive else [self.liner_thickness])]
+        liner = "massive socket" if massive else "liner {}"
+        return Sentence(f"R1 {{}}, {name} {{}}, {liner}", *(number_with_unit(size, MILLIMETRES) for size in lengths))
 
     def _repr_html_(self) -> str:
         lengths = ("ball_radius", "socket_radius", self.fit[0], "liner_thickness")
@@ -301,16 +313,17 @@ class Joint(OneLine, ByValue, Dimensions):
         return html_list(self.name or "joint", [*rows, *([("source", self.source)] if self.source else [])])
 
     def __str__(self) -> str:
-        ball = "rigid" if self.ball is None else str(self.ball)
-        head = f"{self.name}: " if self.name else ""
-        behind = "".join(f" on {layer}" for layer in self.backing)
+        layers = [part for layer in self.backing for part in (" on ", str(layer))]
         free = ", free outside" if self.support is Support.FREE else ""
-        outside = "".join(
-            f", {JOINT[name].title} {short_text(getattr(self, name))} mm"
+        outside = [
+            Sentence(f", {JOINT[name].title} {{}}", number_with_unit(getattr(self, name), MILLIMETRES))
             for name in ("outer_radius", "outer_diameter")
             if name in self.given
-        )
-        return f"{head}{self.dimensions} of {self.liner}{behind}{free}{outside}; ball {ball}"
+        ]
+        ball = "rigid" if self.ball is None else str(self.ball)
+        head = f"{self.name}: " if self.name else ""
+        parts = [head, self.dimensions, " of ", str(self.liner), *layers, free, *outside, "; ball ", ball]
+        return Sentence("{}" * len(parts), *parts)
 
 
 _VARIED = ", varied"

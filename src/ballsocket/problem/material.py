@@ -10,7 +10,9 @@ from typing import Any
 from ..core.arrays import Array, all_true, is_plain_number, to_list, where
 from ..core.checks import shown
 from ..core.display import OneLine, html_list
+from ..core.kinds import MEGAPASCALS, MILLIMETRES, PLAIN, Unit
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
+from ..core.unit_systems import Amount, Sentence
 
 
 def make_unchecked(cls: Any, **fields: Any) -> Any:
@@ -67,6 +69,12 @@ def short_text(value: Array) -> str:
         return f"{float(value):g}" if not shape else f"<array {'x'.join(map(str, shape))}>"
     except TypeError:  # a tracer has no value yet
         return "<traced>"
+
+
+def number_with_unit(value: Array, unit: Unit = PLAIN) -> Amount | str:
+    """Return a number with six digits for a sentence; the shape of an array, or "<traced>", with the unit."""
+    text = short_text(value)
+    return f"{text} {unit.text}".strip() if text.startswith("<") else Amount(float(value), unit, 6)
 
 
 def elementwise_maximum(x: Array, y: Array) -> Array:
@@ -152,8 +160,8 @@ class Material(OneLine, ByValue):
         return html_list(self.name or "material", [*rows, *([("source", self.source)] if self.source else [])])
 
     def __str__(self) -> str:
-        numbers = f"E {short_text(self.young)} MPa, nu {short_text(self.poisson)}"
-        return f"{self.name} ({numbers})" if self.name else numbers
+        numbers = Sentence("E {}, nu {}", number_with_unit(self.young, MEGAPASCALS), number_with_unit(self.poisson))
+        return Sentence("{} ({})", self.name, numbers) if self.name else numbers
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -202,5 +210,6 @@ class Layer(OneLine, ByValue):
         return {"thickness": to_list(self.thickness), **self.material.summary()}
 
     def __str__(self) -> str:
-        text = short_text(self.thickness)
-        return f"a massive body of {self.material}" if text == "inf" else f"{text} mm of {self.material}"
+        if short_text(self.thickness) == "inf":
+            return Sentence("a massive body of {}", str(self.material))
+        return Sentence("{} of {}", number_with_unit(self.thickness, MILLIMETRES), str(self.material))

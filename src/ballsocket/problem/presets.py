@@ -11,6 +11,8 @@ from types import MappingProxyType
 from typing import Any
 
 from ..core.checks import NamedItems, check_text, shown
+from ..core.kinds import MEGAPASCALS
+from ..core.unit_systems import Amount, Sentence
 from .joint import Joint
 from .material import Material
 
@@ -72,9 +74,12 @@ def long_term_note(material: Material) -> str:
     preset = next((preset for preset in materials.values() if preset.name == material.name), None)
     if modulus is None or preset is None or float(material.young) != preset.young:
         return ""
-    return (
-        f"{material.name}: E {preset.young:g} MPa is the modulus of a short load; after {modulus.hours:g} hours under "
-        f"load it is {modulus.young:g} MPa ({modulus.source})"
+    return Sentence(
+        f"{{}}: E {{}} is the modulus of a short load; after {modulus.hours:g} hours under load it is {{}} ({{}})",
+        material.name,
+        Amount(float(preset.young), MEGAPASCALS),
+        Amount(modulus.young, MEGAPASCALS),
+        modulus.source,
     )
 
 

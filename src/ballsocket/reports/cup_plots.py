@@ -10,10 +10,10 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
-from ..core.display import plain_number
+from ..core.kinds import NEWTONS
 from ..core.quantities import FIELD
 from ..core.storage.atomic_files import write_atomically
-from ..core.unit_systems import Units
+from ..core.unit_systems import Amount, Sentence, Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from ..problem import Support
@@ -58,13 +58,10 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     draw_section(section_axes, contact, units)
     section_axes.set_title("section in the plane of load and cup's axis", fontsize=10, pad=14)
     figure.legend(loc="lower center", ncols=6, **LEGEND)
-    figure.suptitle(units.sentence(_title(contact)), fontsize=10, parse_math=False)
+    force, tilt = Amount(float(contact.force), NEWTONS), f"{degrees(contact.tilt):.3g}°"
+    title = Sentence("{}; {} at {} from the cup's axis", contact.joint.dimensions, force, tilt)
+    figure.suptitle(units.sentence(title), fontsize=10, parse_math=False)
     return figure
-
-
-def _title(contact: OffAxisContact) -> str:
-    tilt = f"{degrees(contact.tilt):.3g}° from the cup's axis"
-    return f"{contact.joint.dimensions}; {plain_number(contact.force)} N at {tilt}"
 
 
 _BALL, _SOLIDS = "0.9", ("#f3e6c4", "#cfd8de", "#e7d9cc", "#dcdcdc")

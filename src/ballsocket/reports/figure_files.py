@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".svg", ".pdf")  # endings of the files that `save` writes
 
 
-def check_format(path: Path) -> None:
-    """Check that a path ends in .png, .svg or .pdf and that its folder exists.
+def check_format(*paths: Path | None) -> None:
+    """Check that each path ends in .png, .svg or .pdf and that its folder exists; None is no figure.
 
     Raises
     ------
@@ -26,7 +26,8 @@ def check_format(path: Path) -> None:
     """
     from ..core.storage.atomic_files import check_ending
 
-    check_ending("figure", path, *FORMATS)
+    for path in filter(None, paths):
+        check_ending("figure", path, *FORMATS)
 
 
 def save(figure: Figure, path: str | Path) -> None:

@@ -61,7 +61,7 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI, limi
     if is_map:
         axes_pair[1].set_ylabel("")
     _draw_legend(figure)
-    title = units.sentence(Sentence("{}; {}", Sentence(orientations.joint.dimensions), load_sentence(orientations)))
+    title = units.sentence(Sentence("{}; {}", orientations.joint.dimensions, load_sentence(orientations)))
     if not is_map:
         name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
         title += f"; {name} {angle_text(float(getattr(orientations, name)[0]))}"

@@ -14,7 +14,7 @@ from ..contact import Contact
 from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
 from ..core.answers import Check, grid
 from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.unit_systems import Units, joint_sentence
+from ..core.unit_systems import Units
 from ..design_checks import checks_of, unchecked_text, verdict_of
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
@@ -177,7 +177,7 @@ def _joint_sections(
     checked = () if contact is None else _checks(contact, file.cup)
     return {
         **({"checks": ("Checks", checks_html(checked, units.text_of))} if checked else {}),
-        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(joint_sentence(file.joint)))),
+        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(str(file.joint)))),
         "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
         "origin": ("Joint file", render_part(_TEMPLATE, "origin", text, checksum, command)),

@@ -14,7 +14,7 @@ from ..core import arrays
 from ..core.answers import Answer, Column, Row, Table
 from ..core.arrays import Array
 from ..core.kinds import NEWTONS, PERCENT, PLAIN, Kind
-from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.unit_systems import Amount, Sentence
 from ..model_catalogue import reference as exact
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus, constant, corrected_vessel, polynomial, spherical_vessel
@@ -208,7 +208,7 @@ def describe_calibration(fit: Calibration) -> Answer:
     amounts += [(title, Amount(share, PERCENT, 3)) for title, share in shares.items()]
     columns = [Column.of_words("number"), Column.of_number("value")]
     return Answer(
-        title=joint_sentence(fit.joint),
+        title=str(fit.joint),
         tables=[Table("calibration", "Calibration", columns, [Row(cells) for cells in amounts])],
     )
 

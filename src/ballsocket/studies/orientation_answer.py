@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.bounded import Verdict
 from ..core.kinds import MILLIMETRES
 from ..core.quantities import CONTACT, DERIVED, QUANTITIES
-from ..core.unit_systems import Amount, Sentence, joint_sentence
+from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from .limits import Limit
@@ -43,7 +43,7 @@ def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = 
         lines = ["columns: inclination, rows: anteversion"]
         tables.append(Table(quantity.key, quantity.title, [corner, *columns], rows, lines))
     return Answer(
-        title=joint_sentence(orientations.joint),
+        title=str(orientations.joint),
         lines=[load_sentence(orientations)],
         tables=tables,
         notes=[*(_limit_sentences(orientations, limits) if limits else ()), *_sentences(orientations)],

@@ -28,6 +28,8 @@ _MAX_ROUGHNESS = 0.03  # root mean square deviation of a bore, as a fraction of 
 _MAX_AVERAGING_ANGLE = 0.35
 _AVERAGING_ANGLE = radians(4.0)
 
+_ITERATIONS = 20  # largest number of steps of the fit of a sphere
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scan(InterpolatedDeviation):
@@ -121,7 +123,7 @@ def scan_from_points(
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     in_range = abs(points) <= _MAX_COORDINATE
     require(f"points of {name}", points, in_range, f"coordinates (mm) are at most {_MAX_COORDINATE:g}")
-    centre, radius = _fit_sphere(points)
+    centre, radius = fit_sphere(points)
     vectors = points - centre
     length = numpy.linalg.norm(vectors, axis=1)
     roughness = float(numpy.sqrt(numpy.mean((length - radius) ** 2)))
@@ -165,15 +167,20 @@ def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> t
     return sums / numpy.linalg.norm(sums, axis=0), numpy.bincount(box.ravel(), deviation) / count
 
 
-def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
-    from scipy.optimize import least_squares  # slow to import
-
-    rows = numpy.hstack([2 * points, numpy.ones((len(points), 1))])
-    linear = numpy.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)[0]
-    start = numpy.append(linear[:3], numpy.sqrt(max(linear[3] + linear[:3] @ linear[:3], 1e-12)))
-
-    def distance_residuals(x: Numbers) -> Numbers:
-        return numpy.linalg.norm(points - x[:3], axis=1) - x[3]
-
-    solution = least_squares(distance_residuals, start).x
-    return solution[:3], float(solution[3])
+def fit_sphere(points: Numbers, weights: Numbers | None = None) -> tuple[Numbers, float]:
+    """Fit a sphere to points (n, 3) with weights (n,), by orthogonal distances; return its centre and radius."""
+    weight = numpy.ones(len(points)) if weights is None else weights
+    origin = weight @ points / weight.sum()
+    local, root = points - origin, numpy.sqrt(weight)
+    terms = numpy.column_stack([2.0 * local, numpy.ones(len(local))])
+    solution = numpy.linalg.lstsq(root[:, None] * terms, root * numpy.sum(local**2, axis=1), rcond=None)[0]
+    centre, radius = solution[:3], float(numpy.sqrt(max(solution[3] + solution[:3] @ solution[:3], 0.0)))
+    for _ in range(_ITERATIONS):
+        offset = local - centre
+        distance = numpy.linalg.norm(offset, axis=1)
+        jacobian = numpy.column_stack([-offset / numpy.maximum(distance, 1e-12)[:, None], -numpy.ones(len(local))])
+        step = numpy.linalg.lstsq(root[:, None] * jacobian, root * (radius - distance), rcond=None)[0]
+        centre, radius = centre + step[:3], radius + float(step[3])
+        if numpy.linalg.norm(step) < 1e-9 * abs(radius):
+            break
+    return origin + centre, radius
