@@ -62,7 +62,7 @@ def liner_ratios(liner: tuple[float, float]) -> np.ndarray:
     )
     angles = half_angle_at(np.linspace(-1, 1, NODES[2]), ratio)
     wide = angles > NARROW
-    intervals = Intervals(half_angle=np.append(NARROW, angles[wide]), grid=cached_grid(40))
+    intervals = Intervals(half_angle=np.append(NARROW, angles[wide]), grid=cached_grid(points=40))
     state = AbelState(kernel=kernel, gap=LinearGap(clearance=1.0, socket_radius=1.0), intervals=intervals)
     solved = np.array([stress_ratios(state.single_contact(k), thickness) for k in range(1 + wide.sum())])
     hertz = np.array([hertz_ratio(poisson), 0.0])

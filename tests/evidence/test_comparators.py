@@ -106,10 +106,10 @@ def test_verdict_follows_from_the_overlap_of_ranges():
 
 
 def test_ranges_of_a_question_include_its_tolerances(pack):
-    from ballsocket.evidence.matrix import Row
+    from ballsocket.evidence.matrix import MatrixRow
 
     question, record, _ = pack
-    ranges = comparators.question_ranges(question, [Row.of(row) for row in record["matrix"]])
+    ranges = comparators.question_ranges(question, [MatrixRow.of(row) for row in record["matrix"]])
     assert ranges["c/R1"] == pytest.approx((0.05 / 17.9, 0.15 / 17.9), rel=0.02)
     low, high = ranges["F/(E R1²)"]
     radius = question.file.joint.ball_radius

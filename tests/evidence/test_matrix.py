@@ -8,7 +8,7 @@ pytest.importorskip("xarray", reason="the extra for studies is not installed")
 import ballsocket as bs
 from ballsocket.core.arrays import to_numpy
 from ballsocket.evidence import matrix
-from ballsocket.evidence.matrix import Row, check_limit, input_title, limit_text, list_cases, number
+from ballsocket.evidence.matrix import MatrixRow, check_limit, input_title, limit_text, list_cases, number
 from ballsocket.problem.cup import UP
 from ballsocket.studies.expressions import parse_limit
 
@@ -19,7 +19,7 @@ LIMIT = parse_limit("max_pressure <= 20 MPa")
 
 
 def row(valid=True, **numbers):
-    return Row({"force": 1.0}, numbers, {}, {}, "OK", valid)
+    return MatrixRow({"force": 1.0}, numbers, {}, {}, "OK", valid)
 
 
 def test_a_limit_counts_violations_missing_results_and_marginal_cases():
@@ -50,8 +50,8 @@ def test_an_error_bar_or_an_invalid_result_leaves_a_limit_undecided():
     states = {((17.9, 18.1), True): "kept", ((20.1, 20.3), False): "exceeded"}
     states |= dict.fromkeys((((17.9, 20.1), True), ((17.9, math.inf), True), ((17.9, 18.1), False)), "undecided")
     for (bar, valid), verdict in states.items():
-        case = Row({"force": 1.0}, {"max_pressure": 18.0}, {}, {"max_pressure": bar}, "OK", valid)
-        for row in (case, Row.of(case.summary())):
+        case = MatrixRow({"force": 1.0}, {"max_pressure": 18.0}, {}, {"max_pressure": bar}, "OK", valid)
+        for row in (case, MatrixRow.of(case.summary())):
             assert check_limit(LIMIT, [row], accuracy=0.05).verdict.word == verdict
 
 
@@ -86,7 +86,7 @@ def test_numbers_of_a_case_are_those_of_a_single_press_in_the_cup(pack):
         assert numbers["half_angle_deg"] == pytest.approx(math.degrees(contact.half_angle))
         assert (entry["status"], entry["valid"]) == ("OK", True)
         assert set(entry["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure", "von_mises"}
-    assert Row.of(entry).summary() == entry
+    assert MatrixRow.of(entry).summary() == entry
     errors = dict(matrix.known_errors(bs.Exact(tolerance=1e-3).press(bs.joints["hip-36"], force=2000.0)))
     assert 2e-3 <= errors.pop("von_mises") <= 3.1e-3  # of its sum over the liner, and of the tolerance
     assert all(0 <= error <= 1e-3 for error in map(float, errors.values()))

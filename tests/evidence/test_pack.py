@@ -131,7 +131,7 @@ def test_wear_rates_are_in_the_matrix_and_the_largest_is_simulated_to_the_end(tm
     rates = wear_rates(question, cases)
     assert rates[0] == rates[1] < rates[2] == rates[3]
     rows = [row.with_wear(rate) for row, rate in zip(matrix.compute_rows(question, cases), rates, strict=True)]
-    assert matrix.Row.of(rows[0].summary()).numbers["wear_rate"] == pytest.approx(rates[0])
+    assert matrix.MatrixRow.of(rows[0].summary()).numbers["wear_rate"] == pytest.approx(rates[0])
     worst = matrix.worst_rows(rows)["wear_rate"]
     assert worst.case["head_diameter"] == 36.0
     result = wear_history(question, worst.case)

@@ -113,7 +113,7 @@ def test_displacements_on_the_mesh_of_the_film_are_those_of_the_cup():
 
     compliance = cached_compliance(model.surface, JOINT, cup, model.ring_width)
     on_cup = pressure(np.tensordot(frame[2], compliance.grid.middles, 1))
-    expected = compliance.displacement(on_cup[None]).ravel()
+    expected = compliance.softness(on_cup[None]).ravel()
     directions = grid.middles.reshape(3, -1).T
     inside = directions @ frame[:, 2] > cos(radians(80.0))  # away from the strip at the rim
     at_film = compliance.grid.interpolation_matrix(directions @ frame) @ expected

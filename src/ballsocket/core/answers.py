@@ -146,7 +146,7 @@ class Check:
 _UNTRUSTED, _BAR = ": outside the range of the model", ": the error bar contains the limit"
 
 
-class Grid(NamedTuple):
+class PrintedTable(NamedTuple):
     """Table as texts for readers: heads, their units, rows, and the verdicts of their cells."""
 
     columns: Sequence[Column]
@@ -161,7 +161,7 @@ class Grid(NamedTuple):
         return [head + Unit(unit).text_in_brackets for head, unit in zip(self.heads, self.units, strict=True)]
 
 
-def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
+def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> PrintedTable:
     """Write the cells of a table up to a rank in a system of units."""
     shown = [index for index, column in enumerate(table.columns) if column.rank <= most_rank]
     columns = [table.columns[index] for index in shown]
@@ -177,7 +177,7 @@ def grid(table: Table, units: Units = Units.SI, most_rank: int = PAGE) -> Grid:
     ]
     heads, unit_texts = [column.head for column in columns], [unit.text for unit in written]
     verdicts = [[getattr(cells[index], "verdict", verdict) for index in shown] for cells, verdict in lines]
-    return Grid(columns, heads, unit_texts, texts, verdicts)
+    return PrintedTable(columns, heads, unit_texts, texts, verdicts)
 
 
 _MARKS = ("", "?", "*")

@@ -18,7 +18,7 @@ from ..paper.claims import ELSEWHERE, Claim, judge
 from ..problem import Joint, Layer, Material
 from ..problem.presets import ALUMINA, COCR, TITANIUM, UHMWPE
 from ..studies.parameters import LOADS, press_arguments
-from .matrix import Row
+from .matrix import MatrixRow
 from .question import ALMOST_ALL, Question
 
 MEASURED = "measured"  # kind of a comparator with measurements
@@ -296,7 +296,7 @@ def _range(values: Iterable[Any]) -> tuple[float, float]:
     return float(numpy.nanmin(flat)), float(numpy.nanmax(flat))
 
 
-def question_ranges(question: Question, rows: Sequence[Row]) -> Ranges:
+def question_ranges(question: Question, rows: Sequence[MatrixRow]) -> Ranges:
     """Compute the ranges of the similarity numbers over the matrix of a question and over its tolerances."""
     cases = {name: numpy.array([row.case[name] for row in rows]) for name in rows[0].case}
     forces = numpy.array([row.numbers.get("force", numpy.nan) for row in rows])

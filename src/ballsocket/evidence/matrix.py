@@ -49,7 +49,7 @@ Case = dict[str, float]  # values of the varied parameters, by name
 
 
 @dataclass(frozen=True)
-class Row:
+class MatrixRow:
     """Result of a case."""
 
     case: Case
@@ -59,7 +59,7 @@ class Row:
     status: str  # name of the status of the contact
     valid: bool  # True in the range of the model
 
-    def with_wear(self, rate: float | None) -> Row:
+    def with_wear(self, rate: float | None) -> MatrixRow:
         """Add the wear rate to the numbers of the row."""
         return replace(self, numbers={**self.numbers, WEAR.name: numpy.nan if rate is None else rate})
 
@@ -79,7 +79,7 @@ class Row:
         }
 
     @staticmethod
-    def of(summary: Mapping[str, Any]) -> Row:
+    def of(summary: Mapping[str, Any]) -> MatrixRow:
         """Create a row from its summary."""
 
         def known(part: str, quantities: Mapping[str, Quantity] = NAMES) -> list[tuple[str, float, Any]]:
@@ -87,7 +87,7 @@ class Row:
                 (n, q.written.factor, summary[part][q.key]) for n, q in quantities.items() if q.key in summary[part]
             ]
 
-        return Row(
+        return MatrixRow(
             {name: value / factor for name, factor, value in known("case", PARAMETERS)},
             {name: numpy.nan if value is None else value / factor for name, factor, value in known("numbers")},
             {name: value for name, _, value in known("errors")},
@@ -107,7 +107,7 @@ def list_cases(question: Question) -> list[Case]:
     return [dict(zip(question.axes, values, strict=True)) for values in product(*question.axes.values())]
 
 
-def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
+def compute_rows(question: Question, cases: Sequence[Case]) -> list[MatrixRow]:
     """Compute several cases in one call."""
     values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
     joint, load, possible = press_arguments(question.file.joint, values)
@@ -129,7 +129,7 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     bounds = {name: (_column(bar.low, cases), _column(bar.high, cases)) for name, bar in bars.items()}
     status, valid, made = (_column(value, cases) for value in (contact.status, contact.valid, possible))
     return [
-        Row(
+        MatrixRow(
             case,
             {name: float(value[i]) if made[i] else numpy.nan for name, value in columns.items()},
             {name: float(value[i]) for name, value in errors.items()},
@@ -152,7 +152,7 @@ def _column(value: Any, cases: Sequence[Case]) -> Numbers:
     return numpy.broadcast_to(to_numpy(value), len(cases))
 
 
-def worst_rows(rows: Sequence[Row]) -> dict[str, Row]:
+def worst_rows(rows: Sequence[MatrixRow]) -> dict[str, MatrixRow]:
     """Find the worst row of each number, by name; numbers without a result are omitted."""
     worst = {}
     for name in _WORST:
@@ -174,7 +174,7 @@ class LimitCheck:
     beyond, unknown, marginal : int
         Number of cases outside the limit, without a result, and closer to the limit than their error bar or the
         required accuracy.
-    row : Row or None
+    row : MatrixRow or None
         Row with the smallest margin.
     missing : str
         Reason why the limited number is not known; empty if it is.
@@ -185,7 +185,7 @@ class LimitCheck:
     beyond: int
     unknown: int
     marginal: int
-    row: Row | None
+    row: MatrixRow | None
     missing: str = ""
 
     @property
@@ -225,7 +225,7 @@ class LimitCheck:
         }
 
 
-def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float, missing: str = "") -> LimitCheck:
+def check_limit(limit: Limit, rows: Sequence[MatrixRow], accuracy: float, missing: str = "") -> LimitCheck:
     """Check a limit over the matrix; `missing` is the reason of an unknown number.
 
     A case is beyond the limit if the whole error bar of its number is. It keeps the limit if the bar does so, widened

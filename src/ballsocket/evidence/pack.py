@@ -27,7 +27,7 @@ from .code_checks import CHECKS
 from .comparators import CLAIMS, PUBLISHED, applicability, claim, question_ranges
 from .credibility import assess, model_risk
 from .credibility_levels import Record
-from .matrix import WEAR, Case, Row, check_limit, compute_rows, list_cases, worst_rows
+from .matrix import WEAR, Case, MatrixRow, check_limit, compute_rows, list_cases, worst_rows
 from .question import Question
 from .worst_case import (
     compare_methods,
@@ -63,7 +63,7 @@ def gather_evidence(
         The folder is not writable.
     """
     first = plan(question).results(folder, progress, engine)
-    rows = [Row.of(row) for block in first["matrix"] for row in block]
+    rows = [MatrixRow.of(row) for block in first["matrix"] for row in block]
     rates = [rate for block in first["wear_rates"] for rate in block]
     rows = [row.with_wear(rate) for row, rate in zip(rows, rates, strict=True)] if rates else rows
     worst = worst_rows(rows)
@@ -100,7 +100,7 @@ def plan(question: Question) -> Plan:
     )
 
 
-def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
+def plan_worst_cases(question: Question, worst: Mapping[str, MatrixRow]) -> Plan:
     """Return the plan of the pieces for the worst cases."""
     row = worst.get("max_pressure", next(iter(worst.values()), None))
     parts: dict[str, Mapping[str, Piece]] = {
@@ -119,7 +119,7 @@ def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
     return Plan(name=_store_names(question)[1], parts=parts)
 
 
-def distinct_cases(worst: Mapping[str, Row]) -> list[Case]:
+def distinct_cases(worst: Mapping[str, MatrixRow]) -> list[Case]:
     """Return the cases in which some number of a contact is worst, without repetition."""
     cases = [row.case for name, row in worst.items() if name != WEAR.name]
     return list({tuple(case.items()): case for case in cases}.values())
@@ -152,7 +152,9 @@ def _store_names(question: Question) -> tuple[str, str]:
     return f"first-{text}", f"later-{text}"
 
 
-def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
+def _record(
+    question: Question, rows: Sequence[MatrixRow], worst: Mapping[str, MatrixRow], results: Results
+) -> dict[str, Any]:
     """Assemble the record from the results of all pieces, and assess it."""
     call = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
     missing = {"utilisation": unchecked_strength_reason(question.file.joint)}
@@ -189,7 +191,7 @@ def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], r
     return {**record, **assess(record)}
 
 
-def _calculations(worst: Mapping[str, Row], results: Results) -> list[dict[str, Any]]:
+def _calculations(worst: Mapping[str, MatrixRow], results: Results) -> list[dict[str, Any]]:
     """Return the methods of each worst case, with CalculiX for the largest pressure."""
     calculix: list[Any] = next(iter(results["rival"]), [])
     calculations = []
@@ -203,7 +205,7 @@ def _calculations(worst: Mapping[str, Row], results: Results) -> list[dict[str, 
     return calculations
 
 
-def _drawn_joint(question: Question, worst: Mapping[str, Row]) -> dict[str, Any] | None:
+def _drawn_joint(question: Question, worst: Mapping[str, MatrixRow]) -> dict[str, Any] | None:
     """Return the joint and the contact with the largest pressure for a drawing; None without a result."""
     row = worst.get("max_pressure")
     if row is None:

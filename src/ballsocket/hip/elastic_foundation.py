@@ -117,7 +117,7 @@ class ElasticFoundation(SocketFoundation):
         stiffness = 0.0
         for _ in range(_POWER_ITERATIONS):
             field = field / numpy.linalg.norm(field)
-            field = self._smoothing_filter(self.compliance.pressure(field))
+            field = self._smoothing_filter(self.compliance.stiffness(field))
             stiffness = float(numpy.linalg.norm(field))
         return stiffness
 
@@ -137,7 +137,7 @@ class ElasticFoundation(SocketFoundation):
         shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)
         pressure = equilibrium.pressure.reshape(shape)
         overlap = equilibrium.displacement @ self.normals - self.clearance - depth
-        gap = self.compliance.displacement(pressure) - overlap.reshape(shape)
+        gap = self.compliance.softness(pressure) - overlap.reshape(shape)
         return self.edges.levels(pressure, gap).reshape(equilibrium.pressure.shape)
 
     def solve_equilibrium(

@@ -272,12 +272,12 @@ class ElasticSoftness:
         rings, meridians = self._shape
         unit = numpy.zeros((rings, rings, meridians))
         unit[numpy.arange(rings), numpy.arange(rings), 0] = 1.0
-        response = self.compliance.displacement(unit)
+        response = self.compliance.softness(unit)
         return numpy.repeat(response[numpy.arange(rings), numpy.arange(rings), 0], meridians)[self.mask]
 
     def __call__(self, pressure: Numbers) -> Numbers:
         """Compute the displacements in mm (cells,) under pressures in MPa (cells,)."""
         everywhere = numpy.zeros(len(self.mask))
         everywhere[self.mask] = pressure
-        displacement = self.compliance.displacement(everywhere.reshape(1, *self._shape)).ravel()[self.mask]
+        displacement = self.compliance.softness(everywhere.reshape(1, *self._shape)).ravel()[self.mask]
         return displacement if self.correction is None else displacement + self.correction(pressure)

@@ -16,7 +16,7 @@ from rich.text import Text
 
 from ..comparison import Comparison
 from ..contact.verdict import Verdict
-from ..core.answers import PAGE, Answer, Column, Grid, Table, grid
+from ..core.answers import PAGE, Answer, Column, PrintedTable, Table, grid
 from ..core.arrays import Numbers
 from ..core.unit_systems import Units
 from ..press_answer import describe_press
@@ -90,7 +90,7 @@ def _meaning(column: Column) -> str:
     return f"{column.head} {column.title}".strip() if has_symbol else column.head
 
 
-def _fitting_grid(terminal: Terminal, table: Table) -> tuple[Grid, int]:
+def _fitting_grid(terminal: Terminal, table: Table) -> tuple[PrintedTable, int]:
     """Write a table without the columns of the highest ranks, as long as it is too wide, and return its gap.
 
     One space between the columns comes before columns that are left out.

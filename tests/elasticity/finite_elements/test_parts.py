@@ -21,7 +21,7 @@ from ballsocket.elasticity.finite_elements.load_search import ContactBracket
 from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points, socket_shape
 from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact, pressure_at_pole
 from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
-from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
+from ballsocket.elasticity.finite_elements.solver import load_curve_of
 from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
@@ -39,8 +39,7 @@ LINER, SHELL = ((1.3, 1.0, 0.4),), ((1.2, 1.0, 0.3), (1.35, 8.0, 0.25))  # outer
 
 def coarse_curve(joint, arc):
     cup = bs.Cup(arc_of_cover=radians(arc))
-    settings = Settings(cup=cup, spacing=COARSE, ball_spacing=COARSE, order=2, meshes=1, gap=LinearGap)
-    return load_curve_of(settings, joint)
+    return load_curve_of(joint, cup, (COARSE, COARSE), 2, 1, LinearGap)
 
 
 @pytest.fixture(scope="module")

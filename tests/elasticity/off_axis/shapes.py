@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from math import pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis import patch_measures as measures
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField
 
 from ...joints import HIP
@@ -28,6 +30,20 @@ def gap_of(grid, depth=0.0, clearance=0.1, kind=bs.LinearGap):
 
 def bore_of(compliance, **gap):
     return BoreContact(compliance=compliance, gap=gap_of(compliance.grid, **gap))
+
+
+def measures_of(patch):
+    """Measure one contact by the functions that measure many."""
+    cells = measures.make_cell_arrays(patch.grid, patch.inset)
+    patches = measures.Patches(pressure=patch.pressure[None], level=patch.level[None], axis=patch.axis[None])
+    largest, location = measures.largest_pressures(cells, patches.pressure, patches.axis)
+    return SimpleNamespace(
+        half_angle=measures.half_angles(cells, patches, measures.measure_edges(cells, patches)[1])[0],
+        edge_loaded=measures.edge_loaded(patches.pressure)[0],
+        edge_margin=measures.edge_margins(cells, patches)[0],
+        max_pressure=largest[0],
+        max_pressure_at=location[0],
+    )
 
 
 def scanned_points(radius=18.0, depth=lambda n: 0.0 * n[2], reach=85.0, count=60, shift=(0.0, 0.0, 0.0)):

@@ -38,7 +38,7 @@ def overlap_of(displacement, grid=GRID):
 def test_pressures_close_the_gap_or_vanish(tolerance, iterations):
     overlap = overlap_of(DISPLACEMENTS)
     solution = solve_pressure(SHELL, overlap, tolerance=tolerance)
-    gap = SHELL.displacement(solution.pressure) - overlap
+    gap = SHELL.softness(solution.pressure) - overlap
     scale = overlap.max(axis=(1, 2), keepdims=True).clip(1e-3)
     assert solution.converged.all()
     assert (solution.pressure >= 0).all()
@@ -55,7 +55,7 @@ def test_pressures_agree_with_non_negative_least_squares():
     cells = grid.rings * grid.meridians
     unit = np.eye(cells).reshape(cells, grid.rings, grid.meridians)
     weights = np.repeat(grid.areas[:, 0], grid.meridians)
-    symmetric = weights[:, None] * compliance.displacement(unit).reshape(cells, cells).T
+    symmetric = weights[:, None] * compliance.softness(unit).reshape(cells, cells).T
     factor = np.linalg.cholesky((symmetric + symmetric.T) / 2)
     overlap = overlap_of([0.03, 0.0, 0.104], grid)
     expected, _ = nnls(factor.T, np.linalg.solve(factor, weights * overlap.ravel()))
@@ -68,7 +68,7 @@ def test_energy_is_that_of_the_pressures_and_stationary():
     """At a tolerance of 1e-3 the energy is accurate to its square."""
     overlap = overlap_of(DISPLACEMENTS[[0, 1, 3]])
     accurate, rough = (solve_pressure(SHELL, overlap, tolerance=tolerance) for tolerance in (1e-8, 1e-3))
-    stored = GRID.integrate_product(accurate.pressure, SHELL.displacement(accurate.pressure)) / 2
+    stored = GRID.integrate_product(accurate.pressure, SHELL.softness(accurate.pressure)) / 2
     assert accurate.energy == pytest.approx(stored, rel=1e-6)
     assert rough.energy == pytest.approx(stored, rel=2e-5)
     assert rough.iterations < accurate.iterations
@@ -100,7 +100,7 @@ def test_pressure_change_solves_the_touching_cells(scale, tolerance):
     overlap = scale * overlap_of([0.02, 0.1, 0.15])
     change = solve_pressure_change(SHELL, touching, overlap, tolerance=tolerance)
     assert not change[~touching].any()
-    residual = np.where(touching, overlap - SHELL.displacement(change), 0.0)
+    residual = np.where(touching, overlap - SHELL.softness(change), 0.0)
     assert abs(residual).max() <= 3 * tolerance * abs(overlap[touching]).max()
     again = solve_pressure_change(SHELL, touching, overlap, change, tolerance)
     assert again == pytest.approx(change, abs=1e-12 * scale) or tolerance == 1e-2
@@ -242,7 +242,7 @@ def test_each_lane_balances_its_load_with_closed_gaps(depth):
     bore = bore_of(ELASTIC, depth=depth * WORN)
     solution = solve(bore, np.arange(4))
     overlap = bore.gap.overlap(solution.displacement)
-    gap = ELASTIC.displacement(solution.pressure) - overlap
+    gap = ELASTIC.softness(solution.pressure) - overlap
     scale = overlap.max(axis=(1, 2), keepdims=True)
     assert solution.converged.all()
     assert (solution.pressure >= 0).all()

@@ -15,7 +15,7 @@ from ballsocket.elasticity.off_axis.ring_matrices import vary_liner
 from ballsocket.problem.cup import cup_axes
 
 from ...joints import HIP
-from .shapes import COARSE
+from .shapes import COARSE, measures_of
 
 jax = pytest.importorskip("jax")
 
@@ -93,8 +93,9 @@ class FixedContact:
         level = self.edges.levels(field, open_gap)
         patch = ContactPatch(grid=self.grid, pressure=field, level=level, axis=axis, inset=self.edges.inset)
         outputs = {"displacement": displacement, "force_vector": self.weights @ pressure, "pressure": field}
-        measures = {"half_angle": patch.half_angle, "edge_margin": patch.edge_margin}
-        return outputs | measures | {"max_pressure": patch.largest[0]}
+        return outputs | {
+            name: getattr(measures_of(patch), name) for name in ("half_angle", "edge_margin", "max_pressure")
+        }
 
 
 class FixedCells:

@@ -26,7 +26,7 @@ from ...contact.roots import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
 from .grid import QuadratureGrid
-from .kernel import CachedIntervals, Intervals, Kernel
+from .kernel import Intervals, Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,7 +38,7 @@ class AbelState(PeakPressure):
 
     kernel: Kernel
     gap: Gap
-    intervals: Intervals | CachedIntervals
+    intervals: Intervals
     _cached_modes: list[Numbers] = field(default_factory=list, init=False, repr=False)  # for stresses in the socket
 
     @cached_property

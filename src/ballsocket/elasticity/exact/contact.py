@@ -127,7 +127,7 @@ class ElasticContact(SolvedContact):
         """
 
         def changes_of(contacts: JointContacts) -> numpy.ndarray:
-            changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
+            changes = hemisphere_of(kernel=contacts.state.kernel).changes(contacts.state.half_angle)
             return numpy.stack([changes[name] for name in CHANGES])
 
         changes = self.laws.combine(changes_of, rows=(len(CHANGES),))

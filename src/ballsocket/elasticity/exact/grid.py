@@ -85,10 +85,8 @@ class QuadratureGrid:
         return _product_weights(_distance_moments, self) * self._distance_ratio
 
 
-@cache
-def cached_grid(points: int) -> QuadratureGrid:
-    """Return the quadrature grid with this number of points, from a cache."""
-    return QuadratureGrid(points=points)
+cached_grid = cache(QuadratureGrid)
+"""Function that returns the quadrature grid with this number of `points`, from a cache."""
 
 
 def _product_weights(moments, grid: QuadratureGrid) -> Numbers:  # type: ignore[no-untyped-def]

@@ -291,7 +291,5 @@ def _estimate_max_pressure(state: AbelState) -> Numbers:
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
 
 
-@lru_cache(maxsize=256)
-def hemisphere_of(kernel: Kernel) -> Hemisphere:
-    """Return the hemisphere with the kernel of a joint, from a cache."""
-    return Hemisphere(kernel=kernel)
+hemisphere_of = lru_cache(maxsize=256)(Hemisphere)
+"""Function that returns the hemisphere with the `kernel` of a joint, from a cache."""

@@ -68,19 +68,12 @@ class Intervals:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CachedIntervals:
+class CachedIntervals(Intervals):
     """Integration intervals shared by many joints: what does not depend on the joint is computed once."""
-
-    half_angle: Numbers
-    grid: QuadratureGrid
-
-    @cached_property
-    def _intervals(self) -> Intervals:
-        return Intervals(half_angle=self.half_angle, grid=self.grid)
 
     @cached_property
     def _unit_operators(self) -> Operators:
-        operators = zip(*(self._intervals.closed_form_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
+        operators = zip(*(Intervals.closed_form_operators(self, unit) for unit in numpy.eye(ORDER)), strict=True)
         even, odd = (numpy.stack(stack, axis=-1) for stack in operators)
         return even, odd
 
@@ -96,7 +89,7 @@ class CachedIntervals:
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
         """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
         if len(remainder) > _CACHED_COUNTS[-1]:
-            self._intervals.add_remainder(remainder, operators)
+            super().add_remainder(remainder, operators)
             return
         count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
         if count not in self._cached_waves:
@@ -240,7 +233,7 @@ class Kernel:
         q = numpy.arange(max(ceil(tail), self.socket.backing_degree(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
-    def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
+    def operators(self, intervals: Intervals) -> Operators:
         """Compute the integral operators ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even and for odd functions f."""
         operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)

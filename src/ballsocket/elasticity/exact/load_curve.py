@@ -25,10 +25,10 @@ _SAFETY = 3.0  # factor on the difference of the two solutions of the equation
 _MAX_ANGLE = 1.03 * LIMIT  # of the contacts that are computed, to detect those that are too wide
 _DEGREES = (0.5, 0.8, 1.3, 2, 3, 4.5, 6.5, 9, 12, 16, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 82, 85)
 _ANGLES = numpy.append(numpy.radians(_DEGREES), _MAX_ANGLE)
-_KNOT_INTERVALS = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(_COARSE_POINTS))
+_KNOT_INTERVALS = CachedIntervals(half_angle=_ANGLES, grid=cached_grid(points=_COARSE_POINTS))
 _WINDOW, _WINDOW_STEP = 8, 4  # number of knots in a window of half angles, and the step between windows
 
-_LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.indentation}
+_LOADS = ("force", "indentation")  # kinds of loads for which the half angle is searched
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,7 +58,7 @@ class LoadCurve:
 
     def state(self, angle: Numbers, points: int) -> AbelState:
         """Make the contacts with these half angles (rad), on a grid with this number of points."""
-        intervals = Intervals(half_angle=angle, grid=cached_grid(points))
+        intervals = Intervals(half_angle=angle, grid=cached_grid(points=points))
         return AbelState(kernel=self.kernel, gap=self.gap, intervals=intervals)
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
@@ -66,7 +66,7 @@ class LoadCurve:
         if kind == "half_angle":
             return state, numpy.zeros_like(load)
         for _ in range(_NEWTON_STEPS):
-            residual = numpy.log(_LAWS[kind](state) / load)
+            residual = numpy.log(getattr(state, kind) / load)
             if not numpy.any(abs(residual) > _LOAD_TOLERANCE):
                 break
             step = numpy.clip(residual / log_slope(kind, state), -0.5, 0.5)
@@ -125,7 +125,7 @@ class LoadCurve:
     def _estimate_angle(self, kind: str, load: Numbers) -> Numbers:
         """Estimate the half angle in rad by cubics between the knots, or by a power law below the first."""
         knots = self.knots
-        x, y, slope = numpy.log(_LAWS[kind](knots)), numpy.log(knots.half_angle), 1 / log_slope(kind, knots)
+        x, y, slope = numpy.log(getattr(knots, kind)), numpy.log(knots.half_angle), 1 / log_slope(kind, knots)
         goal = numpy.log(load)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
         width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
@@ -145,7 +145,7 @@ def knot_window(angle: Numbers) -> slice | None:
 
 @cache
 def _window_intervals(start: int, stop: int) -> CachedIntervals:
-    return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(_COARSE_POINTS))
+    return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(points=_COARSE_POINTS))
 
 
 def _is_contact(state: AbelState) -> Numbers:
@@ -164,8 +164,8 @@ def log_slope(kind: str, state: Any) -> Numbers:
 def estimate_errors(kind: str, state: Any) -> dict[str, Numbers]:
     """Estimate the relative error of each quantity at the applied load."""
     state_error = _SAFETY * state.error
-    slopes = {name: log_slope(name, state) for name in _LAWS}
-    shift = state_error / slopes[kind] if kind in _LAWS else 0.0 * state_error
+    slopes = {name: log_slope(name, state) for name in _LOADS}
+    shift = state_error / slopes[kind] if kind in _LOADS else 0.0 * state_error
     errors = {name: state_error + shift * slope for name, slope in slopes.items()}
     errors["half_angle"] = shift
     for name in ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"):

@@ -48,18 +48,17 @@ class CondensedBody:
     @cached_property
     def _elimination_order(self) -> Numbers:
         """Indices of the free unknowns in the order of elimination, those of the contact last."""
-        ranks = elimination_ranks(self.elastic.block)
-        free = numpy.unique(self.elastic.element_unknowns)
-        free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normal_unknowns)]
-        return numpy.concatenate([free[numpy.argsort(ranks[free // 2], kind="stable")], self.normal_unknowns])
+        block, unknowns = self.elastic.block, self.elastic.element_unknowns
+        return elimination_order(block, unknowns, self.fixed_unknowns, self.normal_unknowns)
 
     def _factorize_stiffness(self) -> Any:
         return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
 
     def surface_compliance(self) -> tuple[Numbers, Numbers]:
         """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
-        factors, count = self._factorize_stiffness(), len(self.contact)
-        stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
+        count = len(self.contact)
+        lower, upper = last_factors(self._factorize_stiffness(), count)
+        stiffness = lower @ upper
         return self.elastic.block.angle[:count], numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
     def displacements(self, forces: Numbers) -> Numbers:
@@ -80,12 +79,24 @@ def factorize(matrix: csc_matrix, order: Numbers) -> Any:
     return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
-def elimination_ranks(block: Block) -> Numbers:
-    """Compute the rank of each node in the order of elimination; both nodes of a sliding interface share a rank."""
+def last_factors(factors: Any, count: int) -> tuple[Numbers, Numbers]:
+    """Return the blocks of both LU factors for the last `count` unknowns, those of the contact."""
+    return factors.L[-count:, -count:].toarray(), factors.U[-count:, -count:].toarray()
+
+
+def elimination_order(block: Block, element_unknowns: Numbers, fixed: Numbers, last: Numbers) -> Numbers:
+    """Order the free unknowns by nested dissection of their nodes, with the unknowns `last` at the end.
+
+    `fixed` is the mask of the unknowns that are zero. Both nodes of a sliding interface have one rank.
+    """
+    free = numpy.unique(element_unknowns)
+    free = free[~fixed[free] & ~numpy.isin(free, last)]
+    per_node = len(fixed) // block.number.size
     grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
     rank = numpy.empty(grid.size, dtype=int)
     rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
-    return rank[grid[:, block.level]].ravel()
+    ranks = rank[grid[:, block.level]].ravel()
+    return numpy.concatenate([free[numpy.argsort(ranks[free // per_node], kind="stable")], last])
 
 
 def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:

@@ -28,11 +28,11 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
-from ...core.display import ascii_text
+from ...core.display import ascii_text, finite_or_none
 from ...problem.gaps import LinearGap, select_gap
 from ...version import __version__
+from .calculix import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
-from .deck_lines import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .model import MeshedContact
 
 MAX_STEPS = 1000  # largest number of steps of a deck; the expected result of each is computed
@@ -103,7 +103,10 @@ class Deck(InputDeck):
     def lines(self) -> Iterator[str]:
         """Yield the lines of the deck in ASCII."""
         bodies = self._bodies
-        yield from self._title_lines()
+        for sentence in self._description_sentences():
+            yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
+        for number, row in enumerate(zip(*self.expected.values(), strict=True), 1):
+            yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
         yield from mesh_lines(bodies)
         yield from material_lines(bodies.materials)
         yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
@@ -138,13 +141,10 @@ class Deck(InputDeck):
     def _indentations(self) -> Numbers:
         return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
-    def _expected_rows(self) -> list[list[float]]:
-        return numpy.stack(list(self.expected.values()), axis=-1).tolist()
-
     def expected_record(self) -> dict[str, Any]:
         """Return the expected results for JSON; see the class."""
-        rows = (zip(self.expected, row, strict=True) for row in self._expected_rows())
-        steps = [{name: None if numpy.isnan(value) else value for name, value in row} for row in rows]
+        rows = zip(*self.expected.values(), strict=True)
+        steps = [{name: finite_or_none(value) for name, value in zip(self.expected, row, strict=True)} for row in rows]
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
@@ -156,12 +156,6 @@ class Deck(InputDeck):
         }
 
     # --- comments at the top ---
-
-    def _title_lines(self) -> Iterator[str]:
-        for sentence in self._description_sentences():
-            yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
-        for number, row in enumerate(self._expected_rows(), 1):
-            yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
 
     def _description_sentences(self) -> Iterator[str]:
         cup = self.contact.model.cup

@@ -17,11 +17,11 @@ from scipy.sparse import csc_matrix
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
-from .bodies import elimination_ranks, factorize, lagrange, socket_block, socket_elastic
+from .bodies import elimination_order, factorize, lagrange, last_factors, socket_block, socket_elastic
 from .elasticity import ElasticBlock, assemble, element_quadrature
 from .mesh import Block, Resolution, SocketShape
 
-_DIRECT, _HOOP, _SHEARS = 4, 3, (4, 5)
+_DIRECT, _HOOP = 4, 3  # number of the axisymmetric strains, and index of the hoop strain
 _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0, 1.0, 1.0]))[:, None]
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
 
@@ -87,19 +87,16 @@ class Harmonics:
     def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
         """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
         order, count = self._elimination_order(m)
-        factors = factorize(_sum_powers(self.stiffness_powers, m), order)
-        lower, upper = factors.L[-count:, -count:].toarray(), factors.U[-count:, -count:].toarray()
+        lower, upper = last_factors(factorize(_sum_powers(self.stiffness_powers, m), order), count)
         normal_loads = loads[-count:]
         compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
         return (compliance + compliance.T) / 2
 
     def _elimination_order(self, m: int) -> tuple[Numbers, int]:
         """Return the free unknowns in the order of elimination, and the number of contact unknowns at the end."""
-        ranks, normals = elimination_ranks(self._block), 3 * self.bore + 1
-        normals = normals[~self._fixed_unknowns(m)[normals]]
-        free = numpy.unique(self._element_unknowns)
-        free = free[~self._fixed_unknowns(m)[free] & ~numpy.isin(free, normals)]
-        return numpy.concatenate([free[numpy.argsort(ranks[free // 3], kind="stable")], normals]), len(normals)
+        fixed, normals = self._fixed_unknowns(m), 3 * self.bore + 1
+        normals = normals[~fixed[normals]]
+        return elimination_order(self._block, self._element_unknowns, fixed, normals), len(normals)
 
     def _fixed_unknowns(self, m: int) -> Numbers:
         """Return the mask of unknowns that are zero: on the axis by symmetry, and at the supports.

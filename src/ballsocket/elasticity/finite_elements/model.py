@@ -22,7 +22,7 @@ from ...core.stress import Peak
 from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Status, body_remarks, largest_poisson
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
-from ...problem.gaps import GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
+from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
 if TYPE_CHECKING:
@@ -219,19 +219,13 @@ class FiniteElement(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
-        from .solver import Settings, load_curve_of  # slow to import
+        from .solver import load_curve_of  # slow to import
 
-        settings = Settings(
-            cup=self.cup,
-            spacing=self.spacing,
-            ball_spacing=self.ball_spacing or self.spacing,
-            order=self.element.value,
-            meshes=self.meshes,
-            gap=LinearGap,
-        )
+        spacings = self.spacing, self.ball_spacing or self.spacing
 
         def solve(plain_joint: Joint, loads: Numbers) -> JointContacts:
-            curve = load_curve_of(replace(settings, gap=select_gap(self.gap, plain_joint)), plain_joint)
+            gap: Any = select_gap(self.gap, plain_joint)
+            curve = load_curve_of(plain_joint, self.cup, spacings, self.element.value, self.meshes, gap)
             return curve.press(kind, loads)
 
         solution = solve_per_joint(self, joint, load, solve)

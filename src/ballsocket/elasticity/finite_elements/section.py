@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -13,10 +13,10 @@ from ...core.arrays import Numbers
 from ...core.checks import needs
 from ...core.storage.atomic_files import check_parent_folder, write_atomically
 from ...core.stress import Peak, Stress
-from ...problem import Joint
+from ...problem import Joint, Material
 from ...problem.cup import Cup
 from .bodies import CondensedBody, ball_body, socket_body
-from .elasticity import shape_functions
+from .elasticity import ElasticBlock, shape_functions
 from .load_search import Solved
 from .mesh import socket_shape
 
@@ -104,109 +104,85 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
     """Compute displacements and stresses of one solved contact of a joint of plain numbers."""
     pair, R2 = solved.pair, float(joint.socket_radius)
     names = ("liner", *(f"backing {number}" for number in range(1, len(joint.backing) + 1)))
-    socket = _LoadedBody(
-        body=socket_body(socket_shape(joint, cup), pair.resolution),
-        radius=R2,
-        loaded_radius=R2,
-        young=float(joint.liner.young),
-        forces=solved.forces(0),
-        height_shift=0.0,
-        descent=0.0,
-    )
-    parts = list(socket.make_parts(names))
+    socket = socket_body(socket_shape(joint, cup), pair.resolution)
+    parts = list(_make_parts(socket, names, joint.liner, solved.forces(0), R2, R2))
     if joint.ball is not None:
-        ball = _LoadedBody(
-            body=ball_body(float(joint.ball.poisson), pair.ball_resolution),
-            radius=float(joint.ball_radius),
-            loaded_radius=R2,
-            young=float(joint.ball.young),
-            forces=-solved.forces(1),
-            height_shift=-float(joint.clearance),
-            descent=solved.indentation,
-        )
-        parts += ball.make_parts(("ball",))
+        ball = ball_body(float(joint.ball.poisson), pair.ball_resolution)
+        # placed at first touch, and pushed down
+        lowered, descent = (numpy.array([[0.0], [float(drop)]]) for drop in (joint.clearance, solved.indentation))
+        for part in _make_parts(ball, ("ball",), joint.ball, -solved.forces(1), R2, float(joint.ball_radius)):
+            parts.append(replace(part, position=part.position - lowered, displacement=part.displacement - descent))
     return Section(parts=tuple(parts), socket_radius=R2)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _LoadedBody:
-    """Meshed body of unit size with the Young's modulus and the nodal forces of one contact.
+def _make_parts(
+    body: CondensedBody,
+    names: tuple[str, ...],
+    material: Material,
+    forces: Numbers,
+    loaded_radius: float,
+    radius: float,
+) -> Iterator[Part]:
+    """Yield the parts of a body of unit size, one for each layer from the inside out.
 
-    Its surface is loaded on a sphere of the radius `loaded_radius` in mm. `radius` scales the positions, and
-    `height_shift` shifts them upwards. `descent` is a displacement of the full body downwards.
+    Its surface is loaded by forces in N on its nodes, on a sphere of the radius `loaded_radius` in mm. Young's modulus
+    is that of the material, and `radius` in mm scales the positions.
     """
+    young, block = float(material.young), body.elastic.block
+    unit_displacements = body.displacements(forces / (young * loaded_radius**2))
+    phi = numpy.repeat(block.angle, block.radius.shape[1])
+    u_phi, u_r = loaded_radius * unit_displacements.T
+    sine, cosine = numpy.sin(phi), numpy.cos(phi)
+    displacement = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine])
+    across, below = radius * block.nodes
+    for layer, name in enumerate(names):
+        elements = block.elements[:, block.layers == layer]
+        nodes, local_nodes = numpy.unique(elements, return_inverse=True)
+        local_nodes = local_nodes.reshape(elements.shape)
+        # mean over the elements around each node
+        total, count = numpy.zeros((4, len(nodes))), numpy.zeros(len(nodes))
+        numpy.add.at(count, local_nodes.T, 1.0)
+        for sums, values in zip(total, _element_stresses(body.elastic, layer, unit_displacements.ravel()), strict=True):
+            numpy.add.at(sums, local_nodes.T, values)
+        radial, meridional, hoop, shear = young * total / count
+        yield Part(
+            name=name,
+            angle=phi[nodes],
+            radius=radius * block.radius.ravel()[nodes],
+            position=numpy.stack([across, 0.0 - below])[:, nodes],
+            elements=local_nodes,
+            displacement=displacement[:, nodes],
+            stress=Stress(radial=radial, meridional=meridional, hoop=hoop, shear=shear),
+        )
 
-    body: CondensedBody
-    radius: float
-    loaded_radius: float
-    young: float
-    forces: Numbers
-    height_shift: float
-    descent: float
 
-    @cached_property
-    def _node_displacements(self) -> Numbers:
-        return self.body.displacements(self.forces / (self.young * self.loaded_radius**2))
+def _element_stresses(elastic: ElasticBlock, layer: int, displacements: Numbers) -> Numbers:
+    """Compute stress components (4, elements, nodes) of a layer as fractions of Young's modulus.
 
-    def make_parts(self, names: tuple[str, ...]) -> Iterator[Part]:
-        """Yield the parts of the body, one for each layer from the inside out."""
-        block = self.body.elastic.block
-        phi = numpy.repeat(block.angle, block.radius.shape[1])
-        u_phi, u_r = self.loaded_radius * self._node_displacements.T
-        sine, cosine = numpy.sin(phi), numpy.cos(phi)
-        displacement = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine - self.descent])
-        across, below = self.radius * block.nodes
-        for index, name in enumerate(names):
-            elements = block.elements[:, block.layers == index]
-            nodes, local_nodes = numpy.unique(elements, return_inverse=True)
-            yield Part(
-                name=name,
-                angle=phi[nodes],
-                radius=self.radius * block.radius.ravel()[nodes],
-                position=numpy.stack([across, self.height_shift - below])[:, nodes],
-                elements=local_nodes.reshape(elements.shape),
-                displacement=displacement[:, nodes],
-                stress=self._nodal_stress(index, local_nodes.reshape(elements.shape), len(nodes)),
-            )
-
-    def _nodal_stress(self, layer: int, elements: Numbers, node_count: int) -> Stress:
-        """Compute the nodal stresses of a layer in MPa, as averages over the elements around each node."""
-        components = self._element_stresses(layer)
-        total, count = numpy.zeros((4, node_count)), numpy.zeros(node_count)
-        numpy.add.at(count, elements.T, 1.0)
-        for sums, values in zip(total, components, strict=True):
-            numpy.add.at(sums, elements.T, values)
-        radial, meridional, hoop, shear = self.young * total / count
-        return Stress(radial=radial, meridional=meridional, hoop=hoop, shear=shear)
-
-    def _element_stresses(self, layer: int) -> Numbers:
-        """Compute stress components (4, elements, nodes) of a layer as fractions of Young's modulus.
-
-        They are evaluated at the superconvergent points: the 1 or 2 by 2 Gauss points of the next lower degree.
-        """
-        elastic = self.body.elastic
-        block = elastic.block
-        shear, bulk = (float(modulus[layer]) for modulus in elastic.moduli)
-        element_indices = numpy.flatnonzero(block.layers == layer)
-        stresses = numpy.empty((4, len(element_indices), len(block.elements)))
-        points, extrapolation = _superconvergent_points(block.order)
-        flat = self._node_displacements.ravel()
-        for chunk in elastic.chunks(element_indices):
-            strains = elastic.strains(element_indices[chunk], points)
-            u = flat[elastic.element_unknowns[element_indices[chunk]]]
-            strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
-            swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
-            mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
-            rho, z, hoop = (2 * shear * strain[i] + mean for i in (0, 1, 3))
-            rho_z = shear * strain[2]
-            # spherical directions at the polar angle of each point
-            sine, cosine = strains.coordinates / numpy.hypot(*strains.coordinates)
-            along = 2 * sine * cosine * rho_z
-            radial = sine**2 * rho + cosine**2 * z + along
-            meridional = cosine**2 * rho + sine**2 * z - along
-            tilted = sine * cosine * (rho - z) + (cosine**2 - sine**2) * rho_z
-            stresses[:, chunk] = numpy.stack([radial, meridional, hoop, tilted]) @ extrapolation
-        return stresses
+    The unknowns of the body are `displacements`. The stresses are evaluated at the superconvergent points: the 1 or 2
+    by 2 Gauss points of the next lower degree.
+    """
+    block = elastic.block
+    shear, bulk = (float(modulus[layer]) for modulus in elastic.moduli)
+    element_indices = numpy.flatnonzero(block.layers == layer)
+    stresses = numpy.empty((4, len(element_indices), len(block.elements)))
+    points, extrapolation = _superconvergent_points(block.order)
+    for chunk in elastic.chunks(element_indices):
+        strains = elastic.strains(element_indices[chunk], points)
+        u = displacements[elastic.element_unknowns[element_indices[chunk]]]
+        strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
+        swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
+        mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
+        rho, z, hoop = (2 * shear * strain[i] + mean for i in (0, 1, 3))
+        rho_z = shear * strain[2]
+        # spherical directions at the polar angle of each point
+        sine, cosine = strains.coordinates / numpy.hypot(*strains.coordinates)
+        along = 2 * sine * cosine * rho_z
+        radial = sine**2 * rho + cosine**2 * z + along
+        meridional = cosine**2 * rho + sine**2 * z - along
+        tilted = sine * cosine * (rho - z) + (cosine**2 - sine**2) * rho_z
+        stresses[:, chunk] = numpy.stack([radial, meridional, hoop, tilted]) @ extrapolation
+    return stresses
 
 
 def _superconvergent_points(order: int) -> tuple[Numbers, Numbers]:

@@ -16,7 +16,7 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
-from ...problem.gaps import CircularGap, Gap, LinearGap
+from ...problem.gaps import Gap, GapKind
 from .bodies import ContactSurface, SurfacePair, ball_compliance, socket_compliance
 from .load_search import ContactBracket, Solved, is_pressed, stiffness, work
 from .mesh import Resolution, socket_shape
@@ -194,41 +194,31 @@ _REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
 MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000  # limits on the number of elements of one size along the bore
 
 
-@dataclass(frozen=True, kw_only=True)
-class Settings:
-    """Settings of a `FiniteElement` model by their names; `order` is that of the elements."""
-
-    cup: Cup
-    spacing: Spacing
-    ball_spacing: Spacing
-    order: int
-    meshes: int
-    gap: type[LinearGap] | type[CircularGap]
-
-
 @lru_cache(maxsize=32)
-def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
-    """Return the load curve of a joint with scalar parameters; it is cached for further loads."""
-    radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
-    if isinstance(settings.spacing, Uniform):
-        _check_element_size(settings.spacing.size, joint, radius * bore)
-    check_cup(settings.cup, joint)
+def load_curve_of(
+    joint: Joint, cup: Cup, spacings: tuple[Spacing, Spacing], order: int, meshes: int, kind: GapKind
+) -> MeshedLoadCurve:
+    """Return the load curve of a joint of plain numbers; it is cached for further loads.
+
+    `spacings` are those of socket and ball, `order` is that of the elements, and `kind` the class of the gap.
+    """
+    radius, bore = float(joint.socket_radius), socket_shape(joint, cup).reach
+    if isinstance(spacings[0], Uniform):
+        _check_element_size(spacings[0].size, joint, radius * bore)
+    check_cup(cup, joint)
     ends_at_rim = bore <= pi / 2 + 1e-12
     widest = bore if ends_at_rim else LIMIT
-    class_limits = settings.spacing.classes(widest, radius)
-
-    thickness, order = float(joint.liner_thickness), settings.order
+    class_limits = spacings[0].classes(widest, radius)
 
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
-        limit = class_limits[class_index]
-        spacings = settings.spacing, settings.ball_spacing
+        limit, thickness = class_limits[class_index], float(joint.liner_thickness)
         coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
         socket, ball = (part if mesh == COARSE else replace(part, halvings=1) for part in coarse)
-        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
+        return _make_surface_pair(cup, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
-    gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
+    gap = kind(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
-        pairs=make_pair, classes=class_limits, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
+        pairs=make_pair, classes=class_limits, gap=gap, ends_at_rim=ends_at_rim, meshes=meshes, order=order
     )
 
 
@@ -256,14 +246,14 @@ def _check_element_size(size: float, joint: Joint, bore: float) -> None:
 
 
 def _make_surface_pair(
-    settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
+    cup: Cup, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
 ) -> SurfacePair:
     """Mesh both bodies up to the angle `reach` (rad) and condense them onto their contact surfaces."""
-    size = mesh_size(joint, settings.cup, resolution, ball_resolution)
+    size = mesh_size(joint, cup, resolution, ball_resolution)
     check_memory(size, resolution.order)
     report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")
     R2, order = float(joint.socket_radius), resolution.order  # the ball, too, is pressed on a patch of the radius R2
-    unit_bodies = [(*socket_compliance(socket_shape(joint, settings.cup), resolution), joint.liner)]
+    unit_bodies = [(*socket_compliance(socket_shape(joint, cup), resolution), joint.liner)]
     if joint.ball is not None:
         unit_bodies.append((*ball_compliance(float(joint.ball.poisson), ball_resolution), joint.ball))
     surfaces = [

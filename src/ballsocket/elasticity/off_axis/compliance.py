@@ -52,13 +52,10 @@ class Compliance:
     """Compliance of bore and ball together, between the cells of a grid."""
 
     grid: Grid
-    # from pressures in MPa to the sum of both displacements in mm, and the inverse
+    # operator from pressures in MPa to the sum of both surface displacements in mm; and its inverse, from displacements
+    # to pressures of either sign
     softness: AxisymmetricOperator | UniformOperator
     stiffness: AxisymmetricOperator | UniformOperator
-
-    def displacement(self, pressure: Numbers) -> Numbers:
-        """Compute the sum of both surface displacements in mm from pressures in MPa, (batch, rings, meridians)."""
-        return self.softness(pressure)
 
     @cached_property
     def single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
@@ -66,10 +63,6 @@ class Compliance:
         if isinstance(self.softness, UniformOperator):
             return self.softness
         return AxisymmetricOperator(matrices=self.softness.matrices.astype(numpy.float32))
-
-    def pressure(self, displacement: Numbers) -> Numbers:
-        """Compute the pressures in MPa, of either sign, that displace all cells by given amounts in mm."""
-        return self.stiffness(displacement)
 
     @cached_property
     def coarser_compliance(self) -> Compliance | None:
@@ -85,7 +78,7 @@ class Compliance:
     def uniform_stiffness(self) -> float:
         """Mean pressure per uniform radial displacement of the bore, in MPa/mm."""
         unit = numpy.ones((1, self.grid.rings, self.grid.meridians))
-        return float(self.grid.integrate_product(self.pressure(unit), unit)[0] / self.grid.ring_areas.sum())
+        return float(self.grid.integrate_product(self.stiffness(unit), unit)[0] / self.grid.ring_areas.sum())
 
 
 def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:

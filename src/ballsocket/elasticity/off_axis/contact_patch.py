@@ -1,4 +1,4 @@
-"""Patch of one contact on the grid: pressure between the cells, largest pressure, outline, and margin to the rim."""
+"""Patch of one contact on the grid: pressure between the cells, outline, and rise of the pressure at the edge."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MIN_EDGE_RINGS = 5.0  # smallest distance from the centre to the edge in ring w
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactPatch:
-    """Pressure of one contact on the grid, with its outline and its largest value."""
+    """Pressure of one contact on the grid, with its outline."""
 
     grid: Grid
     pressure: Numbers  # (rings, meridians), pressure in MPa
@@ -33,10 +33,6 @@ class ContactPatch:
     @cached_property
     def _cells(self) -> CellArrays:
         return measures.make_cell_arrays(self.grid, self.inset)
-
-    @cached_property
-    def _patches(self) -> Patches:
-        return Patches(pressure=self.pressure[None], level=self.level[None], axis=self.axis[None])
 
     @cached_property
     def _table(self) -> Numbers:
@@ -51,12 +47,6 @@ class ContactPatch:
         return self.pressure_at(measures.ray_directions(self.axis, angle, 0.0 * angle))
 
     @cached_property
-    def largest(self) -> tuple[float, Numbers]:
-        """Largest pressure in MPa and the unit vector to it, from a quadratic fit around the cell with the maximum."""
-        pressure, direction = measures.largest_pressures(self._cells, self.pressure[None], self.axis[None])
-        return float(pressure[0]), direction[0]
-
-    @cached_property
     def outline(self) -> Numbers:
         """Edge of the contact, as unit vectors (rays, 3) at the ends of rays from its centre."""
         centre, angles = self._edges
@@ -65,13 +55,9 @@ class ContactPatch:
     @cached_property
     def _edges(self) -> tuple[Numbers, Numbers]:
         """Centre (3,) of the contact, and the angles (rays,) in rad from it to the edge along rays."""
-        centres, angles = measures.measure_edges(self._cells, self._patches)
+        patches = Patches(pressure=self.pressure[None], level=self.level[None], axis=self.axis[None])
+        centres, angles = measures.measure_edges(self._cells, patches)
         return centres[0], angles[0]
-
-    @cached_property
-    def half_angle(self) -> float:
-        """Half angle in rad of a round contact of the same area."""
-        return float(measures.half_angles(self._cells, self._patches, self._edges[1][None])[0])
 
     def edge_constant(self, exponent: float) -> float:
         """Compute the mean over the edge of p/s^n for a distance s (rad) to it; NaN in a contact of few rings.
@@ -88,13 +74,3 @@ class ContactPatch:
         power = self.pressure_at(measures.ray_directions(centre, edge - distance, azimuths)) ** (1 / exponent)
         slope = numpy.polynomial.polynomial.polyfit(distance[:, 0], power, 2)[1]
         return float((numpy.maximum(slope, 0.0) ** exponent).mean())
-
-    @property
-    def edge_loaded(self) -> bool:
-        """True if there is pressure at the end of the bore."""
-        return bool(measures.edge_loaded(self.pressure[None])[0])
-
-    @property
-    def edge_margin(self) -> float:
-        """Smallest angle in rad from the contact's edge to the end of the bore; 0 if the contact reaches it."""
-        return float(measures.edge_margins(self._cells, self._patches)[0])

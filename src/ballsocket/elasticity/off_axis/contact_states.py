@@ -197,7 +197,7 @@ class ContactStates:
         With a linear gap it is the stored energy of both bodies.
         """
         p = self.equilibrium.pressure
-        displacement = self.bore.compliance.displacement(p)
+        displacement = self.bore.compliance.softness(p)
         stored = self.bore.area * self.bore.compliance.grid.integrate_product(p, displacement) / 2
         return stored + self.bore.work_beyond_stored_energy(self.equilibrium.displacement)
 

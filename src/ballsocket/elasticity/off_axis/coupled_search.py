@@ -3,13 +3,18 @@
 Unknown are the displacement e of the ball's centre and the pressures p >= 0 of the cells. With the clearance and the
 worn depth g, the normals n, the compliance S of the bore, a tether T and the load F, they satisfy
 
-    r = n·e - g - S p = 0 where p > 0,   r <= 0 where p = 0,   R2² ∫ p n dA + T e = F.
+    r = n·e - g - S p = 0 where p > 0,   r <= 0 where p = 0,   (1)
+    R2² ∫ p n dA + T e = F.                                    (2)
 
-One iteration moves every ball by a Newton step, and its pressures by a step of conjugate gradients under p >= 0
+One iteration moves every ball by a Newton step Δe, and its pressures by a step of conjugate gradients under p >= 0
 (Polonsky & Keer 1999, doi 10.1016/S0043-1648(99)00113-1). The Newton step needs the force that the pressures will have
-once they have converged. To first order it is F(p) + R2² ∫ q r, with the remaining overlap r and the derivative q of
-the pressures by the displacement: the compliance is symmetric, so q also maps an overlap to its force. The step thus
-does not wait for the pressures, and the pressures do not start again after each step.
+once they have converged. To first order it is F(p) + R2² ∫ q r dA, with the present force F(p), the left side of (2),
+the remaining overlap r and the derivative q of the pressures by the displacement: the compliance is symmetric, so q
+also maps an overlap to its force. The step solves
+
+    (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA.                      (3)
+
+It does not wait for the pressures, and the pressures do not start again after each step.
 
 The functions here are written for NumPy and JAX. Balls are lanes: fields are arrays (meridians, rings, lanes), vectors
 (3, lanes). A lane does not depend on the others. Fields are divided into parts even and odd about φ = 0. Two small
@@ -181,33 +186,39 @@ def estimate_pressure(bore: BoreArrays, displacement: Array) -> Array:
     return pressure * ((overlap > 0) & (pressure > 0))
 
 
-class Measured(NamedTuple):
-    """Overlaps and forces of balls at given displacements and pressures."""
+class ContactBalance(NamedTuple):
+    """Residuals of Eqs. (1) and (2) at displacements and pressures of balls."""
 
     overlap_scale: Array  # (lanes,), largest undeformed overlap in mm
     remaining: Array  # (meridians, rings, lanes), overlap in mm under the pressures
     imbalance: Array  # (3, lanes), load minus force in N
 
 
-def measure(bore: BoreArrays, load: Array, displacement: Array, pressure: Array) -> Measured:
-    """Compute overlaps and forces at displacements (3, lanes) and pressures (meridians, rings, lanes)."""
+def balance_contacts(bore: BoreArrays, load: Array, displacement: Array, pressure: Array) -> ContactBalance:
+    """Compute the residuals at displacements (3, lanes) and pressures (meridians, rings, lanes)."""
     overlap = project_on_normals(bore, displacement) - bore.gap
-    return Measured(
+    return ContactBalance(
         overlap_scale=largest(overlap),
         remaining=overlap - apply_operator(bore, bore.softness, pressure),
         imbalance=load - compute_force(bore, pressure) - bore.tether @ displacement,
     )
 
 
-def start_lanes(load: Array, force_scale: Array, displacement: Array, pressure: Array, measured: Measured) -> Lanes:
-    """Start a search at displacements (3, lanes) and pressures (meridians, rings, lanes), which were measured."""
+def start_lanes(bore: BoreArrays, load: Array, force_scale: Array, displacement: Array, pressure: Array) -> Lanes:
+    """Start a search at displacements (3, lanes) and pressures (meridians, rings, lanes)."""
+    balance = balance_contacts(bore, load, displacement, pressure)
+    return make_lanes(load, force_scale, displacement, pressure, balance)
+
+
+def make_lanes(load: Array, force_scale: Array, displacement: Array, pressure: Array, balance: ContactBalance) -> Lanes:
+    """Make the state at the start of a search from displacements and pressures with their residuals."""
     zero = 0.0 * pressure
     lanes = Lanes(
         load=load,
         force_scale=force_scale,
         displacement=displacement,
         pressure=pressure,
-        **measured._asdict(),
+        **balance._asdict(),
         residual=zero,
         previous_residual=zero,
         direction=zero,
@@ -229,25 +240,27 @@ def update_residuals(lanes: Lanes) -> Lanes:
 def start_coarse(bore: BoreArrays, load: Array, force_scale: Array, start: Array) -> Lanes:
     """Start a search in wide cells at displacements (3, lanes), with pressures from a few iterations."""
     pressure = estimate_pressure(bore, start)
-    lanes = start_lanes(load, force_scale, start, pressure, measure(bore, load, start, pressure))
+    lanes = start_lanes(bore, load, force_scale, start, pressure)
     return arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
 
 
-class Sensitivity(NamedTuple):
+class PressureSensitivity(NamedTuple):
     """Derivative of pressures and forces by the displacement, in fixed touching cells."""
 
     pressure: Array  # (meridians, rings, 3 * lanes), in MPa/mm, for each component of the displacement
     tangent: Array  # (lanes, 3, 3), tangent stiffness in N/mm, with that of the tether
 
 
-def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) -> Sensitivity:
+def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) -> PressureSensitivity:
     """Transfer a sensitivity (meridians, rings, 3 * lanes) from cells twice as wide to those that touch."""
     mask = arrays.namespace(touching).tile(touching, (1, 1, len(bore.tether)))
     change = refine_fields(bore, sensitivity) * mask
-    return Sensitivity(pressure=change, tangent=_symmetric(_forces_by_axis(bore, change)) + bore.tether)
+    return PressureSensitivity(pressure=change, tangent=_symmetric(_forces_by_axis(bore, change)) + bore.tether)
 
 
-def solve_sensitivity(bore: BoreArrays, share: Array, iterations: int, edge_compliance: Array = 1.0) -> Sensitivity:
+def solve_sensitivity(
+    bore: BoreArrays, share: Array, iterations: int, edge_compliance: Array = 1.0
+) -> PressureSensitivity:
     """Compute the sensitivity of pressures in cells in contact (meridians, rings, lanes) by conjugate gradients.
 
     With the residual r = n - S q of the derivative q, the tangent n·q + q·r is accurate to the square of the residual.
@@ -261,7 +274,7 @@ def solve_sensitivity(bore: BoreArrays, share: Array, iterations: int, edge_comp
     changes, residuals = (xp.split(fields, components, axis=-1) for fields in (change, residual))
     missing = xp.stack([xp.stack([integrate(bore, q, r) for r in residuals]) for q in changes])
     tangent = _forces_by_axis(bore, change) + bore.scale * missing.transpose(2, 0, 1)
-    return Sensitivity(pressure=change, tangent=_symmetric(tangent) + bore.tether)
+    return PressureSensitivity(pressure=change, tangent=_symmetric(tangent) + bore.tether)
 
 
 def solve_change(
@@ -312,7 +325,7 @@ def _symmetric(matrices: Array) -> Array:
     return (matrices + matrices.swapaxes(1, 2)) / 2
 
 
-def make_predictor(sensitivity: Sensitivity) -> Predictor:
+def make_predictor(sensitivity: PressureSensitivity) -> Predictor:
     """Make the predictor of a sensitivity."""
     xp = arrays.namespace(sensitivity.tangent)
     tangent = sensitivity.tangent
@@ -332,7 +345,7 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
     count = lanes.pressure.shape[-1]
     parts = [predictor.sensitivity[..., axis * count :][..., :count] for axis in range(len(bore.tether))]
     missing = xp.stack([integrate(bore, part, lanes.residual) for part in parts])
-    # (∂F/∂e) Δe = F - F(p) - R2² ∫ q r dA: what the pressures will still add on their own is not asked of the ball
+    # Eq. (3): what the pressures will still add on their own is not asked of the ball
     imbalance = lanes.imbalance - bore.scale * missing
     step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)
     length = xp.sqrt(xp.sum(step * step, axis=0))

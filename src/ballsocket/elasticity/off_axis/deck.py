@@ -23,16 +23,18 @@ from ...core.checks import require
 from ...core.display import ascii_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
-from ..finite_elements.calculix import last_output, read_printed, run_calculix
-from ..finite_elements.deck_lines import (
+from ..finite_elements.calculix import (
     InputDeck,
     contact_lines,
     deck_paths,
+    last_output,
     material_lines,
     node_set_lines,
+    read_printed,
+    run_calculix,
     step_lines,
 )
-from ..finite_elements.mesh import SocketShape, add_midpoints, graded_points, join_points, socket_shape
+from ..finite_elements.mesh import add_midpoints, graded_points, join_points, socket_shape
 from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
 from .model import Sphere
@@ -137,29 +139,21 @@ class TiltedDeck(InputDeck):
         require("scale", self.scale, 0 < self.scale <= 1, "a scale lies above 0 and is at most 1")
 
     @cached_property
-    def _socket_shape(self) -> SocketShape:
-        return socket_shape(self.joint, self.cup)
-
-    @cached_property
     def _layer_radii(self) -> list[Numbers]:
-        inner, first, radii = 1.0, self.element_size, []
-        for outer, _, _ in self._socket_shape.layers:
+        inner, first, radii, scale = 1.0, self.element_size, [], float(self.joint.socket_radius)
+        for outer, _, _ in socket_shape(self.joint, self.cup).layers:
             if outer == inf:
                 raise ValueError("a tilted deck has layers of finite thickness: give the outermost one a thickness")
             layer = graded_points(inner, outer, min(first, (outer - inner) / 3), 1.5, (outer - inner) / 3)
-            radii.append(layer * self._bore_radius)
+            radii.append(layer * scale)
             inner, first = outer, float(layer[-1] - layer[-2]) * 1.5
         return radii
-
-    @property
-    def _bore_radius(self) -> float:
-        return float(self.joint.socket_radius)
 
     @cached_property
     def socket(self) -> SphericalBlock:
         """Mesh of the cup, without a chamfer: the bore ends on a cone where the chamfer begins."""
         return SphericalBlock(
-            polar=self._divide_angles(self._socket_shape.reach),
+            polar=self._divide_angles(socket_shape(self.joint, self.cup).reach),
             azimuth=self._divide_angles(pi),
             radius=join_points(self._layer_radii),
             centre=numpy.zeros(3),
@@ -169,7 +163,7 @@ class TiltedDeck(InputDeck):
     def ball(self) -> SphericalBlock:
         """Mesh of the ball's skin, at first touch."""
         clearance = float(self.joint.clearance) * self.scale
-        radius = self._bore_radius - clearance
+        radius = float(self.joint.socket_radius) - clearance
         return SphericalBlock(
             polar=self.socket.polar,
             azimuth=self.socket.azimuth,
@@ -205,8 +199,8 @@ class TiltedDeck(InputDeck):
         yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
         yield from _element_lines(self.ball, lambda k: "SKIN")
         # the skin of the ball is almost rigid
-        liner = float(self.joint.liner.young)
-        layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
+        liner, shells = float(self.joint.liner.young), socket_shape(self.joint, self.cup).layers
+        layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(shells)}
         yield from material_lines({**layers, "SKIN": (1e3 * liner, 0.3)})
         yield from contact_lines(lined, pressed, penalty)
         yield from self._support_lines()

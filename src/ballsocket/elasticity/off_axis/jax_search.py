@@ -9,7 +9,6 @@ calls NumPy for them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 from typing import Any, NamedTuple
 
@@ -97,8 +96,7 @@ def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Arra
     rough, predictor = _search_wide_cells(coarse, search.start_coarse(coarse, load, scale, start))
     pressure = search.refine_fields(fine, rough.pressure)
     predictor = search.make_predictor(search.refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
-    measured = search.measure(fine, load, rough.displacement, pressure)
-    lanes = search.start_lanes(load, scale, rough.displacement, pressure, measured)
+    lanes = search.start_lanes(fine, load, scale, rough.displacement, pressure)
     lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
     return lanes.displacement, lanes.pressure
 
@@ -132,8 +130,7 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
             sensitivity=xp.where(xp.tile(kept, 3), predictor.sensitivity, renewed.sensitivity),
             inverse_tangent=xp.where(kept[:, None, None], predictor.inverse_tangent, renewed.inverse_tangent),
         )
-        measured = search.measure(bore, lanes.load, lanes.displacement, lanes.pressure)
-        fresh = search.start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
+        fresh = search.start_lanes(bore, lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure)
         lanes, _ = _iterate(bore, fresh, predictor, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)
         return number + 1, lanes, predictor
 
@@ -192,45 +189,37 @@ class Operators(NamedTuple):
     coarse_stiffness: Array
 
 
-@dataclass(frozen=True, kw_only=True)
-class LinerCompliance:
-    """Compliance matrices of one joint for any liner."""
+@lru_cache(maxsize=2)
+def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> tuple[Numbers, Numbers]:
+    """Compute the derivatives of both softnesses by the three numbers of the liner: (3, m, rings, rings)."""
+    grid = cached_compliance(surface, joint, cup, width).grid
+    slopes = surface.ring_slopes(joint, cup, grid)
+    return slopes, numpy.stack([grid.coarsen_matrices(slope) for slope in slopes])
 
-    surface: Any
-    joint: Joint  # a joint without arrays. Its bore stays the same.
-    cup: Cup
-    ring_width: float  # in rad, 3° or less
 
-    def operators(self, liner: Numbers) -> Operators:
-        """Compute the matrices for Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner."""
-        joint = vary_liner(self.joint, tuple(map(float, liner)))
-        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
+def differentiable_operators(
+    surface: Surface, joint: Joint, cup: Cup, ring_width: float, dtype: str
+) -> Callable[[Array], Operators]:
+    """Return a function of JAX from the numbers of a liner (3,) to `Operators`, with derivatives of first order.
+
+    The numbers are Young's modulus in MPa, Poisson's ratio and thickness in mm; the bore of the joint stays the same.
+    The stiffnesses have no derivatives: they only precondition the iteration.
+    """
+    import jax
+
+    def joint_with(liner: Numbers) -> Joint:
+        return vary_liner(joint, tuple(map(float, liner)))
+
+    def compute_operators(liner: Numbers) -> Operators:
+        compliance = cached_compliance(surface, joint_with(liner), cup, ring_width)
         coarser = compliance.coarser_compliance
         if coarser is None:
             raise ValueError("the compliance of a liner needs rings of 3 degrees or less")
         operators: tuple[Any, ...] = (compliance.softness, compliance.stiffness, coarser.softness, coarser.stiffness)
         return Operators(*(operator.matrices for operator in operators))
 
-    def softness_slopes(self, liner: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the derivatives of both softnesses by the three numbers of the liner: (3, m, rings, rings)."""
-        return _softness_slopes(
-            self.surface, vary_liner(self.joint, tuple(map(float, liner))), self.cup, self.ring_width
-        )
-
-
-@lru_cache(maxsize=2)
-def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> tuple[Numbers, Numbers]:
-    grid = cached_compliance(surface, joint, cup, width).grid
-    slopes = surface.ring_slopes(joint, cup, grid)
-    return slopes, numpy.stack([grid.coarsen_matrices(slope) for slope in slopes])
-
-
-def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Array], Operators]:
-    """Return a function of JAX from the numbers of a liner (3,) to `Operators`, with derivatives of first order.
-
-    The stiffnesses have no derivatives: they only precondition the iteration.
-    """
-    import jax
+    def compute_slopes(liner: Numbers) -> tuple[Numbers, Numbers]:
+        return _softness_slopes(surface, joint_with(liner), cup, ring_width)
 
     def shapes_of(values: Any) -> Any:
         return jax.tree.map(lambda array: jax.ShapeDtypeStruct(array.shape, dtype), values)
@@ -238,7 +227,7 @@ def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Arr
     def convert(compute: Callable[[Numbers], Any], liner: Array) -> Any:
         return jax.tree.map(partial(numpy.asarray, dtype=dtype), compute(numpy.asarray(liner, dtype=float)))
 
-    nominal = bore.operators(liner_numbers(bore.joint))
+    nominal = compute_operators(liner_numbers(joint))
     operator_shapes = shapes_of(nominal)
     slope_shapes = tuple(
         jax.ShapeDtypeStruct((3, *matrices.shape), dtype) for matrices in (nominal.softness, nominal.coarse_softness)
@@ -247,16 +236,14 @@ def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Arr
     @jax.custom_jvp
     def operators(liner: Array) -> Operators:
         matrices: Operators = jax.pure_callback(
-            partial(convert, bore.operators), operator_shapes, liner, vmap_method="sequential"
+            partial(convert, compute_operators), operator_shapes, liner, vmap_method="sequential"
         )
         return matrices
 
     @operators.defjvp
     def differentiate(primals: Any, tangents: Any) -> Any:
         (liner,), (change,) = primals, tangents
-        slopes = jax.pure_callback(
-            partial(convert, bore.softness_slopes), slope_shapes, liner, vmap_method="sequential"
-        )
+        slopes = jax.pure_callback(partial(convert, compute_slopes), slope_shapes, liner, vmap_method="sequential")
         matrices = operators(liner)
         softness, coarse_softness = (jax.numpy.tensordot(change, slope, 1) for slope in slopes)
         changes = Operators(

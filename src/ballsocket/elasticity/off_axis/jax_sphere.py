@@ -26,7 +26,7 @@ from . import coupled_search as search
 from . import patch_measures as measures
 from .bore_contact import BoreContact, make_bore_arrays
 from .coupled_search import BoreArrays
-from .jax_search import Grids, LinerCompliance, Operators, differentiable_operators, differentiable_search
+from .jax_search import Grids, Operators, differentiable_operators, differentiable_search
 from .lane_solver import coarser_lanes
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
 from .model import Sphere, check_sphere
@@ -168,8 +168,7 @@ class JaxSphere:
     def _operators(self) -> Callable[[Array], Operators]:
         """Function from the numbers of a liner to the matrices of the bore."""
         surface, cup, width = self.model.surface, self.model.cup, self.model.ring_width
-        compliance = LinerCompliance(surface=surface, joint=self.joint, cup=cup, ring_width=width)
-        return differentiable_operators(compliance, self.dtype)
+        return differentiable_operators(surface, self.joint, cup, width, self.dtype)
 
     def press(
         self,
@@ -318,7 +317,7 @@ def _press_loads(
     fine = bores.grids.fine._replace(gap=gap)
     start = jax.lax.stop_gradient(_initial_displacement(fine, axes, force, clearance, depth))
     displacement, pressure = differentiable_search()(bores.grids, load, gap, start, tolerance)
-    lanes = search.start_lanes(load, force, displacement, pressure, search.measure(fine, load, displacement, pressure))
+    lanes = search.start_lanes(fine, load, force, displacement, pressure)
     fields = pressure.transpose(2, 1, 0)
     half_angle, margin, share = jax.lax.map(
         partial(_measure_outline, bores),

@@ -1,4 +1,9 @@
-"""Equilibrium of many balls in NumPy by the coupled search: blocks of lanes in single precision, checked in double."""
+"""Equilibrium of many balls in NumPy by the coupled search: blocks of lanes in single precision, checked in double.
+
+Equations (1) to (3) of `coupled_search` are solved in three stages: in cells twice as wide, from rough pressures and in
+rounds with a new sensitivity q; in the cells of the bore, with q transferred to them; and again after a check in double
+precision that fails. Balls that have converged leave a block. The search takes elastic bores with a linear gap.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +16,7 @@ from ...problem.gaps import LinearGap
 from . import coupled_search as search
 from .bore_contact import BoreContact, EquilibriumBatch, make_bore_arrays
 from .compliance import AxisymmetricOperator
-from .coupled_search import BoreArrays, Lanes, Measured, Predictor
+from .coupled_search import BoreArrays, ContactBalance, Lanes, Predictor
 
 _BLOCK_CELLS = 142_000  # number of cells that are solved together: more exceed the processor's cache
 
@@ -132,9 +137,9 @@ def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: 
     predictor = search.make_predictor(search.refine_sensitivity(single, pressure > 0, predictor.sensitivity))
     displacement = solved.displacement.astype(float)
     for number in range(_MAX_CHECKS + 1):
-        measured = search.measure(double, load, displacement, pressure)
-        single_measured = Measured(*(array.astype(numpy.float32) for array in measured))
-        lanes = search.start_lanes(single_load, single_scale, displacement, pressure, single_measured)
+        balance = search.balance_contacts(double, load, displacement, pressure)
+        single_balance = ContactBalance(*(array.astype(numpy.float32) for array in balance))
+        lanes = search.make_lanes(single_load, single_scale, displacement, pressure, single_balance)
         if (lanes.error <= tolerance).all() or number == _MAX_CHECKS:
             break
         displacement, pressure, _ = _iterate(single, lanes, predictor, _SINGLE_FACTOR * tolerance, _MAX_ITERATIONS)
@@ -150,8 +155,7 @@ def _solve_coarse(bore: BoreArrays, load: Numbers, force_scale: Numbers, start: 
         if not len(unsolved):
             break
         displacement, pressure = solved.displacement[:, unsolved], solved.pressure[..., unsolved]
-        measured = search.measure(bore, load[:, unsolved], displacement, pressure)
-        lanes = search.start_lanes(load[:, unsolved], force_scale[unsolved], displacement, pressure, measured)
+        lanes = search.start_lanes(bore, load[:, unsolved], force_scale[unsolved], displacement, pressure)
         renewed = search.make_predictor(search.solve_sensitivity(bore, pressure > 0, search.SENSITIVITY_ITERATIONS))
         predictor.store(unsolved, renewed)
         again = _iterate(bore, lanes, renewed, search.COARSE_TOLERANCE, search.COARSE_ITERATIONS)

@@ -44,7 +44,7 @@ def solve_pressure(
     MPa, at least 0. The tolerance (batch,) limits the relative complementarity residual.
     """
     if start is None:
-        stiff = compliance.pressure(numpy.maximum(overlap, 0.0))
+        stiff = compliance.stiffness(numpy.maximum(overlap, 0.0))
         start = numpy.where(overlap > 0, numpy.maximum(stiff, 0.0), 0.0)
     tolerances = numpy.broadcast_to(tolerance, len(overlap))
     pressure, converged = numpy.zeros_like(overlap), numpy.zeros(len(overlap), dtype=bool)
@@ -95,7 +95,7 @@ class _ConjugateGradients:
         """Return True for contacts within their tolerances (batch,); strict ones are checked in double precision."""
         doubtful = self.is_single & (tolerance < _MIN_SINGLE_RESIDUAL) & (self.relative_residual <= tolerance)
         if doubtful.any():
-            self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])
+            self.displacement[doubtful] = self.compliance.softness(self.pressure[doubtful])
             self.is_single &= ~doubtful
             self._update_residual()
         return self.relative_residual <= tolerance
@@ -111,7 +111,7 @@ class _ConjugateGradients:
     def advance_pressures(self) -> None:
         """Make one conjugate-gradient step, and set negative pressures to 0."""
         integrate = self.compliance.grid.integrate_product
-        gradient = numpy.where(self.residual != 0, self.compliance.pressure(self.residual), 0)
+        gradient = numpy.where(self.residual != 0, self.compliance.stiffness(self.residual), 0)
         gradient = numpy.where(self.touching, gradient, numpy.maximum(gradient, 0))
         factor = numpy.maximum(integrate(self.residual - self.previous_residual, gradient) / self.descent, 0.0)
         self.descent = integrate(self.residual, gradient)
@@ -144,14 +144,14 @@ def solve_pressure_change(
     """
     integrate = compliance.grid.integrate_product
     single = tolerance > _MIN_SINGLE_TOLERANCE
-    displacement = compliance.single_precision_softness if single else compliance.displacement
+    displacement = compliance.single_precision_softness if single else compliance.softness
     root = numpy.sqrt(share, dtype=numpy.float32 if single else float)
     open_part = 1 - root * root
     open_compliance, open_stiffness = open_part * edge_compliance, open_part / edge_compliance
     target = overlap * root
 
     def precondition(residual: Numbers) -> Numbers:
-        return root * compliance.pressure(root * residual) + open_stiffness * residual
+        return root * compliance.stiffness(root * residual) + open_stiffness * residual
 
     change = precondition(target) if start is None else root * start
     residual = target - root * displacement(root * change) - open_compliance * change

@@ -193,12 +193,11 @@ class _RimSearch:
         displacement, bore = self._displacement, self.cells.open_bore
         no_load, scale = 0.0 * displacement, numpy.full(len(self.rim_angle), _FORCE_SCALE, dtype=numpy.float32)
         pressure = self.pressure[:, :-1]
-        measured = search.measure(bore, no_load, displacement, pressure)
-        lanes = search.start_lanes(no_load, scale, displacement, pressure, measured)
+        lanes = search.start_lanes(bore, no_load, scale, displacement, pressure)
         for _ in range(iterations):
             lanes = search.advance_lanes(bore, no_load, lanes)
         self.pressure = numpy.concatenate([lanes.pressure, 0.0 * lanes.pressure[:, :1]], axis=1)
-        remaining = search.measure(self.cells.bore, no_load, displacement, self.pressure).remaining
+        remaining = search.balance_contacts(self.cells.bore, no_load, displacement, self.pressure).remaining
         self.error, (x, z) = lanes.error, -lanes.imbalance
         return RimPoints(
             rim_angle=self.rim_angle,

@@ -55,7 +55,7 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     sizes = [len(block) for _, block in blocks]
     equilibrium, bore_contact = contact.single_state.equilibrium, contact.single_state.bore
     pressure = contact.pressure_map[2]
-    deformation = bore_contact.compliance.displacement(equilibrium.pressure)
+    deformation = bore_contact.compliance.softness(equilibrium.pressure)
     gap = (deformation - bore_contact.gap.overlap(equilibrium.displacement))[0]
     fields = {"pressure": pressure, "gap": numpy.where(pressure > 0, 0.0, gap)}
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}

@@ -125,7 +125,7 @@ def _solve_state(
     ball = ElasticBall(radius=1.0, young=young, poisson=ball_poisson) if ball_share else None
     kernel = Kernel(socket=socket, ball=ball, tolerance=1e-13)
     gap = LinearGap(clearance=1.0, socket_radius=1.0)
-    return AbelState(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points)))
+    return AbelState(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points=points)))
 
 
 def _tabulated_functions(state: AbelState) -> Numbers:
