@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 import ballsocket as bs
 from ballsocket.studies import Progress, axes, run, sampling
-from ballsocket.studies.axes import TableAxis
+from ballsocket.studies.axes import ListedAxis
 from ballsocket.studies.design import Design, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.metadata import _describe_array
@@ -135,7 +135,7 @@ COUNT = 1 << 21
 DESIGNS = {
     "span": lambda: grid(force=Span(1e3, 2e3, COUNT)),
     "samples": lambda: sample(COUNT, **SCATTER) * grid(force=1e3),
-    "table": lambda: Design((TableAxis({"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
+    "table": lambda: Design((ListedAxis("row", {"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
 }
 
 

@@ -24,7 +24,7 @@ from ..core.storage.pieces import fingerprint
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of, lost_lengths
-from .axes import MaterialAxis, SampleAxis, TableAxis
+from .axes import SampleAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
 from .task import BOUNDS, VERDICT, Task
@@ -72,7 +72,7 @@ def variable_attributes(name: str) -> dict[str, Any]:
 
 def study_attributes(task: Task) -> dict[str, Any]:
     """Return the attributes of a study: title, model, joint, design, publications and version."""
-    remarks = [axis.remark for axis in task.design.axes if isinstance(axis, TableAxis) and axis.remark]
+    remarks = [axis.remark for axis in task.design.axes if axis.remark]
     labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
     # lengths of the joint that follow from varied ones: given ones in their own names, then stored ones
     lengths, derived = [name for name in task.design.names if name in LENGTHS], list[str]()
@@ -147,9 +147,7 @@ def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
 
 def _missing_reasons(task: Task) -> dict[str, str]:
     liner, name = task.joint.liner, "liner_yield_stress"
-    by_material = [
-        axis.values[name] for axis in task.design.axes if isinstance(axis, MaterialAxis) and name in axis.names
-    ]
+    by_material = [axis.values_in()[name] for axis in task.design.axes if axis.labels and name in axis.names]
     stated = [*by_material, *(numpy.asarray(value) for key, value in task.design.fixed.items() if key == name)]
     varied = name in task.design.names
     unknown = any(numpy.isnan(values).any() for values in stated) if varied else liner.yield_stress is None
@@ -163,7 +161,7 @@ def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
     import xarray
 
     coordinates: dict[str, tuple[tuple[str, ...], Any]] = {
-        name: ((axis.name,), values) for axis in task.design.axes for name, values in axis.values.items()
+        name: ((axis.name,), values) for axis in task.design.axes for name, values in axis.values_in().items()
     }
     coordinates |= {name: ((), numpy.asarray(value)) for name, value in task.design.constants.items()}
     return order_coordinates(
@@ -206,7 +204,9 @@ def study_identity(task: Task) -> dict[str, Any]:
 
 def describe_axes(design: Design) -> dict[str, Any]:
     """Describe the axes of a design as data for JSON: values, or seed and distributions of samples."""
-    return {axis.name: _as_plain_data(axis if isinstance(axis, SampleAxis) else axis.values) for axis in design.axes}
+    return {
+        axis.name: _as_plain_data(axis if isinstance(axis, SampleAxis) else axis.values_in()) for axis in design.axes
+    }
 
 
 def _as_plain_data(value: Any) -> Any:

@@ -25,7 +25,7 @@ from ..model_catalogue import catalogue, reference
 from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
-from .design import Design, check_values, grid, is_number
+from .design import Design, check_samples, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
 from .sampling import CHUNK_SIZE
@@ -161,7 +161,7 @@ def study(
     study_store = None if store is None else StudyStore(folder_at(store))
     if study_store is None or not study_store.folder.exists():
         _check_space(task, None if study_store is None else study_store.folder)
-    check_values(task.design)
+    check_samples(task.design)
     if study_store is None:
         return make_dataset(task, _compute_in_memory(task, engine, listen))
     study_store.prepare(task)
@@ -300,5 +300,4 @@ def check_model_domain(model: Model, joint: Joint, ranges: Mapping[str, Any]) ->
 def joint_of_arrays(joint: Joint, ranges: Mapping[str, Any]) -> Joint:
     """Return all joints of a range as one joint of arrays; parameters are those of `default_model`."""
     design = grid(**ranges)
-    check_values(design)
     return press_arguments(joint, design.values_in([slice(None)] * len(design.axes)))[0]
