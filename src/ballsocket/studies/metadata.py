@@ -147,10 +147,10 @@ def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
 
 def _missing_reasons(task: Task) -> dict[str, str]:
     liner, name = task.joint.liner, "liner_yield_stress"
-    by_material = [axis.values_in()[name] for axis in task.design.axes if axis.labels and name in axis.names]
-    stated = [*by_material, *(numpy.asarray(value) for key, value in task.design.fixed.items() if key == name)]
-    varied = name in task.design.names
-    unknown = any(numpy.isnan(values).any() for values in stated) if varied else liner.yield_stress is None
+    stated: list[Any] = [axis.values_in()[name] for axis in task.design.axes if axis.labels and name in axis.names]
+    stated.append(task.design.fixed.get(name, 0.0))
+    unknown = any(numpy.isnan(values).any() for values in stated)
+    unknown |= name not in task.design.names and liner.yield_stress is None
     if "utilisation" not in task.quantities or not unknown:
         return {}
     return {"utilisation": unchecked_strength_reason(replace(task.joint, liner=liner.without_strengths()))}
@@ -217,7 +217,10 @@ def _as_plain_data(value: Any) -> Any:
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, numpy.ndarray | numpy.generic):
-        return _describe_array(numpy.asarray(value))
+        if value.size <= _MAX_LISTED_VALUES:
+            return _as_plain_data(value.tolist())
+        digest = sha256(numpy.ascontiguousarray(value).tobytes()).hexdigest()
+        return {"count": value.size, "first": float(value.flat[0]), "last": float(value.flat[-1]), "digest": digest}
     if isinstance(value, Mapping):
         return {str(key): _as_plain_data(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -249,14 +252,6 @@ def _describe_function(function: FunctionType) -> Any:
         "encloses": [_as_plain_data(cell.cell_contents) for cell in function.__closure__ or ()],
         "defaults": _as_plain_data(function.__defaults__),
     }
-
-
-def _describe_array(values: numpy.ndarray) -> Any:
-    """Return the values of a short array, or count, ends and digest of a long one."""
-    if values.size <= _MAX_LISTED_VALUES:
-        return _as_plain_data(values.tolist())
-    digest = sha256(numpy.ascontiguousarray(values).tobytes()).hexdigest()
-    return {"count": values.size, "first": float(values.flat[0]), "last": float(values.flat[-1]), "digest": digest}
 
 
 def list_differences(stored: Mapping[str, Any], requested: Mapping[str, Any], path: str = "") -> list[str]:
