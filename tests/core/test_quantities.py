@@ -17,7 +17,7 @@ from ballsocket.core.kinds import Unit
 from ballsocket.core.quantities import BEARING, CONTACT, DERIVED, FIT, JOINT, QUANTITIES, STRESS_LIMITS
 from ballsocket.core.sources import Source, bibliography, find_cited_keys
 from ballsocket.files.units import parse
-from ballsocket.studies.design import check_values, grid
+from ballsocket.studies.design import grid
 from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
 from ballsocket.studies.metadata import variable_attributes
 from ballsocket.studies.parameters import PARAMETERS
@@ -162,4 +162,4 @@ def test_joint_and_study_reject_the_same_numbers(name):
     with pytest.raises(ValueError, match=re.escape(JOINT[name].allowed)):
         replace(HIP, **{name: wrong})
     with pytest.raises(ValueError, match=re.escape(JOINT[name].allowed)):
-        check_values(grid(**{name: [wrong]}))
+        grid(**{name: [wrong]})

@@ -10,10 +10,10 @@ from scipy.stats import qmc
 
 import ballsocket as bs
 from ballsocket.studies import Progress, axes, run, sampling
-from ballsocket.studies.axes import TableAxis
+from ballsocket.studies.axes import ListedAxis
 from ballsocket.studies.design import Design, Span, grid, sample
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
-from ballsocket.studies.metadata import _describe_array
+from ballsocket.studies.metadata import _as_plain_data
 from ballsocket.studies.run import _create_task, memory_size
 from ballsocket.studies.sampling import Method, permute
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
@@ -54,7 +54,7 @@ def test_the_time_left_is_the_rest_over_the_rate():
     progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=8.0)
     assert (progress.rate, progress.seconds_left) == (5.0, 10.0)
     assert Progress(n_done=0, n_points=100, n_stored=0, seconds=8.0).seconds_left == inf
-    described = _describe_array(np.arange(100_000.0) + 3)  # in the identity of a stored study
+    described = _as_plain_data(np.arange(100_000.0) + 3)  # in the identity of a stored study
     assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)
 
 
@@ -135,7 +135,7 @@ COUNT = 1 << 21
 DESIGNS = {
     "span": lambda: grid(force=Span(1e3, 2e3, COUNT)),
     "samples": lambda: sample(COUNT, **SCATTER) * grid(force=1e3),
-    "table": lambda: Design((TableAxis({"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
+    "table": lambda: Design((ListedAxis("row", {"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
 }
 
 

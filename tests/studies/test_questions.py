@@ -67,10 +67,10 @@ def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
     edge = Limit(name="edge_distance", low=10.0, cup=cup, direction=(-np.sin(0.3), 0.0, np.cos(0.3)))
     here = design_space.sel(ball_radius=16.0, liner_thickness=6.0)
     arc = (1.4 - 0.2 - here.half_angle.item()) * 16.1
-    assert edge.evaluate(here).item() == pytest.approx(arc)
+    assert edge.bar(here).value.item() == pytest.approx(arc)
     assert edge.margin(here).value.item() == pytest.approx(arc - 10.0)
     upright = (pi / 2 - here.half_angle.item()) * 16.1
-    assert Limit(name="edge_distance").evaluate(here).item() == pytest.approx(upright)
+    assert Limit(name="edge_distance").bar(here).value.item() == pytest.approx(upright)
 
 
 def test_a_limit_that_depends_on_one_axis_fills_the_plane():

@@ -20,7 +20,7 @@ from ballsocket.studies import store as store_module
 from ballsocket.studies.file import read_study
 from ballsocket.studies.file_formats import export
 from ballsocket.studies.run import _create_task, read
-from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, BlockStore
+from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, StudyStore
 
 from ..cli.command import run
 from ..hip.test_uncertainty import short_file
@@ -169,16 +169,16 @@ def test_two_studies_that_begin_together_share_their_store(tmp_path, finished, m
 @contextmanager
 def stopped_at(block, error):
     """Let the store raise an error instead of writing a block."""
-    save = BlockStore.save
+    save = StudyStore.save
 
     def stop(self, number, answers):
-        with self.store.folder.errors():
+        with self.folder.errors():
             if number == block:
                 raise error
             save(self, number, answers)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(BlockStore, "save", stop)
+        patch.setattr(StudyStore, "save", stop)
         yield
 
 

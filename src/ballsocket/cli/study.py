@@ -25,7 +25,6 @@ from ..studies.file_formats import check_suffix, export
 from ..studies.run import Listener
 from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
-from ..studies.store import check_store
 from ..studies.study_answer import describe_study, study_summary
 from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor, print_result
 from .root import app, echo_path, print_message
@@ -67,8 +66,6 @@ def study(
     """
     if out is not None:
         check_suffix(out)
-    if store is not None:
-        check_store(store)
     study_file = read_study(file)
     draw = None if figure is None else _choose_plot(study_file, figure)
     folder = store or study_file.store

@@ -33,7 +33,7 @@ from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
 from ..model_catalogue import OFF_AXIS, named_models, reference, with_gap
-from ..studies.design import check_values, grid
+from ..studies.design import grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit
 from ..studies.file import ModelGap
@@ -246,7 +246,7 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
     count = prod(map(len, axes.values()))
     require("cases of the matrix", count, count <= MOST, f"at most {MOST}; a study takes more")
-    check_values(grid(**{name: list(values) for name, values in axes.items()}))
+    grid(**{name: list(values) for name, values in axes.items()})  # refuses values outside their ranges
     tolerances = _tolerances({name: str(getattr(tables.tolerances, name)) for name in content.get("tolerances", {})})
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
     if file.aim and not any(name in AIMS for name in axes):
@@ -292,7 +292,7 @@ def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
             raise ValueError(f"{name} in [tolerances] cannot scatter: tolerances are followed along the axis")
         ends = [float(spread.frozen.ppf(share)) for share in ALMOST_ALL]
         try:
-            check_values(grid(**{name: ends}))
+            grid(**{name: ends})
         except ValueError as error:
             raise ValueError(f"[tolerances] reaches too far: {error}") from error
     return spreads

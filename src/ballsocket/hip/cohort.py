@@ -178,7 +178,7 @@ def sample_patients(variability: PatientVariability, count: int, seed: int) -> M
     """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`."""
     require("patients", count, 1 <= count <= _MAX_PATIENTS, f"it must be 1 to {_MAX_PATIENTS}")
     require("seed", seed, seed >= 0, "it must be at least 0")
-    return SampleAxis(count=count, distributions=tuple(variability.distributions.items()), seed=seed).values
+    return SampleAxis(count=count, distributions=tuple(variability.distributions.items()), seed=seed).values_in()
 
 
 def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, Numbers]]:

@@ -113,7 +113,7 @@ class CohortSeries:
         patients, counts = self.run.variability, self.run.counts
         coarse = replace(patients, use=patients.coarse_simulation)  # workers need a cycle of tables
         similarity, distributions = Similarity(variability=coarse), tuple(patients.distributions.items())
-        reference = SampleAxis(count=_REFERENCE_COUNT, distributions=distributions, seed=self.seed).values
+        reference = SampleAxis(count=_REFERENCE_COUNT, distributions=distributions, seed=self.seed).values_in()
         ranges = {name: _range(values) for name, values in similarity.numbers(reference).items()}
         centre = {name: float(numpy.median(reference[name])) for name in similarity.angles}
         ranges |= cover_orientations(similarity, {name: ranges[name] for name in similarity.angles}, centre)

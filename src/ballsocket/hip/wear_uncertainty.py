@@ -67,7 +67,7 @@ def uncertainty(
     """
     require("count", count, count >= 2, "it must be at least 2")
     require("seed", seed, seed >= 0, "it must be at least 0")
-    check_sample_memory(count)
+    check_sample_memory(count, len(INFLUENCED_RESULTS) * (2 * len(variability.distributions) + 2))
     counts = tuple(report.cycles for report in history.reports)
     results: list[CohortResult] = []
     sampled_sets: list[Mapping[str, Numbers]] = []

@@ -1,4 +1,4 @@
-"""Axes of a study: values of a grid, equal steps, samples of distributions, rows of a table."""
+"""Axes of a study: listed values, equal steps, samples of distributions; and the check of their values."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from math import inf, nan
+from math import inf
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.quantities import MATERIAL, QUANTITIES
-from ..problem import Material
+from ..core.quantities import QUANTITIES
 from .distributions import Distribution, copula_matrix, correlate
 from .sampling import CHUNK_SIZE, Method, draw_chunk
 
@@ -25,28 +24,22 @@ class Axis(ABC):
     """Dimension of a study: one or more parameters that vary together."""
 
     name: str
+    labels: tuple[str, ...] = ()
+    """Texts for the positions along the axis, which are names of materials; empty for an axis of numbers."""
+    remark: str = ""
+    """Rows of a file that were read, and lines that were left out; empty without such lines."""
 
     @property
     @abstractmethod
-    def values(self) -> Mapping[str, Numbers]:
-        """Values of each parameter, float64 of shape (length,)."""
-
-    @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters."""
-        return (self.name,)
 
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """Texts for the positions along the axis; empty for an axis of numbers."""
-        return ()
+    @abstractmethod
+    def __len__(self) -> int: ...
 
-    def __len__(self) -> int:
-        return len(next(iter(self.values.values())))
-
-    def values_in(self, section: slice) -> Mapping[str, Numbers]:
-        """Return the values of each parameter in a section of the axis."""
-        return {name: values[section] for name, values in self.values.items()}
+    @abstractmethod
+    def values_in(self, section: slice = slice(None)) -> Mapping[str, Numbers]:
+        """Return the values of each parameter in a section of the axis, float64."""
 
     @property
     def sections(self) -> Iterator[slice]:
@@ -55,45 +48,23 @@ class Axis(ABC):
 
 
 @dataclass(frozen=True, eq=False)
-class GridAxis(Axis):
-    """Axis of one parameter with listed values.
-
-    Raises ValueError: the same value twice.
-    """
+class ListedAxis(Axis):
+    """Axis of listed values: of one parameter, of the properties of materials, or of the columns of a table."""
 
     name: str
-    column: Numbers
-
-    def __post_init__(self) -> None:
-        values, counts = numpy.unique(self.column, return_counts=True)
-        if counts.max(initial=1) > 1:
-            unit = QUANTITIES[self.name].written
-            repeated = float(values[counts.argmax()]) * unit.factor
-            raise ValueError(f"{self.name} has {f'{repeated:g} {unit.text}'.strip()} twice: list each value once")
+    columns: Mapping[str, Numbers]
+    labels: tuple[str, ...] = ()
+    remark: str = ""
 
     @property
-    def values(self) -> Mapping[str, Numbers]:
-        return {self.name: self.column}
-
-
-@dataclass(frozen=True)
-class SpanAxis(Axis):
-    """Axis of one parameter with equal steps, computed when they are used."""
-
-    name: str
-    span: Span
+    def names(self) -> tuple[str, ...]:
+        return tuple(self.columns)
 
     def __len__(self) -> int:
-        return self.span.count
+        return len(next(iter(self.columns.values())))
 
-    @property
-    def values(self) -> Mapping[str, Numbers]:
-        return _span_values(self)
-
-
-@lru_cache(maxsize=16)
-def _span_values(axis: SpanAxis) -> Mapping[str, Numbers]:
-    return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
+    def values_in(self, section: slice = slice(None)) -> Mapping[str, Numbers]:
+        return {name: column[section] for name, column in self.columns.items()}
 
 
 @dataclass(frozen=True)
@@ -124,38 +95,24 @@ class Span:
 
 
 @dataclass(frozen=True)
-class MaterialAxis(Axis):
-    """Axis of materials of the "liner" or the "ball", whose properties vary together.
-
-    An unknown yield stress is NaN.
-
-    Raises ValueError: no material, or the same material twice.
-    """
+class SpanAxis(Axis):
+    """Axis of one parameter with equal steps, computed when they are used."""
 
     name: str
-    materials: tuple[Material, ...]
-
-    def __post_init__(self) -> None:
-        if not self.materials:
-            raise ValueError(f"{self.name} has no values")
-        for label in self.labels:
-            if self.labels.count(label) > 1:
-                raise ValueError(f"{self.name} has {label} twice")
+    span: Span
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(self.values)
+        return (self.name,)
 
-    @property
-    def values(self) -> Mapping[str, Numbers]:
-        yields = [nan if material.yield_stress is None else float(material.yield_stress) for material in self.materials]
-        numbers = {name: [float(getattr(material, name)) for material in self.materials] for name in MATERIAL}
-        numbers["yield_stress"] = yields
-        return {f"{self.name}_{name}": numpy.array(column) for name, column in numbers.items()}
+    def __len__(self) -> int:
+        return self.span.count
 
-    @property
-    def labels(self) -> tuple[str, ...]:
-        return tuple(material.name or str(material) for material in self.materials)
+    def values_in(self, section: slice = slice(None)) -> Mapping[str, Numbers]:
+        low, high, last = self.span.low, self.span.high, self.span.count - 1
+        index = numpy.arange(*section.indices(len(self)))
+        steps = low + index * ((high - low) / max(1, last))
+        return {self.name: numpy.where((index == last) & (index > 0), high, steps)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,11 +136,7 @@ class SampleAxis(Axis):
     def names(self) -> tuple[str, ...]:
         return tuple(name for name, _ in self.distributions)
 
-    @property
-    def values(self) -> Mapping[str, Numbers]:
-        return self.values_in(slice(0, self.count))
-
-    def values_in(self, section: slice) -> Mapping[str, Numbers]:
+    def values_in(self, section: slice = slice(None)) -> Mapping[str, Numbers]:
         """Draw the samples of each parameter in a section of the axis; workers receive the seed, not the samples."""
         start, stop, _ = section.indices(self.count)
         values = {name: numpy.empty(stop - start) for name in self.names}
@@ -209,44 +162,34 @@ def _draw_samples(axis: SampleAxis, chunk: int) -> tuple[Numbers, ...]:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class TableAxis(Axis):
-    """Axis of the rows of a table with a column for each parameter."""
-
-    columns: Mapping[str, Numbers]
-    name: str = "row"
-    remark: str = ""
-    """Rows of the file that were read, and lines that were left out; empty without such lines."""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(self.columns)
-
-    @property
-    def values(self) -> Mapping[str, Numbers]:
-        return self.columns
-
-
 def parameter_values(
     name: str, values: Numbers, position: str = "[{}]", numbering: Sequence[int] | None = None
 ) -> Numbers:
-    """Convert the values of a parameter to float64, and check that they are finite or an allowed infinity.
+    """Convert the values of a parameter to float64, and check that they are allowed, see `check_allowed`.
 
-    A message has the `position` of a value by its number: its index, or that of the `numbering`.
-
-    Raises ValueError: other shapes or types, no values, or a value that is not finite.
+    Raises ValueError: other shapes or types, no values, or a value outside the range of the parameter.
     """
     if values.ndim != 1 or values.dtype.kind not in "iuf":
         raise ValueError(f"{name} must be a row of numbers, got {values.dtype} of shape {values.shape}")
     if not len(values):
         raise ValueError(f"{name} has no values")
     numbers = values.astype(float)
-    bad = ~numpy.isfinite(numbers)
-    if QUANTITIES[name].allows(inf):
-        bad &= numbers != inf
-    if bad.any():
-        first = int(numpy.argmax(bad))
-        number = first if numbering is None else numbering[first]
-        more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        raise ValueError(f"{name}{position.format(number)} = {numbers[first]:g}{more} is not allowed: a finite number")
+    check_allowed(name, numbers, position, numbering)
     return numbers
+
+
+def check_allowed(
+    name: str, values: Numbers, position: str = "[{}]", numbering: Sequence[int] | None = None, hint: str = ""
+) -> None:
+    """Raise ValueError for the first value outside the range of a parameter.
+
+    The message has the `position` of the value by its number: its index, or that of the `numbering`.
+    """
+    parameter = QUANTITIES[name]
+    bad = numpy.flatnonzero(~parameter.allows(values))
+    if len(bad):
+        first = int(bad[0])
+        place = position.format(first if numbering is None else numbering[first])
+        more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
+        rule = f"{parameter.allowed}{hint}{parameter.radian_hint(float(values[first]))}"
+        raise ValueError(f"{name}{place} = {values[first]:g}{more} is not allowed: {rule}")

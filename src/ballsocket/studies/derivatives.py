@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, needs
 from ..problem import Joint
 from ..problem.cup import Cup
-from .design import check_values, sample
+from .design import check_samples, sample
 from .distributions import Distribution, check_nominal
 from .parameters import AIMS, LENGTHS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
@@ -226,7 +226,7 @@ def local_uncertainty(
     if not tolerances:
         return LocalUncertainty(model=model.name, changes=changes, band={})
     design = sample(_SAMPLE_COUNT, **dict[str, Any](tolerances))
-    check_values(design)
+    check_samples(design)
     samples = design.values_in([slice(None)])
     fixed = {} if set(samples) & set(load) else dict(load)
     ranges = {name: [values.min(), values.max()] for name, values in samples.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isnan, prod
+from math import prod
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -13,20 +13,11 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
+from ..core.quantities import MATERIAL
 from ..core.storage.atomic_files import check_local
 from ..files.columns import ALL_COLUMNS, HeadChoice, read_columns
 from ..problem import Joint, Material
-from .axes import (
-    MAX_COUNT,
-    Axis,
-    GridAxis,
-    MaterialAxis,
-    SampleAxis,
-    Span,
-    SpanAxis,
-    TableAxis,
-    parameter_values,
-)
+from .axes import MAX_COUNT, Axis, ListedAxis, SampleAxis, Span, SpanAxis, check_allowed, parameter_values
 from .distributions import Correlation, Distribution, copula_matrix
 from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions, hold
 from .sampling import MAX_SOBOL_COUNT, Method
@@ -126,7 +117,7 @@ def grid(**axes: Any) -> Design:
     Raises
     ------
     ValueError
-        An unknown name; an empty axis; a value that is not finite (only a thickness may be infinite).
+        An unknown name; an empty axis; a value twice, or outside the range of its parameter.
 
     Examples
     --------
@@ -138,7 +129,8 @@ def grid(**axes: Any) -> Design:
     varying = {}
     for name, value in axes.items():
         if isinstance(value, Material):
-            fixed |= {number: float(column[0]) for number, column in _create_axis(name, [value]).values.items()}
+            numbers = _create_axis(name, [value]).values_in()
+            fixed |= {number: float(column[0]) for number, column in numbers.items()}
         elif isinstance(value, Span) or not is_number(value):
             varying[name] = value
         elif name in MATERIAL_PARTS:
@@ -148,58 +140,39 @@ def grid(**axes: Any) -> Design:
     return Design(tuple(_create_axis(name, value) for name, value in varying.items()), fixed)
 
 
-def check_values(design: Design) -> None:
-    """Check that all values of a design are in the ranges of their parameters.
-
-    Of a span only the ends are checked.
-
-    Raises ValueError: a value is not allowed; the message has the first one.
-    """
-    for axis in design.axes:
-        if isinstance(axis, MaterialAxis):  # checked when they were made
-            continue
-        if isinstance(axis, SampleAxis):
-            doubtful = [  # only what a distribution allows outside the range of its parameter is drawn
-                name
-                for name, distribution in axis.distributions
-                if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
-            ]
-            for section in axis.sections if doubtful else ():
-                values_in_section = axis.values_in(section)
-                for name in doubtful:
-                    _check_allowed(name, values_in_section[name], "; truncate the distribution", section.start)
-            continue
-        ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
-        for name, values in ends.items():
-            _check_allowed(name, values)
-    for name, value in design.fixed.items():
-        if not isnan(value):  # an unknown yield stress of a material
-            _check_allowed(name, numpy.array([value]))
-
-
-def _check_allowed(name: str, values: Numbers, hint: str = "", start: int = 0) -> None:
-    """Raise ValueError for the first value outside the range of a parameter; the first index is `start`."""
-    bad = ~PARAMETERS[name].allows(values)
-    if bad.any():
-        first = int(numpy.argmax(bad))
-        more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        allowed, degrees = PARAMETERS[name].allowed, PARAMETERS[name].radian_hint(float(values[first]))
-        raise ValueError(f"{name}[{start + first}] = {values[first]:g}{more} is not allowed: {allowed}{hint}{degrees}")
-
-
 def is_number(value: Any) -> bool:
     """Check if a value is a single number."""
     return numpy.ndim(value) == 0
 
 
 def _create_axis(name: str, value: Any) -> Axis:
-    if name in MATERIAL_PARTS:
-        if isinstance(value, Sequence) and all(isinstance(material, Material) for material in value):
-            return MaterialAxis(name, tuple(value))
-        raise ValueError(f"{name} must be a list of Materials, got {shown(value)}")
     if isinstance(value, Span):
+        check_allowed(name, numpy.array([value.low, value.high]))
         return SpanAxis(name, value)
-    return GridAxis(name, parameter_values(name, numpy.asarray(value)))
+    if name in MATERIAL_PARTS:
+        return _create_material_axis(name, value)
+    column = parameter_values(name, numpy.asarray(value))
+    values, counts = numpy.unique(column, return_counts=True)
+    if counts.max() > 1:
+        unit = PARAMETERS[name].written
+        repeated = float(values[counts.argmax()]) * unit.factor
+        raise ValueError(f"{name} has {f'{repeated:g} {unit.text}'.strip()} twice: list each value once")
+    return ListedAxis(name, {name: column})
+
+
+def _create_material_axis(part: str, materials: Any) -> Axis:
+    """Create the axis of materials of a part, whose properties vary together; an unknown yield stress is NaN."""
+    if not (isinstance(materials, Sequence) and all(isinstance(material, Material) for material in materials)):
+        raise ValueError(f"{part} must be a list of Materials, got {shown(materials)}")
+    if not materials:
+        raise ValueError(f"{part} has no values")
+    labels = tuple(material.name or str(material) for material in materials)
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ValueError(f"{part} has {label} twice")
+    numbers = {number: [getattr(material, number) for material in materials] for number in (*MATERIAL, "yield_stress")}
+    columns = {f"{part}_{number}": numpy.array(values, dtype=float) for number, values in numbers.items()}
+    return ListedAxis(part, columns, labels)
 
 
 def sample(
@@ -251,6 +224,25 @@ def sample(
     return Design((axis,))
 
 
+def check_samples(design: Design) -> None:
+    """Check that all samples of a design are in the ranges of their parameters; a grid is checked when it is made.
+
+    Raises ValueError: a sample is not allowed; the message has the first one.
+    """
+    for axis in design.axes:
+        if not isinstance(axis, SampleAxis):
+            continue
+        doubtful = [  # only what a distribution allows outside the range of its parameter is drawn
+            name
+            for name, distribution in axis.distributions
+            if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
+        ]
+        for section in axis.sections if doubtful else ():
+            samples, numbering = axis.values_in(section), range(section.start, section.stop)
+            for name in doubtful:
+                check_allowed(name, samples[name], numbering=numbering, hint="; truncate the distribution")
+
+
 def table(path: str | Path, heads: HeadChoice = ALL_COLUMNS) -> Design:
     """Create a design from the rows of a table in a file with a column for each parameter.
 
@@ -266,8 +258,8 @@ def table(path: str | Path, heads: HeadChoice = ALL_COLUMNS) -> Design:
     Raises
     ------
     ValueError
-        An unknown column, a missing value (the message has its row), content of another format, or more rows than fit
-        into the memory.
+        An unknown column, a missing value or one outside its range (the message has its row), content of another
+        format, or more rows than fit into the memory.
     OSError
         The file cannot be read.
     """
@@ -281,4 +273,4 @@ def table(path: str | Path, heads: HeadChoice = ALL_COLUMNS) -> Design:
         name: parameter_values(name, values, f" in line {{}} of {path.name}", rows.lines)
         for name, values in rows.in_units(kinds, {name: kind.unit for name, kind in kinds.items()}).items()
     }
-    return Design((TableAxis(columns, remark=rows.remark()),))
+    return Design((ListedAxis("row", columns, remark=rows.remark()),))

@@ -216,7 +216,10 @@ _SMALLEST_PROBABILITY = 1e-16  # probability at which normal quantiles are cut, 
 
 def correlate(probabilities: Numbers, matrix: Numbers) -> Numbers:
     """Correlate independent uniform samples, shape (n_parameters, n_points), by a Gaussian copula."""
-    return probabilities_of(numpy.linalg.cholesky(matrix) @ normal_quantiles(probabilities))
+    from scipy.special import ndtr
+
+    correlated: Numbers = ndtr(numpy.linalg.cholesky(matrix) @ normal_quantiles(probabilities))
+    return correlated
 
 
 def normal_quantiles(probabilities: Numbers) -> Numbers:
@@ -226,11 +229,3 @@ def normal_quantiles(probabilities: Numbers) -> Numbers:
     cut = numpy.clip(probabilities, _SMALLEST_PROBABILITY, 1 - _SMALLEST_PROBABILITY)
     quantiles: Numbers = ndtri(cut)
     return quantiles
-
-
-def probabilities_of(quantiles: Numbers) -> Numbers:
-    """Compute the probabilities of quantiles of the standard normal distribution."""
-    from scipy.special import ndtr
-
-    probabilities: Numbers = ndtr(quantiles)
-    return probabilities

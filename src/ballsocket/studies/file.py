@@ -34,7 +34,7 @@ from ..problem import Joint
 from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
-from .design import Design, check_values, grid, sample, table
+from .design import Design, grid, sample, table
 from .distributions import Distribution
 from .expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_correlations
 from .parameters import LOADS, PARAMETERS
@@ -252,9 +252,9 @@ def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
 
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
     axes = content.get("axes", {})
-    design = grid(**parsed_values(tables.axes, axes))
+    values = parsed_values(tables.axes, axes)
     with as_given(_texts_of_values(axes), "axes."):
-        check_values(design)
+        design = grid(**values)
     if tables.samples is not None:
         samples = tables.samples
         spreads = parsed_values(samples, content["samples"])

@@ -28,18 +28,13 @@ SUFFIXES = (".nc", ".csv", ".parquet", ".zarr")
 _MAX_CHUNK_POINTS = 1 << 18  # largest number of points of a chunk
 
 
-def dimension_names(study: xarray.Dataset) -> tuple[str, ...]:
-    """Return the names of the dimensions of a study, in the order of its arrays."""
-    return tuple(str(dim) for dim in next(iter(study.data_vars.values())).dims)
-
-
 def _chunk_blocks(study: xarray.Dataset) -> Blocks:
-    return Blocks.divide(tuple(study.sizes[dim] for dim in dimension_names(study)), _MAX_CHUNK_POINTS)
+    return Blocks.divide(tuple(study.sizes[dim] for dim in study.status.dims), _MAX_CHUNK_POINTS)
 
 
 def iterate_chunks(study: xarray.Dataset) -> Iterator[xarray.Dataset]:
     """Load the chunks of a study one after the other, in the order of the points; the last dimension varies fastest."""
-    dims, blocks = dimension_names(study), _chunk_blocks(study)
+    dims, blocks = study.status.dims, _chunk_blocks(study)
     for number in range(len(blocks)):
         yield study.isel(dict(zip(dims, blocks[number], strict=True))).load()
 
@@ -138,7 +133,7 @@ def _plain_dataset(study: xarray.Dataset) -> xarray.Dataset:
     """Return a study in chunks, with attributes of text only and without the encoding of its store."""
     plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})
     plain.attrs.pop("study", None)
-    return plain.chunk(dict(zip(dimension_names(study), _chunk_blocks(study).size, strict=True)))
+    return plain.chunk(dict(zip(study.status.dims, _chunk_blocks(study).size, strict=True)))
 
 
 def _write_parquet(study: xarray.Dataset, path: Path) -> None:
@@ -161,7 +156,7 @@ def _write_parquet(study: xarray.Dataset, path: Path) -> None:
 def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]]:
     """Yield the columns of each chunk by their heads, in the units of files."""
     names = [str(name) for name in (*study.coords, *study.data_vars)]
-    dims, reasons = dimension_names(study), invalid_reasons(study)
+    dims, reasons = study.status.dims, invalid_reasons(study)
     words = numpy.array([*(verdict.word for verdict in Verdict), "no result"])
     for chunk in iterate_chunks(study):
         variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))

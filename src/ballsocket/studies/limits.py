@@ -76,19 +76,16 @@ class Limit:
         """Ends of the range as arguments of a verdict."""
         return {"low": self.low, "high": self.high}
 
-    def evaluate(self, study: xarray.Dataset) -> Any:
-        """Compute the limited quantity at every point of a study, in mm, N, MPa or rad."""
-        if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
-            return self.cup.edge_distance(joint_dimension(study, "socket_radius"), study.half_angle, self.direction)
-        return study[self.name] if self.name in study.data_vars else joint_dimension(study, self.name)
-
     def bar(self, study: xarray.Dataset) -> Bounded:
-        """Return the limited quantity with its error bar at every point; without width if the study has no bounds."""
-        value = self.evaluate(study)
+        """Return the limited quantity with its error bar at every point, in mm, N, MPa or rad.
+
+        The bar has no width if the study has no bounds.
+        """
         if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
-            radius = joint_dimension(study, "socket_radius")
-            angles = (study.get(f"half_angle_{end}", study.half_angle) for end in ("high", "low"))
-            return Bounded(value, *(self.cup.edge_distance(radius, angle, self.direction) for angle in angles))
+            radius, angle = joint_dimension(study, "socket_radius"), study.half_angle
+            angles = (angle, *(study.get(f"half_angle_{end}", angle) for end in ("high", "low")))
+            return Bounded(*(self.cup.edge_distance(radius, angle, self.direction) for angle in angles))
+        value = study[self.name] if self.name in study.data_vars else joint_dimension(study, self.name)
         return Bounded(value, *(study.get(f"{self.name}_{end}", value) for end in ("low", "high")))
 
     def margin(self, study: xarray.Dataset) -> Bounded:

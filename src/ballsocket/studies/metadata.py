@@ -24,7 +24,7 @@ from ..core.storage.pieces import fingerprint
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of, lost_lengths
-from .axes import MaterialAxis, SampleAxis, TableAxis
+from .axes import SampleAxis
 from .design import Design
 from .parameters import MATERIAL_PARTS
 from .task import BOUNDS, VERDICT, Task
@@ -72,7 +72,7 @@ def variable_attributes(name: str) -> dict[str, Any]:
 
 def study_attributes(task: Task) -> dict[str, Any]:
     """Return the attributes of a study: title, model, joint, design, publications and version."""
-    remarks = [axis.remark for axis in task.design.axes if isinstance(axis, TableAxis) and axis.remark]
+    remarks = [axis.remark for axis in task.design.axes if axis.remark]
     labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
     # lengths of the joint that follow from varied ones: given ones in their own names, then stored ones
     lengths, derived = [name for name in task.design.names if name in LENGTHS], list[str]()
@@ -147,12 +147,10 @@ def missing_reasons(study: xarray.Dataset) -> dict[str, str]:
 
 def _missing_reasons(task: Task) -> dict[str, str]:
     liner, name = task.joint.liner, "liner_yield_stress"
-    by_material = [
-        axis.values[name] for axis in task.design.axes if isinstance(axis, MaterialAxis) and name in axis.names
-    ]
-    stated = [*by_material, *(numpy.asarray(value) for key, value in task.design.fixed.items() if key == name)]
-    varied = name in task.design.names
-    unknown = any(numpy.isnan(values).any() for values in stated) if varied else liner.yield_stress is None
+    stated: list[Any] = [axis.values_in()[name] for axis in task.design.axes if axis.labels and name in axis.names]
+    stated.append(task.design.fixed.get(name, 0.0))
+    unknown = any(numpy.isnan(values).any() for values in stated)
+    unknown |= name not in task.design.names and liner.yield_stress is None
     if "utilisation" not in task.quantities or not unknown:
         return {}
     return {"utilisation": unchecked_strength_reason(replace(task.joint, liner=liner.without_strengths()))}
@@ -163,7 +161,7 @@ def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
     import xarray
 
     coordinates: dict[str, tuple[tuple[str, ...], Any]] = {
-        name: ((axis.name,), values) for axis in task.design.axes for name, values in axis.values.items()
+        name: ((axis.name,), values) for axis in task.design.axes for name, values in axis.values_in().items()
     }
     coordinates |= {name: ((), numpy.asarray(value)) for name, value in task.design.constants.items()}
     return order_coordinates(
@@ -206,7 +204,9 @@ def study_identity(task: Task) -> dict[str, Any]:
 
 def describe_axes(design: Design) -> dict[str, Any]:
     """Describe the axes of a design as data for JSON: values, or seed and distributions of samples."""
-    return {axis.name: _as_plain_data(axis if isinstance(axis, SampleAxis) else axis.values) for axis in design.axes}
+    return {
+        axis.name: _as_plain_data(axis if isinstance(axis, SampleAxis) else axis.values_in()) for axis in design.axes
+    }
 
 
 def _as_plain_data(value: Any) -> Any:
@@ -217,7 +217,10 @@ def _as_plain_data(value: Any) -> Any:
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, numpy.ndarray | numpy.generic):
-        return _describe_array(numpy.asarray(value))
+        if value.size <= _MAX_LISTED_VALUES:
+            return _as_plain_data(value.tolist())
+        digest = sha256(numpy.ascontiguousarray(value).tobytes()).hexdigest()
+        return {"count": value.size, "first": float(value.flat[0]), "last": float(value.flat[-1]), "digest": digest}
     if isinstance(value, Mapping):
         return {str(key): _as_plain_data(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -249,14 +252,6 @@ def _describe_function(function: FunctionType) -> Any:
         "encloses": [_as_plain_data(cell.cell_contents) for cell in function.__closure__ or ()],
         "defaults": _as_plain_data(function.__defaults__),
     }
-
-
-def _describe_array(values: numpy.ndarray) -> Any:
-    """Return the values of a short array, or count, ends and digest of a long one."""
-    if values.size <= _MAX_LISTED_VALUES:
-        return _as_plain_data(values.tolist())
-    digest = sha256(numpy.ascontiguousarray(values).tobytes()).hexdigest()
-    return {"count": values.size, "first": float(values.flat[0]), "last": float(values.flat[-1]), "digest": digest}
 
 
 def list_differences(stored: Mapping[str, Any], requested: Mapping[str, Any], path: str = "") -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import product
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -189,13 +190,13 @@ class _Search:
     def find_optimum(self, seed: int, seconds: float) -> Optimum:
         """Find the best point from the best samples that fit into a time in s."""
         starts, searched, undecided = self._find_starts(seed, seconds)
-        fractions = min(map(self._refine, starts), key=lambda refined: refined[1])[0]
+        fractions = min(map(self._refine, starts), key=lambda point: self._value_and_gradient(point)[0])
         point, widths = self._parameters(fractions), [high - low for low, high in self.ranges.values()]
         value, gradient = self._value_and_gradient(fractions)
         active: list[str] = []
         for limit in self.limits:
             size = max(abs(end) for end in (limit.low, limit.high, 1e-3) if numpy.isfinite(end))
-            if abs(self._margin(fractions, limit)) < _ACTIVE_MARGIN * size:
+            if abs(self._margin(limit, fractions)) < _ACTIVE_MARGIN * size:
                 active.append(str(limit))
         for fraction, (name, (low, high)) in zip(fractions, self.ranges.items(), strict=True):
             if min(fraction, 1 - fraction) < _ACTIVE_FRACTION:
@@ -226,48 +227,53 @@ class _Search:
 
     def _find_starts(self, seed: int, seconds: float) -> tuple[list[Numbers], int, int]:
         """Return the best allowed points of a set of samples, the number of samples, and of the undecided ones."""
-        if not self.ranges:
-            point = self._study(grid(**self.sizes))
-            if not bool(allowed(point, self.limits)):
-                sizes = " and ".join(f"{name} = {value:g}" for name, value in self.sizes.items()) or "the joint"
-                raise ValueError(refusal_reason(point, self.limits, f"{sizes} is not allowed", f"for {sizes}"))
-            return [numpy.zeros(0)], 1, 0
-        count = int(numpy.clip(seconds / self.model.seconds_a_press, _MIN_SAMPLES, _MAX_SAMPLES))
-        count = 1 << (count.bit_length() - 1)
-        uniform: dict[str, Any] = {name: Rectangular(low=low, high=high) for name, (low, high) in self.ranges.items()}
-        points = self._study(sample(count, seed=seed, **uniform) * grid(**self.sizes))
-        undecided = count_verdicts(points, self.limits)[Verdict.UNDECIDED.word]
-        value = points[self.minimise].where(allowed(points, self.limits)).values
-        if numpy.isnan(value).all():
+        if self.ranges:
+            count = int(numpy.clip(seconds / self.model.seconds_a_press, _MIN_SAMPLES, _MAX_SAMPLES))
+            count = 1 << (count.bit_length() - 1)
+            uniform: dict[str, Any] = {
+                name: Rectangular(low=low, high=high) for name, (low, high) in self.ranges.items()
+            }
+            design = sample(count, seed=seed, **uniform) * grid(**self.sizes)
             joints = f"of {count} joints within the ranges"
-            raise ValueError(refusal_reason(points, self.limits, f"none {joints} is allowed", f"for any {joints}"))
-        best = numpy.argsort(value)[: min(_STARTS, int(numpy.isfinite(value).sum()))]
-        columns = [(points[name].values[best] - low) / (high - low) for name, (low, high) in self.ranges.items()]
-        return list(numpy.stack(columns, axis=-1)), count, undecided
+            refused, place = f"none {joints} is allowed", f"for any {joints}"
+        else:
+            design = grid(**self.sizes)
+            sizes = " and ".join(f"{name} = {value:g}" for name, value in self.sizes.items()) or "the joint"
+            refused, place = f"{sizes} is not allowed", f"for {sizes}"
+        points = self._study(design)
+        values = points[self.minimise].where(allowed(points, self.limits)).values.ravel()
+        n_allowed = int(numpy.isfinite(values).sum())
+        if not n_allowed:
+            raise ValueError(refusal_reason(points, self.limits, refused, place))
+        starts = [
+            numpy.array([(points[name].values[best] - low) / (high - low) for name, (low, high) in self.ranges.items()])
+            for best in numpy.argsort(values)[: min(_STARTS, n_allowed)]
+        ]
+        return starts, values.size, count_verdicts(points, self.limits)[Verdict.UNDECIDED.word]
 
-    def _refine(self, start: Numbers) -> tuple[Numbers, float]:
+    def _refine(self, start: Numbers) -> Numbers:
         """Minimise from a start with SLSQP; return the start itself if the result is not better or not allowed."""
         if not self.ranges:
-            return start, self._value_and_gradient(start)[0]
+            return start
         from scipy.optimize import minimize
 
         scale = self._value_and_gradient(start)[0]
-        constraints = [
-            {"type": "ineq", "fun": lambda fractions, limit=limit: self._margin(fractions, limit)}
-            for limit in self.limits
-        ]
 
         def relative_value(fractions: Numbers) -> tuple[float, Numbers]:
             value, gradient = self._value_and_gradient(fractions)
             return value / scale, gradient / scale
 
         result = minimize(
-            relative_value, start, jac=True, method="SLSQP", bounds=[(0.0, 1.0)] * len(start), constraints=constraints
+            relative_value,
+            start,
+            jac=True,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(start),
+            constraints=[{"type": "ineq", "fun": partial(self._margin, limit)} for limit in self.limits],
         )
         end = numpy.clip(result.x, 0.0, 1.0)
-        is_allowed = all(self._margin(end, limit) > -_MARGIN_TOLERANCE for limit in self.limits)
-        best = end if is_allowed and self._value_and_gradient(end)[0] <= scale else start
-        return best, self._value_and_gradient(best)[0]
+        is_allowed = all(self._margin(limit, end) > -_MARGIN_TOLERANCE for limit in self.limits)
+        return end if is_allowed and self._value_and_gradient(end)[0] <= scale else start
 
     def _value_and_gradient(self, fractions: Numbers) -> tuple[float, Numbers]:
         """Compute the minimised quantity and its derivatives with respect to the fractions."""
@@ -276,7 +282,7 @@ class _Search:
         gradient = [slopes[self.minimise][name] * (high - low) for name, (low, high) in self.ranges.items()]
         return values[self.minimise], numpy.array(gradient)
 
-    def _margin(self, fractions: Numbers, limit: Limit) -> float:
+    def _margin(self, limit: Limit, fractions: Numbers) -> float:
         """Compute the margin of a limit for the worse end of the error bar, negative if the limit is not kept."""
         return float(limit.margin(self._study(grid(**self._parameters(fractions)))).low)
 

@@ -25,11 +25,11 @@ from ..model_catalogue import catalogue, reference
 from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
-from .design import Design, check_values, grid, is_number
+from .design import Design, check_samples, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
 from .sampling import CHUNK_SIZE
-from .store import BlockStore, StudyStore, check_store, read
+from .store import StudyStore, read
 from .task import (
     DEFAULT_QUANTITIES,
     DTYPES,
@@ -147,8 +147,6 @@ def study(
     11.27
     """
     needs("study", "xarray", "zarr")
-    if store is not None:
-        check_store(store)
     if not isinstance(model, Model):
         hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
         raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
@@ -158,17 +156,18 @@ def study(
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
     task = _create_task(model, joint, design, axes, tuple(quantities))
-    study_store = None if store is None else StudyStore(folder_at(store))
-    if study_store is None or not study_store.folder.exists():
-        _check_space(task, None if study_store is None else study_store.folder)
-    check_values(task.design)
-    if study_store is None:
+    folder = None if store is None else folder_at(store)
+    if folder is None or not folder.exists():
+        _check_space(task, folder)
+    check_samples(task.design)
+    if folder is None:
         return make_dataset(task, _compute_in_memory(task, engine, listen))
-    study_store.prepare(task)
-    run = PieceRun(task, range(len(task.blocks)), BlockStore(task, study_store))
-    _check_space(task, study_store.folder, sum(map(task.blocks.n_points, run.missing)))
-    _compute_into_store(study_store, task, run, engine, listen)
-    return read(str(study_store.folder))
+    study_store = StudyStore(task, folder)
+    study_store.prepare()
+    run = PieceRun(task, range(len(task.blocks)), study_store)
+    _check_space(task, folder, sum(map(task.blocks.n_points, run.missing)))
+    _compute_into_store(study_store, run, engine, listen)
+    return read(str(folder))
 
 
 def _create_task(
@@ -249,8 +248,8 @@ def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str
     return arrays
 
 
-def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
-    n_stored = len(run.stored)
+def _compute_into_store(store: StudyStore, run: PieceRun, engine: Engine, listen: Listener) -> None:
+    task, n_stored = store.task, len(run.stored)
     try:
         for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):
             n_stored += 1
@@ -300,5 +299,4 @@ def check_model_domain(model: Model, joint: Joint, ranges: Mapping[str, Any]) ->
 def joint_of_arrays(joint: Joint, ranges: Mapping[str, Any]) -> Joint:
     """Return all joints of a range as one joint of arrays; parameters are those of `default_model`."""
     design = grid(**ranges)
-    check_values(design)
     return press_arguments(joint, design.values_in([slice(None)] * len(design.axes)))[0]

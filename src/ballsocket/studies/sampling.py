@@ -49,9 +49,14 @@ def _draw_sobol(dimension: int, seed: int, start: int, stop: int) -> Numbers:
         engine.reset()
     if engine.num_generated < start:
         engine.fast_forward(start - engine.num_generated)
+    return draw_points(engine, stop - start)
+
+
+def draw_points(engine: Sobol, count: int) -> Numbers:
+    """Draw the next points of a Sobol sequence, shape (count, dimension)."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
-        points: Numbers = engine.random(stop - start)
+        points: Numbers = engine.random(count)
     return points
 
 

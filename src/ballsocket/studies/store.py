@@ -13,7 +13,6 @@ from zlib import crc32
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import needs
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceStore
 from .axes import Axis
@@ -44,11 +43,6 @@ _MAX_DIFFERENCES = 8  # number of differences in a message
 _MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
 
 
-def check_store(path: str | Path) -> None:
-    """Check that a store can be opened; raise ValueError, ImportError or OSError for an address that cannot."""
-    folder_at(path).exists()
-
-
 def read(path: str | Path) -> xarray.Dataset:
     """Open a stored study at a path or an address; its numbers are read when they are used.
 
@@ -59,7 +53,7 @@ def read(path: str | Path) -> xarray.Dataset:
 
     folder = folder_at(path)
     if folder.exists():
-        StudyStore(folder).read_identity()
+        _read_identity(folder)
     try:
         with folder.errors():
             options: Any = {"engine": "zarr", "zarr_format": 3, "consolidated": False, "chunks": None}
@@ -69,108 +63,96 @@ def read(path: str | Path) -> xarray.Dataset:
     return order_coordinates(dataset[[name for name in DTYPES if name in dataset.data_vars]])
 
 
-@dataclass(frozen=True)
-class StudyStore:
-    """Zarr group of one study in a local or remote folder."""
+def _read_identity(folder: ResultFolder) -> Mapping[str, Any]:
+    """Read the identity of a stored study; raise ValueError if the folder is not a study."""
+    try:
+        identity = json.loads(folder.read(_LABEL_FILE, _MAX_LABEL_BYTES))["attributes"][_IDENTITY]
+    except (*_MISSING_FILE_ERRORS, ValueError, LookupError, TypeError, RecursionError) as error:
+        raise ValueError(f"{folder} exists and is not a study") from error
+    if not isinstance(identity, Mapping):
+        raise ValueError(f"{folder} exists and is not a study")
+    return identity
 
+
+@dataclass(frozen=True, eq=False)
+class StudyStore(PieceStore):
+    """Store of the blocks of a study in a Zarr group, from which xarray reads them."""
+
+    task: Task
     folder: ResultFolder
 
-    def prepare(self, task: Task) -> None:
-        """Create the group with labels and without results, or check that it has the study of a task.
+    def prepare(self) -> None:
+        """Create the group with labels and without results, or check that it has the study of the task.
 
         Raises ValueError: the folder has another study, a study of another version, or something else.
         Raises OSError: the folder is not writable.
         """
-        needs("study", "zarr")
-        requested = json.loads(json.dumps(study_identity(task)))
+        requested = json.loads(json.dumps(study_identity(self.task)))
         if not self.folder.exists():
             try:
-                self.folder.create(lambda draft: _write_group(draft, task, requested))
+                self.folder.create(lambda draft: _write_group(draft, self.task, requested))
                 return
             except OSError:
                 if not self.folder.exists():  # else another process created it first
                     raise
-        stored = self.read_identity()
-        if stored == requested:
-            self._repair_labels(task, requested)
-        else:
+        stored = _read_identity(self.folder)
+        if stored != requested:
             differences = "; ".join(list_differences(stored, requested)[:_MAX_DIFFERENCES])
             raise ValueError(
                 f"{self.folder} has another study: {differences}. Choose another folder, or remove this one"
             )
+        self._repair_labels(requested)
 
-    def _repair_labels(self, task: Task, identity: Mapping[str, Any]) -> None:
+    def _repair_labels(self, identity: Mapping[str, Any]) -> None:
         """Write damaged or missing labels again; they are all files of a group without results."""
         # a temporary folder, since the store may be read-only
         with TemporaryDirectory() as temporary_folder:
             draft = Path(temporary_folder) / "draft"
-            _write_group(draft, task, identity)
+            _write_group(draft, self.task, identity)
             for label in filter(Path.is_file, draft.rglob("*")):
                 name, content = label.relative_to(draft).as_posix(), label.read_bytes()
                 try:
-                    stored = self.folder.read(name)
+                    is_intact = self.folder.read(name) == content
                 except _MISSING_FILE_ERRORS:
-                    stored = b""
-                if stored != content:
+                    is_intact = False
+                if not is_intact:
                     self.folder.write(name, content)
 
-    def read_identity(self) -> Mapping[str, Any]:
-        """Read the identity of the stored study.
+    def _open_group(self, mode: Any) -> Any:
+        import zarr
 
-        Raises ValueError: the folder is not a study.
-        """
-        try:
-            identity = json.loads(self.folder.read(_LABEL_FILE, _MAX_LABEL_BYTES))["attributes"][_IDENTITY]
-        except (*_MISSING_FILE_ERRORS, ValueError, LookupError, TypeError, RecursionError) as error:
-            raise ValueError(f"{self.folder} exists and is not a study") from error
-        if not isinstance(identity, Mapping):
-            raise ValueError(f"{self.folder} exists and is not a study")
-        return identity
-
-
-@dataclass(frozen=True, eq=False)
-class BlockStore(PieceStore):
-    """Store of the blocks of a study in its Zarr group, from which xarray reads them."""
-
-    task: Task
-    store: StudyStore
+        return zarr.open_group(self.folder.zarr_store(), mode=mode, zarr_format=3)
 
     def load(self, numbers: Sequence[int]) -> dict[int, None]:
         """Return the numbers of those blocks that are stored with a correct checksum, without their values."""
-        import zarr
-
-        group = zarr.open_group(self.store.folder.zarr_store(), mode="r", zarr_format=3)
+        group = self._open_group("r")
         try:
-            checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
+            checksums = group[CHECKSUM][:]
         except Exception:  # without the list of checksums, every block is computed again
             return {}
-        return {
-            number: None
-            for number in numbers
-            if checksums[number] >= 0 and checksums[number] == self._stored_checksum(group, number)
-        }
 
-    def _stored_checksum(self, group: Any, number: int) -> int | None:
-        try:
-            return self._checksum({name: group[name][self.task.blocks[number]] for name in self.task.variables})
-        except Exception:  # a damaged file can raise any error in its decoder; the block is computed again
-            return None
+        def is_stored(number: int) -> bool:
+            try:
+                stored = {name: group[name][self.task.blocks[number]] for name in self.task.variables}
+            except Exception:  # a damaged file can raise any error in its decoder; the block is computed again
+                return False
+            return self._checksum(stored) == checksums[number]
+
+        return {number: None for number in numbers if checksums[number] >= 0 and is_stored(number)}
+
+    def save(self, number: int, result: Mapping[str, Numbers]) -> None:
+        """Write the values of a block, and last its checksum."""
+        with self.folder.errors():
+            group = self._open_group("r+")
+            for name, values in result.items():
+                group[name][self.task.blocks[number]] = values
+            group[CHECKSUM][number] = self._checksum(result)
 
     def _checksum(self, results: Mapping[str, Numbers]) -> int:
         checksum = 0
         for name in self.task.variables:
             checksum = crc32(numpy.ascontiguousarray(results[name]).view(numpy.uint8).data, checksum)
         return checksum
-
-    def save(self, number: int, result: Mapping[str, Numbers]) -> None:
-        """Write the values of a block, and last its checksum."""
-        import zarr
-
-        with self.store.folder.errors():
-            group = zarr.open_group(self.store.folder.zarr_store(), mode="r+", zarr_format=3)
-            for name, values in result.items():
-                group[name][self.task.blocks[number]] = values  # type: ignore[index]
-            group[CHECKSUM][number] = self._checksum(result)  # type: ignore[index]
 
 
 def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:

@@ -15,7 +15,7 @@ from ..core.arrays import to_list
 from ..core.kinds import PERCENT, Unit
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Amount, Sentence
-from .file_formats import dimension_names, iterate_chunks
+from .file_formats import iterate_chunks
 from .limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
 from .metadata import held_in, held_lines, invalid_reasons, missing_reasons
 from .parameters import MATERIAL_PARTS
@@ -126,7 +126,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
 
 def _values(study: xarray.Dataset) -> dict[str, Any]:
     """Return the varied parameters and the results at all points, in the order of the axes."""
-    flat = study.stack(point=dimension_names(study)) if dimension_names(study) else study.expand_dims("point")
+    flat = study.stack(point=study.status.dims) if study.status.dims else study.expand_dims("point")
     bounds = [name for name in BOUNDS if name in study.data_vars]
     values = {n: _plain_values(flat[n].values) for n in (*_varying_parameters(study), *_result_names(study), *bounds)}
     if VERDICT in study.data_vars:
@@ -167,7 +167,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         raise ValueError(refusal_reason(study, limits, "no point of the map is allowed", "at any point of the map"))
     quantities = {}
     for name in _result_names(study) if counts[Verdict.KEPT.word] else ():
-        values = study[name].where(good).transpose(*dimension_names(study)).values
+        values = study[name].where(good).transpose(*study.status.dims).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": _coordinates(study, end)} for end in ends]
     return {
@@ -257,7 +257,7 @@ def _result_names(study: xarray.Dataset) -> list[str]:
 
 def _coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
     """Return the parameters at a point, by its index in the order of the dimensions; None is an unknown strength."""
-    dims = dimension_names(study)
+    dims = study.status.dims
     index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
     values = {}
     for name, variable in study.coords.items():

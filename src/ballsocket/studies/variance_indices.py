@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from itertools import combinations
 from math import comb
@@ -12,7 +11,8 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.executors.processes import check_memory
-from .distributions import Distribution, normal_quantiles, probabilities_of
+from .distributions import Distribution, normal_quantiles
+from .sampling import draw_points
 
 SampledFunction = Callable[[Numbers], Numbers]
 """Function from samples, shape (n_parameters, n_points), to quantities, shape (n_quantities, n_points)."""
@@ -22,10 +22,9 @@ MAX_CORRELATED = 10
 
 _RESAMPLES = 999  # number of bootstrap resamples
 _CHUNK_SIZE = 1 << 21  # number of values in a chunk of resamples
-_DEFAULT_TERMS = 200  # number of averaged terms for which memory is checked if it is not stated
 
 
-def check_sample_memory(count: int, n_terms: int = _DEFAULT_TERMS) -> None:
+def check_sample_memory(count: int, n_terms: int) -> None:
     """Check that the averaged terms of `count` samples fit into the memory; raise ValueError otherwise."""
     check_memory(f"indices of {count} samples", 24 * count * n_terms)  # values, terms, and a copy of one of them
 
@@ -145,6 +144,8 @@ def shapley_effects(
     require(
         "number of parameters", dimension, dimension <= MAX_CORRELATED, f"correlated ones are at most {MAX_CORRELATED}"
     )
+    from scipy.special import ndtr
+
     normal = [normal_quantiles(half) for half in _two_sets(dimension, count, seed)]
     subsets = [subset for size in range(1, dimension) for subset in combinations(range(dimension), size)]
 
@@ -157,7 +158,7 @@ def shapley_effects(
         innovations[len(shared) :] = normal[1][order[len(shared) :]]
         correlated = numpy.empty_like(first)
         correlated[order] = factor @ innovations
-        rows = zip(distributions, probabilities_of(correlated), strict=True)
+        rows = zip(distributions, ndtr(correlated), strict=True)
         return evaluate(numpy.stack([distribution.frozen.ppf(row) for distribution, row in rows]))
 
     f_a, f_b = values(tuple(range(dimension))), values(())
@@ -197,20 +198,16 @@ def _two_sets(dimension: int, count: int, seed: int) -> Numbers:
     """Return two independent sets of Sobol points, shape (2, dimension, count)."""
     from scipy.stats.qmc import Sobol
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
-        points = Sobol(2 * dimension, bits=64, rng=numpy.random.default_rng(seed)).random(count)
+    points = draw_points(Sobol(2 * dimension, bits=64, rng=numpy.random.default_rng(seed)), count)
     return numpy.ascontiguousarray(points.T).reshape(2, dimension, count)
 
 
 def _evaluate_mixed(evaluate: SampledFunction, base: Numbers, other: Numbers) -> Numbers:
     """Evaluate the base samples with each parameter of the other set: (n_parameters, n_quantities, n_points)."""
     dimension, count = base.shape
-    mixed = numpy.tile(base, (dimension, 1, 1))
-    index = numpy.arange(dimension)
-    mixed[index, index] = other
-    results = evaluate(numpy.moveaxis(mixed, 0, 1).reshape(dimension, dimension * count))
-    return numpy.ascontiguousarray(numpy.moveaxis(results.reshape(-1, dimension, count), 1, 0))
+    mixed = numpy.where(numpy.eye(dimension, dtype=bool)[:, :, None], other[:, None], base[:, None])
+    results = evaluate(mixed.reshape(dimension, dimension * count))
+    return numpy.ascontiguousarray(results.reshape(-1, dimension, count).swapaxes(0, 1))
 
 
 def _with_intervals(

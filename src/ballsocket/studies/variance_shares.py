@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -112,7 +111,14 @@ def sensitivity(
     n = len(distributions)
     n_sets = 2**n if correlation else 2 * n + 2 + n * n // 2 if second_order else 2 * n + 2
     check_sample_memory(count, len(names) * n_sets)
-    evaluate = _SampleEvaluation(model, joint, tuple(distributions), names, fixed)
+    independent_sets: list[Numbers] = []
+
+    def evaluate(samples: Numbers) -> Numbers:
+        results = _press_samples(model, joint, dict(zip(distributions, samples, strict=True)), fixed, names)
+        if len(independent_sets) < 2:
+            independent_sets.append(results)
+        return results
+
     spreads = list(distributions.values())
     if correlation:
         indices = shapley_effects(evaluate, spreads, matrix, count, seed, confidence)
@@ -120,7 +126,7 @@ def sensitivity(
         indices = sobol_indices(evaluate, spreads, count, seed, confidence, second_order)
     medians = {name: float(distribution.frozen.median()) for name, distribution in distributions.items()}
     local = elasticities(model, joint, names, {**medians, **fixed})
-    samples = numpy.concatenate(evaluate.tables, axis=1)
+    samples = numpy.concatenate(independent_sets, axis=1)
     dims = ("quantity", "parameter", "other_parameter")
     held = hold(joint, (*distributions, *fixed))
     attributes: dict[str, Any] = {"model": model.name, "samples": count, HELD: json.dumps(held)}
@@ -143,36 +149,25 @@ def sensitivity(
     )
 
 
-@dataclass
-class _SampleEvaluation:
-    """Function from samples to quantities; `tables` are those of the first two sets, which are independent."""
+def _press_samples(
+    model: Model, joint: Joint, samples: Mapping[str, Numbers], load: Mapping[str, float], quantities: Sequence[str]
+) -> Numbers:
+    """Compute the quantities of samples, shape (n_quantities, n_points).
 
-    model: Model
-    joint: Joint
-    names: tuple[str, ...]
-    quantities: tuple[str, ...]
-    fixed: Mapping[str, float]
-    tables: list[Numbers] = field(default_factory=list)
-
-    def __call__(self, values: Numbers) -> Numbers:
-        """Compute the quantities, shape (n_quantities, n_points), of samples, shape (n_parameters, n_points)."""
-        count = values.shape[1]
-        table = numpy.empty((len(self.quantities), count))
-        for first in range(0, count, _POINTS_PER_PRESS):
-            part = slice(first, first + _POINTS_PER_PRESS)
-            scattered = dict(zip(self.names, values[:, part], strict=True))
-            results = press_quantities(self.model, self.joint, {**scattered, **self.fixed}, self.quantities)
-            table[:, part] = [
-                numpy.broadcast_to(results[name], scattered[self.names[0]].shape) for name in self.quantities
-            ]
-        n_bad = int((~numpy.isfinite(table)).any(axis=0).sum())
-        if n_bad:
-            raise ValueError(
-                f"{self.model.name} has no answer for {n_bad} of {count} samples: narrow the distributions"
-            )
-        for name, row in zip(self.quantities, table, strict=True) if not self.tables else ():
-            if numpy.ptp(row) == 0:
-                raise ValueError(f"{name} does not change with {' and '.join(self.names)}: its variance is zero")
-        if len(self.tables) < 2:
-            self.tables.append(table)
-        return table
+    Raises ValueError: samples without a result, or a quantity that does not change.
+    """
+    count = len(next(iter(samples.values())))
+    table = numpy.empty((len(quantities), count))
+    for first in range(0, count, _POINTS_PER_PRESS):
+        part = slice(first, first + _POINTS_PER_PRESS)
+        values = {name: column[part] for name, column in samples.items()}
+        results = press_quantities(model, joint, {**values, **load}, quantities)
+        for name, row in zip(quantities, table, strict=True):
+            row[part] = results[name]
+    n_bad = int((~numpy.isfinite(table)).any(axis=0).sum())
+    if n_bad:
+        raise ValueError(f"{model.name} has no answer for {n_bad} of {count} samples: narrow the distributions")
+    for name, row in zip(quantities, table, strict=True):
+        if numpy.ptp(row) == 0:
+            raise ValueError(f"{name} does not change with {' and '.join(samples)}: its variance is zero")
+    return table

@@ -169,7 +169,7 @@ def move_limit(results: Any, screen: Screen, number: int, point: tuple[float, fl
     limit = limits_of(screen)[number]
     across, up = screen.across, screen.up
     x, y = (min(max(at, axis.low), axis.high) for at, axis in zip(point, (across, up), strict=True))
-    field = limit.evaluate(results) + 0.0 * results[across.name] + 0.0 * results[up.name]
+    field = limit.bar(results).value + 0.0 * results[across.name] + 0.0 * results[up.name]
     value = float(field.interp({across.name: x, up.name: y}))
     if not isfinite(value):
         raise ValueError(f"{limit.name} has no number there: the limit stays where it was")
