@@ -48,6 +48,16 @@ def test_a_closed_reader_ends_the_program_without_a_message(words):
         assert process.wait() == 141
 
 
+def test_closed_readers_of_output_and_messages_cost_no_file(tmp_path):
+    text = 'joint = "hip-28"\n[axes]\nforce = [1000, 2000]\n'
+    (tmp_path / "study.toml").write_text(text, encoding="ascii")
+    words = [*PROGRAM, "study", "study.toml", "--out", "table.csv"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as process:
+        process.stdout.close()
+        assert process.wait() == 141
+    assert len((tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()) == 3
+
+
 def test_a_full_disk_is_reported_in_one_line():
     full = Path("/dev/full")
     if not full.exists():

@@ -29,6 +29,10 @@ def test_a_coefficient_is_not_evaluated(units, read):
         ("", {}),
         ("°", {"degree": 1}),
         ("((mm))", {"millimeter": 1}),
+        ("mm³N⁻¹m⁻¹", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("mm^3 N-1 m-1", {"millimeter": 3, "newton": -1, "meter": -1}),
+        ("Newtons per square Millimetre", {"newton": 1, "millimeter": -2}),
+        ("cubic millimeters per newton", {"millimeter": 3, "newton": -1}),
     ],
 )
 def test_a_product_of_units_is_parsed(text, units):
@@ -49,6 +53,39 @@ def test_anything_else_is_no_product_of_units(text):
 def test_units_of_another_scale_than_a_factor_are_refused(text):
     with pytest.raises(ValueError, match=r"is not a coefficient, such as '1e-6 mm/m'"):
         wear_per_slide("coefficient", text)
+
+
+@pytest.mark.parametrize(
+    ("kind", "texts"),
+    {
+        "force": ("3000 Newton", "3000 newtons", "3 Kilonewtons", "3 KILONEWTON", "3000 N."),
+        "length": ("1 Inch", "1 IN", '1"', "1″", "25.4 Millimetres", "25400 Microns", "1000 mil"),
+        "angle": ("40 Degrees", "40 DEG", "40º", "40 deg.", "2400 ArcMinutes"),
+        "modulus": ("100 Bar", "10 Megapascals", "10 Newton/mm²", "10 newtons per square millimeter"),
+    }.items(),
+)
+def test_full_names_may_have_any_capitals_and_plurals(kind, texts):
+    first, *others = [parse("x", text, kind) for text in texts]
+    assert others == pytest.approx([first] * len(others), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "right"),
+    [
+        ("length", "16 Mm", "write mm, not Mm"),
+        ("force", "3 KN", "write kN, not KN"),
+        ("force", "3 mn", "write MN or mN, not mn"),
+        ("modulus", "1 Mpa", "write MPa or mPa, not Mpa"),
+        ("modulus", "1 n/mm²", "write N, not n"),
+        ("angle", "45 Grad", "write deg or gon, not Grad"),
+        ("angle", "45 grad", "write deg or gon, not grad"),
+        ("number", "40 per cent", "40 % is 0.4"),
+        ("force", "250 % of body weight", "2.5 times the weight of 75 kg is 1839 N"),
+    ],
+)
+def test_a_symbol_that_may_mean_two_units_is_refused_with_the_right_ones(kind, text, right):
+    with pytest.raises(ValueError, match=f"x = '{text}' is not .*; {right}"):
+        parse("x", text, kind)
 
 
 def test_a_quantity_has_at_most_a_hundred_characters():

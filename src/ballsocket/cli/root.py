@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
-from io import TextIOWrapper
+from io import BufferedWriter, FileIO, TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, NoReturn, TextIO
 
@@ -164,12 +164,37 @@ def _replace_by_ascii(error: UnicodeError) -> tuple[str, int]:
     return "".join(_ASCII_REPLACEMENTS.get(char, "?") for char in error.object[error.start : error.end]), error.end
 
 
+class _Output(FileIO):
+    """Output whose reader may leave, as `head` does: the command continues and writes its files."""
+
+    has_reader = True
+
+    def write(self, data: Any) -> int:
+        """Write bytes, or discard them if nobody reads them any more."""
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            self.has_reader = False
+            _discard_output(self)
+            return len(data)
+
+
+def _tolerant(stream: Any) -> Any:
+    """Return a stream to the same file for which every character can be encoded, and whose reader may leave."""
+    if not isinstance(stream, TextIOWrapper):
+        return stream
+    raw = getattr(stream.buffer, "raw", stream.buffer)  # without a buffer if Python is unbuffered
+    if type(raw) is FileIO:
+        buffer = BufferedWriter(_Output(raw.fileno(), "w", closefd=False))
+        stream = TextIOWrapper(buffer, stream.encoding, line_buffering=stream.line_buffering)
+    stream.reconfigure(errors="degrade")
+    return stream
+
+
 def main() -> None:
     """Run the program; print errors that the user can correct as one line on stderr."""
     codecs.register_error("degrade", _replace_by_ascii)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="degrade")
+    sys.stdout, sys.stderr = _tolerant(sys.stdout), _tolerant(sys.stderr)
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
     with _exit_on_sigterm():
@@ -193,14 +218,8 @@ def _run() -> int:
         result = app(prog_name=PROGRAM, standalone_mode=False) or SUCCESS
         for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.flush()  # now, so that an error in writing is still reported
-        return int(result)
-    except SystemExit as stop:
-        if isinstance(stop.__context__, BrokenPipeError):  # rich exits with an error status
-            return BROKEN_PIPE
-        raise
-    except BrokenPipeError:
-        _discard_output()
-        return BROKEN_PIPE
+        output = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
+        return int(result) or (SUCCESS if getattr(output, "has_reader", True) else BROKEN_PIPE)
     except typer.Abort:
         return INTERRUPTED
     except UsageError as error:
@@ -286,7 +305,7 @@ def echo_path(path: str | Path, more: str = "") -> None:
     typer.echo(_escape(f"{address_of(path) or path}{more}"))
 
 
-def _discard_output(stream: TextIO | None = None) -> None:
+def _discard_output(stream: TextIO | FileIO | None = None) -> None:
     """Redirect a stream to the null device, so that buffered output causes no error when Python exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), (stream or sys.stdout).fileno())
 

@@ -289,11 +289,11 @@ def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INT
     return value
 
 
-_PERCENTAGE = re.compile(r"\s*([-+.\deE]+)\s*%\s*")
+_PERCENTAGE = re.compile(r"\s*([-+.\deE]+)\s*(?:%|per\s?cent|pct)\s*", re.IGNORECASE)
 
 
 def number_of_percent(value: Any) -> str | None:
-    """Return the number of a percentage as text, such as "10" of "10 %"; None for any other value."""
+    """Return the number of a percentage as text, such as "10" of "10 %" or "10 per cent"; None for any other value."""
     match = _PERCENTAGE.fullmatch(value) if isinstance(value, str) else None
     return None if match is None else match[1]
 

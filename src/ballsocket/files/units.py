@@ -13,7 +13,7 @@ from functools import cache
 from math import isinf, radians
 from typing import Any
 
-from ..core.checks import shown
+from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 
 LONGEST = 100  # characters of a quantity
@@ -24,12 +24,25 @@ _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _FRACTION = re.compile(r"([-+]?)(?:(\d+)(?:\s+|-))?(\d+)/0*([1-9]\d*)(?![\d.])", re.ASCII)
 _TOKEN = re.compile(
     r"""(?P<blank>\s+)
-    | (?P<name>[A-Za-z\u00b5\u03bc\u00b0]+)
-      (?:(?P<digit>[2-9\u00b2\u00b3](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?(?:[1-9]|0\.5))(?!\d))?
+    | (?P<name>[A-Za-z\u00b5\u03bc]+|[\u00b0\u00ba\u02da"\u2033])
+      (?:(?P<digit>-?[1-9](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?(?:[1-9]|0\.5))(?!\d))?
     | (?P<sign>[*/()\u00b7\u00d7\u22c5.])""",
     re.ASCII | re.VERBOSE,
 )
-_SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
+_SUPERSCRIPTS = str.maketrans("\u207b\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-123456789")
+_WORD = re.compile(r"[^\W\d_]+")
+_PHRASES = {
+    re.compile(words, re.ASCII | re.IGNORECASE): sign
+    for words, sign in {
+        r"\s+per\s+": "/",
+        r"\bsquare[ _-](\w++)": r"\1^2",
+        r"\bcubic[ _-](\w++)": r"\1^3",
+        r"\bpounds?[ _-]force\b": "lbf",
+        r"\bkilograms?[ _-]force\b": "kgf",
+    }.items()
+}
+"""Signs and symbols for words of full names, such as "newtons per square millimetre"."""
+
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 
 _COMMON_UNITS = {
@@ -44,9 +57,27 @@ _COMMON_UNITS = {
     "MPa": "megapascal",
     "GPa": "gigapascal",
     "deg": "degree",
-    "\u00b0": "degree",
+    "degree": "degree",
 }
 """Names of common units in pint, whose import takes as long as a press."""
+
+_SIGNS = {
+    **dict.fromkeys("\u00b0\u00ba\u02da", "degree"),
+    **dict.fromkeys('"\u2033', "inch"),
+    **dict.fromkeys(("mil", "mils"), "thou"),  # an angle in pint, and the length of imperial pages
+}
+"""Names of units by their signs, and by the signs that keyboards have in place of them."""
+
+_SPELLINGS = {
+    **{unit.lower(): unit for unit in ("um", "mm", "cm", "N", "kN", "Pa", "kPa", "GPa", "mg", "kg", "Hz", "kHz")},
+    "mpa": "MPa or mPa",
+    "mn": "MN or mN",
+    "grad": "deg or gon",
+    "mikrometer": "um",
+    "sekunden": "s",
+    "zoll": "in",
+}
+"""Spellings of symbols, by their small letters, whose other spellings are wrong or may mean two units."""
 
 _COMMON_FACTORS: dict[tuple[tuple[str, float], ...], float] = {
     (("micrometer", 1), ("millimeter", 1)): 0.001,
@@ -168,7 +199,10 @@ def parse_units(text: str) -> Units:
     """
     if len(text) > LONGEST:
         raise ValueError(f"a unit has at most {LONGEST} characters, got {len(text)}")
-    tokens = _tokens(text)
+    plain = text.translate(_SUPERSCRIPTS).strip().removesuffix(".")
+    for words, sign in _PHRASES.items():
+        plain = words.sub(sign, plain)
+    tokens = _tokens(plain)
     units = _product(tokens) if tokens else {}
     if tokens:
         raise ValueError(f"{shown(text)} has an unexpected {tokens[-1][0]!r}")
@@ -207,7 +241,7 @@ def _product(tokens: list[re.Match[str]]) -> dict[str, float]:
 def _factor(tokens: list[re.Match[str]]) -> dict[str, float]:
     token = tokens.pop() if tokens else None
     if token is not None and token["name"]:
-        power = token["power"] or (token["digit"] or "1").translate(_SUPERSCRIPTS)
+        power = token["power"] or token["digit"] or "1"
         return {_unit_name(token["name"]): float(power) if "." in power else int(power)}
     if token is None or token["sign"] != "(":
         raise ValueError("a unit is missing before or behind a sign")
@@ -220,19 +254,39 @@ def _factor(tokens: list[re.Match[str]]) -> dict[str, float]:
 
 def _unit_name(text: str) -> str:
     """Return the name of a unit in pint; the common units need no import of pint."""
-    if text in _COMMON_UNITS:
-        return _COMMON_UNITS[text]
-    import pint
-
-    try:
-        name = str(_registry().get_name("degree" if text == "\u00b0" else text))
-    except (pint.PintError, ValueError) as error:
-        raise ValueError(f"{shown(text)} is not a known unit") from error
+    symbol = _SIGNS.get(text, text)
+    if symbol in _COMMON_UNITS:
+        return _COMMON_UNITS[symbol]
+    if right := _right_spelling(symbol):
+        raise ValueError(f"{shown(text)} is no unit: write {right}")
+    name = _pint_name(symbol)
     if not name:  # "dimensionless"
         raise ValueError(f"{shown(text)} is no unit: leave it out")
     if not _registry()._is_multiplicative(name):  # decibels, degrees of Celsius
         raise ValueError(f"{shown(text)} is logarithmic or has an offset: use a unit that is a factor")
     return name
+
+
+def _right_spelling(symbol: str) -> str:
+    """Return the spelling of a symbol with wrong capitals, or the units that it may mean; empty for a right symbol."""
+    right = _SPELLINGS.get(symbol.lower(), "")
+    return "" if symbol in right.split(" or ") else right
+
+
+def _pint_name(symbol: str) -> str:
+    """Return the name in pint of a symbol, or of a full name such as "Newtons" in any capitals."""
+    import pint
+
+    try:
+        return str(_registry().get_name(symbol))
+    except pint.UndefinedUnitError:
+        full_name = symbol.lower()
+    except (pint.PintError, ValueError) as error:
+        raise ValueError(f"{shown(symbol)} is not a known unit") from error
+    for prefix, name, _ in _registry().parse_unit_name(full_name):
+        if full_name.startswith(prefix):  # prefixes by letter, such as the one of "KPSI", depend on capitals
+            return f"{prefix}{name}"
+    raise ValueError(f"{shown(symbol)} is not a known unit")
 
 
 def convert(number: float, units: Units, target: Units) -> float:
@@ -266,15 +320,21 @@ def _registry() -> Any:
 
 _STANDARD_GRAVITY = 9.80665  # m/s²
 _TYPICAL_MASS = 75.0  # kg, of a patient
-_BODY_WEIGHT = re.compile(r"(%?)\s*(?:BW|body\s*weights?)", re.IGNORECASE)
+_BODY_WEIGHT = re.compile(r"(%|per\s?cent)?\s*(?:(?:of|x|times)\s+)?(?:the\s+)?(?:BW|body\s*weights?)", re.IGNORECASE)
 
 _MARKED = re.compile(r"\s*[-+]?\d+[,' \u202f\u00a0]\d")
 
 
 def _refusal(name: str, value: Any, kind: str) -> str:
+    percent = number_of_percent(value) if kind == Kind.NUMBER else None
+    respelled = {word: right for word in _WORD.findall(str(value)) if (right := _right_spelling(word))}
     hint = _weight_hint(str(value)) if kind == Kind.FORCE else ""
     if _MARKED.match(str(value)):
         hint = "; write a decimal point, and nothing between thousands"
+    elif percent is not None:
+        hint = f"; {percent} % is {parse(name, percent, kind) / 100:g}"
+    elif respelled and not hint:
+        hint = "".join(f"; write {right}, not {word}" for word, right in respelled.items())
     return f"{name} = {shown(value)} is not {Kind(kind).example}{hint}"
 
 
