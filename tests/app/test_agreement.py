@@ -10,7 +10,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.app.state.screen import read_link
-from ballsocket.app.widgets.joint_fields import joint_inputs
+from ballsocket.app.widgets.controls import by_name, fields_of
+from ballsocket.app.widgets.joint_controls import joint_controls
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
@@ -26,7 +27,7 @@ _TYPED = {
     "liner_thickness": ("5", "6,5 mm", "8"),
 }
 _REFUSED = {"load": ("nonsense", "3,000"), "clearance": ("-3",), "ball_radius": ("abc",), "liner_thickness": ()}
-_CHOICES = {"preset": ("hip-28", "hip-32", "hip-36"), "answered_by": ("exact", "hess-forsbach", "hertz")}
+_CHOICES = {"preset": ("hip-28", "hip-32", "hip-36"), "press.answered_by": ("exact", "hess-forsbach", "hertz")}
 _SEGMENTS = {"size": ("radius", "diameter"), "units": ("mm, N, MPa", "in, lbf, psi")}
 
 
@@ -148,7 +149,7 @@ def assert_inputs_agree(user, history):
     user.page.locator(".app[data-idle=yes][data-shown]:not([data-lost])").wait_for()
     shown = settled_page(user)
     screen = read_link(parse_qs(shown["link"]))
-    fields = {name: entry.field for name, entry in joint_inputs(screen).items()}
+    fields = fields_of(by_name(joint_controls(screen)))
     for name, text in shown["boxes"].items():
         if name in shown["refused"]:  # keeps what was typed, marked as refused
             assert text in _REFUSED[name], history

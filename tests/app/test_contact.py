@@ -80,10 +80,10 @@ def test_a_tilted_contact_is_that_of_the_real_cup_in_this_view_and_in_the_view_c
     axial = bs.compare(page.screen.file.joint, force=3000.0, tilt=radians(tilt))  # in a cup that is tilted as much
     assert table.count("<td class='text'>yes</td>") == sum(bool(each.valid) for each in (contact, *axial.values()))
     assert f"<td data-head='pmax [MPa]'>{contact.max_pressure:.4g}<small>" in table
-    assert page.channel.shown_value("=answered_by")["hidden"]
+    assert page.channel.shown_value("=press.answered_by")["hidden"]
     cell = f"{contact.max_pressure:.4g} <span class='unit'>MPa"
     assert cell in numbers
-    does(page, "choose", name="view", value="cup")
+    does(page, "view", value="cup")
     assert cell in told(page, "cup-numbers")
     assert f"max_pressure_MPa,{contact.max_pressure!r}" in saved(page, "CSV").decode()
 
@@ -185,10 +185,10 @@ def test_the_drawing_says_every_dimension_and_is_painted_with_stresses_when_they
     texts = set(re.findall(r"<text[^>]*>([^<]*)</text>", drawing(page)))
     assert texts >= {"⌀ 28 mm", "⌀ 28.2 mm", "5 mm", "⌀ 38.2 mm", "⌀ 0.2 mm", "drawn × 10", "3000 N", "CoCr", "UHMWPE"}
     assert "von Mises" not in drawing(page)
-    does(page, "choose", name="painted", value="stress")
+    does(page, "edit", name="press.painted", value="stress")
     top = float(re.search(r"<span>([\d.]+) MPa", drawing(page))[1])
     assert top == pytest.approx(bs.Exact().press(HIP, force=3000.0).von_mises, rel=0.05)
-    does(page, "choose", name="answered_by", value="hertz")
+    does(page, "edit", name="press.answered_by", value="hertz")
     assert "this model has no stresses inside the liner" in drawing(page)
 
 
@@ -208,7 +208,7 @@ def test_a_report_is_printed_with_the_address_of_the_server(monkeypatch):
     assert "https://explorer.example/?preset=hip-28" in html
     assert html.index("id='checks'") < html.index("id='drawing'")
     assert paper == "A4"
-    does(page, "choose", name="units", value="imperial")
+    does(page, "edit", name="units", value="imperial")
     assert "file" not in does(page, "save", kind="PDF")
     assert printed[1][1] == "letter"
     assert "WeasyPrint is not installed" in trouble(page)
@@ -283,7 +283,7 @@ def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(at_once):
     assert "turns with the cup" in told(page, "cup-stood")
     edits(page, "cup.tilt", 30)
     assert page.screen.file.aim == {"tilt": pytest.approx(radians(30))}
-    does(page, "choose", name="angle", value="radians")
+    does(page, "edit", name="angle", value="radians")
     edits(page, "cup.tilt", 0.5)
     assert page.screen.file.aim == {"tilt": pytest.approx(0.5)}
     edits(page, "cup.aim", "body")

@@ -311,7 +311,7 @@ def test_work_that_is_cancelled_ends_and_is_not_begun_again_by_itself(monkeypatc
     assert len(jobs) == 1
     answer = edits(page, "press.run", False)["=press.run"]
     assert (answer["share"], answer["words"]) == (None, "Cancelled.")
-    does(page, "choose", name="size", value="radius")
+    does(page, "edit", name="size", value="radius")
     assert len(jobs) == 1
     edits(page, "press.run", True)
     assert len(jobs) == 2

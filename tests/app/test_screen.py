@@ -21,9 +21,9 @@ from ballsocket.app.session import Page
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, link_of_file, read_link
+from ballsocket.app.widgets.controls import by_name, fields_of
 from ballsocket.app.widgets.fields import in_words_of
-from ballsocket.app.widgets.joint_fields import cup_edited, cup_fields, joint_inputs
-from ballsocket.app.widgets.numbers import CUP_NUMBERS, NUMBERS
+from ballsocket.app.widgets.joint_controls import cup_controls, joint_controls
 from ballsocket.app.widgets.reading import box_text, handy_step, number_text
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.files.joint_file import JointFile, parse_joint, read_joint
@@ -274,11 +274,11 @@ INCHES = screen_with(units="imperial")
 
 
 def typed(name, value, screen=START):
-    return joint_inputs(screen)[name].edit(value)
+    return by_name(joint_controls(screen))[name].read(value)["file"]
 
 
 def field_of(name, screen=START):
-    return joint_inputs(screen)[name].field
+    return by_name(joint_controls(screen))[name].field
 
 
 @pytest.mark.parametrize("text", ["1 1/8", "1-1/8", "9/8 in", "1.125", "28.575 mm"])
@@ -304,17 +304,22 @@ def test_moduli_have_the_units_of_engineers():
     assert typed("allowable", 3000, INCHES).joint.liner.allowable_pressure == pytest.approx(3000 / PSI)
 
 
-@pytest.mark.parametrize("name", [*NUMBERS, "load", "tilt", "allowable"])
+def numbers_of(controls):
+    return [name for name, control in by_name(controls).items() if control.field["kind"] == "number"]
+
+
+@pytest.mark.parametrize("name", numbers_of(joint_controls(START)))
 def test_no_box_takes_what_no_joint_has(name):
     for value in ("1e12", "-1e12", "inf", "nan", "x" * 5000, *[""] * (name != "allowable")):
         with pytest.raises(ValueError, match=f"^{re.escape(field_of(name)['label'])}.* must be .{{1,150}}$"):
             typed(name, value)
 
 
-@pytest.mark.parametrize("name", CUP_NUMBERS)
+@pytest.mark.parametrize("name", numbers_of(cup_controls(START)))
 def test_no_box_of_a_cup_takes_what_no_cup_has(name):
-    with pytest.raises(ValueError, match=f"^{re.escape(cup_fields(START)[f'cup.{name}']['label'])} must be "):
-        cup_edited(START, name, 1e9)
+    control = by_name(cup_controls(START))[name]
+    with pytest.raises(ValueError, match=f"^{re.escape(control.field['label'])} must be "):
+        control.read(1e9)
 
 
 @pytest.mark.parametrize(
@@ -360,6 +365,10 @@ def test_a_name_is_short_text(name):
 MAP = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
 LIMITED = f"{MAP}&limit=max_pressure<=12"
 HUGE = 10**400
+BACKED = (
+    "joint.ball_radius=14&joint.clearance=0.1&joint.liner_thickness=5&liner.material=UHMWPE&backing.0.material=titanium"
+)
+BACKED += "&backing.0.thickness=3"
 WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 20\n"
 
 
@@ -381,8 +390,8 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("", "kind", ["force"], "as load is not known"),
         ("", "massive", "yes", "must be true or false"),
         ("", "behind.add", "cheese", "'cheese' as material is not known"),
-        ("", "behind.0", "titanium", "'0' among the layers is not known"),
-        ("", "behind.support", "loose", "'loose' as support is not known"),
+        ("", "behind.0", "titanium", "'behind.0' among the inputs is not known"),
+        (BACKED, "behind.support", "loose", "'loose' as support is not known"),
         (MAP, "map.pick", [HUGE, 1], "the integer is too large"),
         (f"{LIMITED}&up=outer_radius=15..30", "map.drag", [0, 22.0, 16.0], "<p"),
         (LIMITED, "map.drag", [0, 1], "<p"),
@@ -405,7 +414,7 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("view=cup", "cup.pick", [1.0], "is not a point of the map"),
         ("view=cup", "cup.pick", [1, HUGE], "the integer is too large"),
         ("view=cup", "cup.show", "area", "'area' as standing is not known"),
-        ("view=cup", "cup.colour", "red", "'colour' among the inputs of a cup"),
+        ("view=cup", "cup.colour", "red", "'cup.colour' among the inputs"),
         ("view=gait", "gait.cycle", "dancing", "'dancing' as cycle is not known"),
         ("view=gait", "gait.body_weight", "0", "Body weight must be positive, got 0 N"),
         ("view=gait", "gait.instant", "seven", "an instant of a cycle is a whole number"),
@@ -462,7 +471,7 @@ def test_a_refusal_goes_with_the_next_change():
 def test_designs_are_counted_before_they_are_read(monkeypatch):
     """Seventy thousand links took the time of all users for seconds."""
     page, reads = Page(""), []
-    monkeypatch.setattr(session, "read_link", reads.append)
+    monkeypatch.setattr(session, "read_query", reads.append)
     edits(page, "designs.compare", [""] * 70_000)
     assert not reads
     assert "at most 6 designs" in trouble(page)
@@ -485,7 +494,7 @@ def test_a_page_speaks_of_diameters_and_of_what_makers_offer():
     assert {"22.225", "28", "32", "36"} <= set(heads["sizes"])
     assert "52" in shells["sizes"]
     assert field(page, "clearance")["label"] == "Diametral clearance"
-    fields = {name: said for name, said in page.inputs.items() if said["kind"] == "number"}
+    fields = {name: said for name, said in fields_of(page.controls).items() if said["kind"] == "number"}
     assert {name for name, said in fields.items() if not said["unit"]} == {"liner_poisson", "ball_poisson"}
     assert len({said["label"] for said in fields.values()}) == len(fields)
     edits(page, "ball_radius", "3,2 cm")
@@ -496,8 +505,8 @@ def test_a_number_typed_before_a_choice_of_units_has_the_units_before_it():
     """The page states the units in which a number was typed: a slow line may bring it after the choice."""
     page = Page("preset=hip-28&load.force=3000")
     before = {"units": "SI", "size": "diameter", "angle": "degrees"}
-    does(page, "choose", name="units", value="imperial")
-    does(page, "choose", name="size", value="radius")
+    does(page, "edit", name="units", value="imperial")
+    does(page, "edit", name="size", value="radius")
     does(page, "edit", name="ball_radius", value="30", units=before)
     assert page.screen.file.joint.ball_radius == pytest.approx(15.0, rel=1e-12)
     does(page, "edit", name="load", value="-3", units=before)
@@ -520,7 +529,7 @@ def test_a_body_weight_is_in_the_units_of_the_page():
 def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     page = Page("preset=hip-28&load.force=3000")
     before = page.screen
-    does(page, "choose", name="units", value="imperial")
+    does(page, "edit", name="units", value="imperial")
     assert trouble(page) == ""
     contact = bs.Exact().press(HIP, force=3000.0)
     said = {name: field(page, name) for name in ("ball_radius", "load", "liner_young", "allowable")}
@@ -535,7 +544,7 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     assert re.findall(r"\[[^\]]*\]", table)[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
     edits(page, "ball_radius", "28 mm")
     edits(page, "load", "3 kN")
-    does(page, "choose", name="units", value="SI")
+    does(page, "edit", name="units", value="SI")
     assert page.screen == before
 
 

@@ -126,7 +126,7 @@ def test_files_have_the_cycle_and_the_units_of_the_page(with_film):
     assert "A cycle: iso-14242-1" in report
     assert "✗ Rim contact in 19 % of the cycle" in report
     assert "alt='film over the cycle'" in report.replace('"', "'")
-    does(with_film, "choose", name="units", value="imperial")
+    does(with_film, "edit", name="units", value="imperial")
     courses = played(with_film)["courses"]
     assert [course["unit"] for course in courses] == ["lbf", "psi", "in", "nm", "nm", ""]
     assert max(courses[0]["values"]) == pytest.approx(iso_14242_1().force_magnitudes.max() / 4.4482216, rel=1e-4)
@@ -227,9 +227,9 @@ def test_a_life_is_that_of_python(at_once, nothing_is_known):
     shown = [float(rows[-1][column]) for column in (2, 5, 6)]
     assert shown == pytest.approx([last.penetration, last.depth, last.volume])
     assert float(rows[1][2]) == 0
-    does(page, "choose", name="units", value="imperial")
+    does(page, "edit", name="units", value="imperial")
     assert saved(page, "CSV").startswith(b"design,million cycles,penetration [mil],low [mil]")
-    does(page, "choose", name="units", value="SI")
+    does(page, "edit", name="units", value="SI")
     assert "numerical error of the run" in told(page, "wear-numbers")
     assert f"up to {1e3 * last.depth:.4g} µm" in told(page, "wear-maps")
     shares = [news.share for news in at_once.news]
@@ -385,7 +385,7 @@ def test_limits_are_rows():
     assert page.screen.asked.limits.startswith("max_pressure<=20.0; half_angle<=1.047")
     assert page.channel.shown_value("=evidence.limits")["value"][1] == ["half_angle", "<=", "60"]
     assert opened(page.channel.shown_value("link")).screen == page.screen
-    does(page, "choose", name="units", value="imperial")
+    does(page, "edit", name="units", value="imperial")
     edits(page, "evidence.limits", [["max_pressure", "<=", "3000"]])
     (limit,) = evidence._limits(page.screen.asked)
     assert limit.high == pytest.approx(20.68, rel=1e-3)

@@ -9,7 +9,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.app.state.screen import Screen
-from ballsocket.app.widgets.joint_fields import joint_inputs
+from ballsocket.app.widgets.controls import by_name
+from ballsocket.app.widgets.joint_controls import joint_controls
 from ballsocket.files.joint_file import joint_of, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.studies.distributions import Rectangular
@@ -93,10 +94,10 @@ def test_files_keep_what_they_give_through_the_shell_and_the_explorer(tmp_path):
     assert file.joint == CUP
     again = parse_joint(toml_of(file).encode(), "cup")
     assert again.joint.given_lengths == file.joint.given_lengths
-    inputs = joint_inputs(Screen(file=replace(again, load={"force": 3000.0})))
-    bigger = inputs["ball_radius"].edit("32").joint  # the explorer shows diameters
+    inputs = by_name(joint_controls(Screen(file=replace(again, load={"force": 3000.0}))))
+    bigger = inputs["ball_radius"].read("32")["file"].joint  # the explorer shows diameters
     assert bigger.liner_thickness == pytest.approx(5.9)
-    thinner = inputs["liner_thickness"].edit("5").joint
+    thinner = inputs["liner_thickness"].read("5")["file"].joint
     assert (thinner.head_diameter, thinner.outer_diameter) == pytest.approx((28.0, 46.2))
     (tmp_path / "cup.toml").write_text(FILE, encoding="utf-8")
     out = tmp_path / "heads.csv"

@@ -53,17 +53,22 @@ class Channel:
                 del self._refused[name]
             self.put(f"={name}", {**field, **refusal} if name in self._refused else field)
 
-    def refuse_field(self, name: str, text: Any, sentence: str) -> None:
-        """State beside an input why its text was refused, until its value changes or another edit is accepted."""
+    def refuse_field(self, name: str, refusal: Field) -> None:
+        """State beside an input why its text was refused, until its value changes or another edit is accepted.
+
+        `refusal` are entries of the field: the sentence `error`, and what is `refused`.
+        """
+        self.accept_field(name)
         field = self._current[f"={name}"]
-        self._refused[name] = (field["value"], {"error": sentence, "refused": text if isinstance(text, str) else None})
+        self._refused[name] = field["value"], refusal
         self.put_fields({name: field})
 
     def accept_field(self, name: str) -> None:
         """Remove the sentence and the text of a refused edit."""
-        if self._refused.pop(name, None):
+        if name in self._refused:
+            _, refusal = self._refused.pop(name)
             field = self._current[f"={name}"]
-            self.put_fields({name: {key: field[key] for key in field if key not in ("error", "refused")}})
+            self.put_fields({name: {key: field[key] for key in field if key not in refusal}})
 
     def accept_fields(self) -> None:
         """Remove the sentences and the texts of all refused edits."""

@@ -48,7 +48,6 @@ class LongWork:
 
     def __post_init__(self) -> None:
         self._job = Job(lambda key, news: self.page.attempt(partial(self._hear, key, news)), self.longest)
-        self.page.listen(self.name, lambda key, value: self.click(value))
 
     def show(self, screen: Screen) -> None:
         """Show the stored result for a screen, or that of an earlier screen with a mark."""
@@ -133,7 +132,7 @@ def _with_time_left(news: Reached, elapsed: float) -> str:
 class LongView(View):
     """View whose result takes long; it runs on a click, or by itself if it is `automatic`.
 
-    A subclass has the words of its button `run_label`, and a `body` of `long_body`. `further` is more work of the view.
+    A subclass has the words of its button `run_label`, and a `body` of `long_body`.
     """
 
     run_label = "Run"
@@ -148,15 +147,14 @@ class LongView(View):
             longest=self.longest,
             kind=self.result_kind,
         )
-        self.further: list[LongWork] = []
         super().__init__(page)
-        page.listen(self.name, self._edited)
+        self.works: list[LongWork] = []
+        self.add(self.long)
 
-    def _edited(self, key: str, value: Any) -> None:
-        if key == "run":
-            self.long.click(value)
-        else:
-            self.edit(key, value)
+    def add(self, work: LongWork) -> None:
+        """Let the view have some long work with its button."""
+        self.works.append(work)
+        self.actions[f"{work.name}.run"] = work.click
 
     @abstractmethod
     def question_of(self, screen: Screen) -> Hashable:
@@ -166,15 +164,11 @@ class LongView(View):
     def work(self, screen: Screen) -> Work:
         """Return the work for a screen; raise ValueError if the inputs allow none."""
 
-    def show_inputs(self, screen: Screen) -> None:
-        self.channel.put_fields(self.fields(screen))
-
     @abstractmethod
     def show_result(self, screen: Screen, result: Any) -> None:
         """Show a result, which may belong to an earlier screen; None clears it."""
 
     def show(self, screen: Screen) -> None:
-        self.show_inputs(screen)
         self.long.show(screen)
 
     def result(self, screen: Screen) -> Any:
@@ -185,5 +179,5 @@ class LongView(View):
         return result
 
     def leave(self) -> None:
-        for work in (self.long, *self.further):
+        for work in self.works:
             work.leave()

@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import Any
-from urllib.parse import parse_qs
 
 from ..core.checks import check_names, shown
 from ..core.unit_systems import Units
@@ -19,17 +18,15 @@ from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused
 from .solving import SlowPresses
 from .state.designs import read_upload, session_text
-from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_link
+from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_query
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
-from .widgets.fields import in_words_of, segments
-from .widgets.joint_fields import joint_inputs, joint_words, layer_fields, layers_edited
+from .widgets.controls import Changes, Reader, by_name, chosen, fields_of
+from .widgets.fields import refusal_of, segments
+from .widgets.joint_controls import joint_controls, joint_words, layer_controls
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
-_CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size", "units")
-"""Fields of the screen that the page's own inputs change."""
-
 _UNIT_CHOICES = ("units", "size", "angle")  # fields of the screen on which the meaning of a number depends
 _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi"))
 
@@ -47,9 +44,9 @@ class Page:
         self.screen = self._read(query)
         self._origin = origin
         self._views: dict[str, View] = {}
-        self._handlers: dict[str, Callable[[str, Any], None]] = {
-            "behind": lambda key, value: self.ask(file=layers_edited(self.screen.file, key, value)),
-            "designs": self._handle_designs,
+        self._actions: dict[str, Reader] = {
+            "designs.save": self._save_designs,
+            "designs.compare": self._compare_designs,
         }
         self._timers: set[TimerHandle] = set()
         self._slow_presses = SlowPresses(self._refresh)
@@ -67,7 +64,7 @@ class Page:
         try:
             if len(query) > 3 * MAX_LINK_LENGTH:  # a character may take three in an address
                 raise ValueError(f"it is longer than {MAX_LINK_LENGTH} characters")
-            return read_link(parse_qs(query, keep_blank_values=True))
+            return read_query(query)
         except ValueError as error:
             self.refuse(f"This link cannot be read: {error}")
             return START
@@ -117,7 +114,7 @@ class Page:
         doings = {
             "open": self._open,
             "edit": self._edit,
-            "choose": self._choose,
+            "view": lambda words: self.ask(view=words.get("value")),
             "save": lambda words: run_in_thread(partial(make_file, self.seen(), str(words.get("kind"))), self._saved),
             "upload": self._upload,
         }
@@ -127,9 +124,9 @@ class Page:
         except ValueError as error:
             name = str(words.get("name"))
             field = self.channel.shown_value(f"={name}") if event == "edit" else None
-            if field is not None and field["kind"] in ("number", "words"):
-                text = words.get("value")
-                self.channel.refuse_field(name, text, in_words_of(field, str(error), text))
+            refusal = None if field is None else refusal_of(field, error, words.get("value"))
+            if refusal is not None:
+                self.channel.refuse_field(name, refusal)
             else:
                 self.refuse(str(error))
             self.channel.once("reset", True)
@@ -138,48 +135,36 @@ class Page:
             self.refuse("the server could not handle this request")
             self.channel.once("reset", True)
 
-    def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
-        self._handlers[view] = handler
-
     def _edit(self, words: Mapping[str, Any]) -> None:
         """Change an input; a number that was typed before a choice of units has the units before it."""
-        present = {name: getattr(self.screen, name) for name in _UNIT_CHOICES}
+        name, present = str(words.get("name")), {name: getattr(self.screen, name) for name in _UNIT_CHOICES}
         units = words.get("units") or present
-        if units == present:
-            self._edit_as_shown(words)
+        if units == present or name in _UNIT_CHOICES:
+            self._edit_as_shown(name, words.get("value"))
             return
         if not isinstance(units, dict) or set(units) != set(present):
             raise ValueError(f"units = {shown(units)} must have {', '.join(_UNIT_CHOICES)}")
         self._change(replace(self.screen, **units))
         try:
-            self._edit_as_shown(words)
+            self._edit_as_shown(name, words.get("value"))
         finally:
             self._change(replace(self.screen, **present))
 
-    def _edit_as_shown(self, words: Mapping[str, Any]) -> None:
+    def _edit_as_shown(self, name: str, value: Any) -> None:
         """Change an input whose number is in the units of the screen."""
-        name, value = str(words.get("name")), words.get("value")
-        view, _, key = name.partition(".")
-        if isinstance(value, str) and value == (self.channel.shown_value(f"={name}") or {}).get("text"):
-            self.channel.accept_field(name)  # a rounded number that nobody has changed
-        elif key:
-            check_names([view], self._handlers, "among the views that have inputs")
+        if not isinstance(value, str) or value != (self.channel.shown_value(f"={name}") or {}).get("text"):
+            changes = self._reader(name)(value)  # none of a rounded number that nobody has changed
             self.refuse("")
-            self._handlers[view](key, value)
-        else:
-            check_names([name], self._joint_inputs, "among the inputs")
-            file = self._joint_inputs[name].edit(value)
-            self.refuse("")
-            self.ask(file=file)
+            self.ask(**(changes or {}))
         self.channel.accept_field(name)
 
-    def _choose(self, words: Mapping[str, Any]) -> None:
-        name, value = str(words.get("name")), words.get("value")
-        check_names([name], _CHOSEN, "among the choices")
-        listed = value if name == "shown" else [value]
-        if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
-            raise ValueError(f"{name} takes words")
-        self.ask(**{name: tuple(listed) if name == "shown" else value})
+    def _reader(self, name: str) -> Reader:
+        """Return the reader of an input or of another event."""
+        view = self._views.get(name.partition(".")[0])
+        controls = self.controls if view is None else view.named_controls(self.screen)
+        readers: dict[str, Reader] = {**self._actions, **{name: control.read for name, control in controls.items()}}
+        check_names([name], readers, "among the inputs")
+        return readers[name]
 
     def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
         try:
@@ -213,17 +198,14 @@ class Page:
         self.refuse("")
         self._change(screens[0])
 
-    def _handle_designs(self, key: str, links: Any) -> None:
-        """Save designs as a session file, or compare them with the one on the screen."""
-        check_names([key], ("save", "compare"), "among what is done with designs")
-        if not isinstance(links, list) or not all(isinstance(link, str) for link in links):
-            raise ValueError("designs are a list of links")
-        if key == "save":
-            self._send_file("designs.toml", session_text(links).encode("utf-8"))
-            return
-        check_compared(len(links))
-        compared = tuple(read_link(parse_qs(link, keep_blank_values=True)).file for link in links)
-        self.ask(beside=compared, view="compare")
+    def _save_designs(self, links: Any) -> None:
+        """Save designs as a session file."""
+        self._send_file("designs.toml", session_text(_links(links)).encode("utf-8"))
+
+    def _compare_designs(self, links: Any) -> Changes:
+        """Compare designs with the one on the screen."""
+        check_compared(len(_links(links)))
+        return {"beside": tuple(read_query(link).file for link in links), "view": "compare"}
 
     def _send_file(self, name: str, content: bytes) -> None:
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
@@ -239,22 +221,27 @@ class Page:
 
     def _refresh(self) -> None:
         self._put_inputs()
-        self.attempt(lambda: self.view.show(self.screen))
+        self.attempt(self._show_view)
         self._slow_presses.ask(*self.view.asks(self.screen))
 
+    def _show_view(self) -> None:
+        self.view.show_inputs(self.screen)
+        self.view.show(self.screen)
+
     def _put_inputs(self) -> None:
-        screen, joint = self.screen, self.screen.file.joint
-        self._joint_inputs = joint_inputs(screen)
-        self.inputs = {
-            **{name: entry.field for name, entry in self._joint_inputs.items()},
-            **layer_fields(joint),
-            "units": segments("units", "Units", _UNITS, screen.units),
-            "size": segments("size", "Ball size as", SIZES, screen.size),
-            "angle": segments("angle", "Angles in", ANGLES, screen.angle),
-        }
-        self.channel.put_fields(self.inputs)
-        self.channel.put("order", list(self.inputs))
-        self.channel.put("#behind", joint_words(joint))
+        screen = self.screen
+        self.controls = by_name(
+            [
+                *joint_controls(screen),
+                *layer_controls(screen),
+                chosen(screen, "units", "Units", _UNITS, segments),
+                chosen(screen, "size", "Ball size as", SIZES, segments),
+                chosen(screen, "angle", "Angles in", ANGLES, segments),
+            ]
+        )
+        self.channel.put_fields(fields_of(self.controls))
+        self.channel.put("order", list(self.controls))
+        self.channel.put("#behind", joint_words(screen.file.joint))
         self.channel.put("view", screen.view)
         self.channel.put("link", screen.link)
 
@@ -264,6 +251,7 @@ class Page:
         name = self.screen.view
         if name not in self._views:
             self._views[name] = view_class(name)(self)
+            self._actions |= self._views[name].actions
         return self._views[name]
 
     def seen(self) -> ScreenContent:
@@ -283,6 +271,12 @@ class Page:
             timer.cancel()
         for view in self._views.values():
             view.leave()
+
+
+def _links(value: Any) -> list[str]:
+    if not isinstance(value, list) or not all(isinstance(link, str) for link in value):
+        raise ValueError("designs are a list of links")
+    return value
 
 
 def _check_link(screen: Screen) -> None:

@@ -25,8 +25,7 @@ from .jobs import run_in_thread
 from .running import Report
 from .state.designs import file_stem
 from .state.screen import Screen
-from .widgets.fields import Field
-from .widgets.settings import Setting
+from .widgets.controls import Control, Reader, by_name, fields_of
 from .widgets.words import alert
 
 STRESS_PAUSE = 0.4  # seconds without a change until the stress of the model itself is computed for the checks
@@ -58,7 +57,7 @@ class Host(Protocol):
 
     channel: Channel
     screen: Screen
-    inputs: Mapping[str, Field]
+    controls: Mapping[str, Control]
 
     def ask(self, **changes: Any) -> None:
         """Change fields of the screen by name."""
@@ -69,44 +68,37 @@ class Host(Protocol):
     def attempt(self, action: Callable[[], None]) -> None:
         """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
 
-    def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
-        """Register the handler of a view's inputs, whose names start with the view and a dot."""
-
 
 class View(ABC):
     """View of the screen, made with its page when it is first opened.
 
-    `name` is its key in the registry; the ids in its HTML `body` and the names of its inputs begin with it. Each of
-    its `settings` is an input that changes one part of the screen.
+    `name` is its key in the registry; the ids in its HTML `body` and the names of its inputs begin with it. `actions`
+    are the readers of further events, of its buttons and pictures, by their names.
     """
 
     name = ""
     title = ""
     body = ""
-    settings: tuple[Setting, ...] = ()
 
     def __init__(self, page: Host) -> None:
         self.page, self.channel = page, page.channel
-        page.listen(self.name, self.edit)
+        self.actions: dict[str, Reader] = {}
 
     @abstractmethod
     def show(self, screen: Screen) -> None:
         """Show the results for a screen."""
 
-    def fields(self, screen: Screen) -> dict[str, Field]:
-        """Return the inputs of the settings by name."""
-        fields = ({**setting.field(screen), "name": f"{self.name}.{setting.key}"} for setting in self.settings)
-        return {field["name"]: field for field in fields}
+    def controls(self, screen: Screen) -> Iterable[Control]:
+        """Return the inputs of the view, named without the view."""
+        return ()
 
-    def read(self, key: str, value: Any) -> dict[str, Any]:
-        """Read a changed input of the settings: the changes of the screen."""
-        known = {setting.key: setting for setting in self.settings}
-        check_names([key], known, f"among the inputs of {self.title}")
-        return known[key].read(self.page.screen, value)
+    def named_controls(self, screen: Screen) -> dict[str, Control]:
+        """Return the inputs of the view by name."""
+        return by_name(self.controls(screen), f"{self.name}.")
 
-    def edit(self, key: str, value: Any) -> None:
-        """Handle a changed input of the view, named without the view."""
-        self.page.ask(**self.read(key, value))
+    def show_inputs(self, screen: Screen) -> None:
+        """Show the inputs of the view."""
+        self.channel.put_fields(fields_of(self.named_controls(screen)))
 
     def put(self, **parts: str) -> None:
         """Fill elements of the view with HTML, by their ids without the view."""

@@ -19,10 +19,8 @@ export function ask(action, name = "", value = "", more = {}) {
 }
 /** Return the value that a field is to have: that of its latest edit, or undefined without one. */
 export function pendingValue(name) {
-  for (const action of ["edit", "choose"])
-    for (const request of [pending.get(`${action} ${name}`), current])
-      if (request && request.key === `${action} ${name}`) return request.words.value;
-  return undefined;
+  const key = `edit ${name}`;
+  return (pending.get(key) || (current?.key === key ? current : undefined))?.words.value;
 }
 export const isPending = (key) => pending.has(key);
 export const withdraw = () => pending.clear();

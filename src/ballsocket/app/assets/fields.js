@@ -2,7 +2,6 @@
 import { ask, listen, pendingValue } from "./connection.js";
 import { limits } from "./limits.js";
 
-const CHOICES = ["answered_by", "shown", "painted", "angle", "size", "units"]; // fields of the screen itself
 const inputs = new Map(); // by name: the element, what the server said last, and how to show it
 const typed = new Set(); // boxes with text that nobody has confirmed yet
 const stale = new Set(); // inputs that show an edit, until the server has answered it
@@ -17,11 +16,6 @@ export function element(tag, attributes = {}, ...content) {
 function edit(name, value) {
   stale.add(name);
   ask("edit", name, value, { units: inputs.get(name).units }); // another choice of units may be on its way
-}
-function choose(name, value) {
-  if (!CHOICES.includes(name)) return edit(name, value);
-  stale.add(name);
-  ask("choose", name, value);
 }
 const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
 const within = (value, { low, high }) => Math.min(high, Math.max(low, value));
@@ -111,7 +105,7 @@ function number(name) {
 function choice(name) {
   const label = element("label", { for: `in-${name}` });
   const list = element("select", { id: `in-${name}` });
-  list.addEventListener("change", () => choose(name, list.value));
+  list.addEventListener("change", () => edit(name, list.value));
   function show(field) {
     label.textContent = field.label;
     if (list.dataset.options !== JSON.stringify(field.options)) {
@@ -144,13 +138,13 @@ function group(kind, name, type, isChecked) {
 }
 function segments(name) {
   const input = group("segments", name, "radio", (field, value) => field.value === value);
-  input.node.addEventListener("change", (event) => choose(name, event.target.value));
+  input.node.addEventListener("change", (event) => edit(name, event.target.value));
   return input;
 }
 function several(name) {
   const input = group("several", name, "checkbox", (field, value) => field.value.includes(value));
   input.node.addEventListener("change", () =>
-    choose(name, [...input.node.querySelectorAll("input:checked")].map((box) => box.value)));
+    edit(name, [...input.node.querySelectorAll("input:checked")].map((box) => box.value)));
   return input;
 }
 

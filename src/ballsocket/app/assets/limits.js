@@ -40,9 +40,10 @@ export function limits(name, edit) {
     if (!field || JSON.stringify(field.options) !== JSON.stringify(next.options)) list.replaceChildren();
     field = next;
     title.textContent = field.label;
-    while (list.children.length > field.value.length) list.lastChild.remove();
-    while (list.children.length < field.value.length) addRow();
-    field.value.forEach(([quantity, sign, text], index) => {
+    const shown = field.refused ?? field.value;
+    while (list.children.length > shown.length) list.lastChild.remove();
+    while (list.children.length < shown.length) addRow();
+    shown.forEach(([quantity, sign, text], index) => {
       const [first, second, box] = list.children[index].querySelectorAll("select, input");
       [first.value, second.value] = [quantity, sign];
       list.children[index].querySelector(".unit").textContent = field.options.find(([value]) => value === quantity)[2];
@@ -51,7 +52,7 @@ export function limits(name, edit) {
       if (field.wrong === index) box.setAttribute("aria-describedby", error.id);
       else box.removeAttribute("aria-describedby");
     });
-    error.textContent = field.error;
+    error.textContent = field.error || "";
     error.hidden = !field.error;
     if (focusLast && list.lastChild) { list.lastChild.querySelector("input").select(); focusLast = false; }
   }

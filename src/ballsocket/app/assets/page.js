@@ -115,7 +115,7 @@ document.addEventListener("click", (event) => {
   const button = event.target.closest("button");
   if (!button) return;
   const { view, file, tell: name, value } = button.dataset;
-  if (view) ask("choose", "view", view);
+  if (view) ask("view", "", view);
   else if (file) { tell(`Preparing ${file} …`); ask("save", file, "", { kind: file }); }
   else if (name) ask("edit", name, value || true);
 });

@@ -8,13 +8,13 @@ import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
-from urllib.parse import parse_qs, parse_qsl
+from urllib.parse import parse_qsl
 
 from ...core.checks import check_names, shown
 from ...files.joint_file import NO_DETAILS, JointFileTable, joint_of
 from ...files.joint_toml import written_tables
 from ...files.toml import MAX_FILE_SIZE, parse_toml, toml_text
-from .screen import START, Screen, link_of, read_link, with_load
+from .screen import START, Screen, link_of, read_link, read_query, with_load
 
 MAX_DESIGNS = 50  # largest number of designs in a browser and in a session file
 _DESIGN, _PAGE = "design", "page"
@@ -42,7 +42,7 @@ def session_text(links: Sequence[str]) -> str:
     Raises ValueError for a link that cannot be read, too many designs, or a file that would be too long to read.
     """
     check_count(len(links))
-    text = toml_text({_DESIGN: [_table_of(read_link(parse_qs(link, keep_blank_values=True))) for link in links]})
+    text = toml_text({_DESIGN: [_table_of(read_query(link)) for link in links]})
     if len(text.encode()) > MAX_FILE_SIZE:
         raise ValueError(f"the session file would be larger than {MAX_FILE_SIZE} bytes: delete some designs first")
     return text

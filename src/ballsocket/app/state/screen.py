@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf, isfinite
 from typing import Any
-from urllib.parse import urlencode
+from urllib.parse import parse_qs, urlencode
 
 from ...core.checks import check_names, check_text, shown
 from ...core.kinds import Kind
@@ -201,6 +201,11 @@ def link_of(screen: Screen) -> str:
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
     return urlencode([*pairs, ("theme", screen.theme)])
+
+
+def read_query(query: str) -> Screen:
+    """Read the query of a link."""
+    return read_link(parse_qs(query, keep_blank_values=True))
 
 
 def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:

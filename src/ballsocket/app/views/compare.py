@@ -21,13 +21,13 @@ from ...reports.style import LineStyle, numbered
 from ..pressing import fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
 from ..view import STRESS_PAUSE, Document, Host, View, field_places
+from ..widgets.controls import Changes, Control, chosen
 from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
 from ..widgets.fields import choice
 from ..widgets.words import number_rows
 
 _CHOOSE = ""
 _PRESENT = "this design"
-_INPUTS = ("keep", "preset", "base", "remove")
 _EXAMPLE_SHOWN = (
     "Nothing has been added yet, so a preset is shown beside this design as an example. Add this design, then change "
     "its numbers: the table shows every difference. "
@@ -51,32 +51,33 @@ class Compare(View):
     def __init__(self, page: Host) -> None:
         super().__init__(page)
         self._cancel_stress: Callable[[], None] = lambda: None
+        self.actions |= {"compare.keep": self._keep, "compare.remove": self._remove}
 
-    def edit(self, key: str, value: Any) -> None:
-        check_names([key], _INPUTS, f"among the inputs of {self.title}")
+    def controls(self, screen: Screen) -> list[Control]:
+        files = compared_files(screen)
+        base = list(files).index(base_of(files, screen))
+        added = choice("preset", "Add a preset", [(_CHOOSE, "– choose –"), *joints], _CHOOSE)
+        options = [(str(index), name) for index, name in enumerate(files)]
+        return [
+            Control(added, lambda value: _with_preset(screen, value)),
+            chosen(screen, "base", "Differences from", options).but(value=str(base)),
+        ]
+
+    def _keep(self, value: Any) -> Changes:
+        return with_compared(self.page.screen, self.page.screen.file)
+
+    def _remove(self, name: Any) -> Changes:
         screen = self.page.screen
-        if key == "keep":
-            self.page.ask(beside=with_compared(screen, screen.file))
-        elif key == "preset" and value != _CHOOSE:
-            check_names([value], joints, "as preset")
-            self.page.ask(beside=with_compared(screen, JointFile(joints[value], screen.file.load)))
-        elif key == "base":
-            self.page.ask(base=str(value))
-        elif key == "remove":
-            check_names([value], list(compared_files(screen))[1:], "among the compared designs")
-            column = list(compared_files(screen)).index(value)
-            base = int(screen.base) - (column < int(screen.base))  # the same design unless that is removed
-            self.page.ask(beside=(*screen.beside[: column - 1], *screen.beside[column:]), base=str(base))
+        names = list(compared_files(screen))
+        check_names([name], names[1:], "among the compared designs")
+        column = names.index(name)
+        base = int(screen.base) - (column < int(screen.base))  # the same design unless that is removed
+        return {"beside": (*screen.beside[: column - 1], *screen.beside[column:]), "base": str(base)}
 
     def show(self, screen: Screen) -> None:
         files = compared_files(screen)
         base = base_of(files, screen)
         designs = _pressed(files, screen)
-        presets = [(_CHOOSE, "– choose –"), *joints]
-        options = [(str(index), name) for index, name in enumerate(files)]
-        added = choice("compare.preset", "Add a preset", presets, _CHOOSE)
-        from_base = choice("compare.base", "Differences from", options, str(list(files).index(base)))
-        self.channel.put_fields({field["name"]: field for field in (added, from_base)})
         differences = f"Behind the numbers: the difference from {escape(base)}. The drawings have one scale."
         self.put(
             note=f"<p class='quiet'>{'' if screen.beside else _EXAMPLE_SHOWN}{differences}</p>",
@@ -116,11 +117,18 @@ class Compare(View):
         return list(compared_files(screen).values()), (screen.answered_by,)
 
 
-def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
-    """Return the compared designs with one more; raise ValueError if there is no room for it."""
+def with_compared(screen: Screen, file: JointFile) -> Changes:
+    """Compare one more design; raise ValueError if there is no room for it."""
     if len(screen.beside) >= MAX_COMPARED:
         raise ValueError(f"{MAX_COMPARED} designs are compared with this one already: remove one of them first")
-    return (*screen.beside, file)
+    return {"beside": (*screen.beside, file)}
+
+
+def _with_preset(screen: Screen, name: Any) -> Changes:
+    if name == _CHOOSE:
+        return {}
+    check_names([name], joints, "as preset")
+    return with_compared(screen, JointFile(joints[name], screen.file.load))
 
 
 def compared_files(screen: Screen) -> dict[str, JointFile]:

@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 
 from ...comparison import Comparison, successful_contacts
 from ...contact import Contact
+from ...core.checks import shown
 from ...core.quantities import BEARING, FIELD
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
@@ -27,9 +28,10 @@ from ..pictures.chart import swatch
 from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
 from ..pressing import fine_curves, is_waiting, press_charts, pressed
 from ..running import Work
-from ..state.screen import PAINTED, Screen
+from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document, Host
-from ..widgets.fields import choice, segments, several
+from ..widgets.controls import Changes, Control, chosen, fields_of
+from ..widgets.fields import segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
 from .contact_drawing import first_view, frame_of, key
 from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
@@ -54,14 +56,14 @@ class Press(LongView):
 <div class="first-view">
   <div class="drawing">
     <div id="press-section"></div>
-    <div data-field="painted"></div>
+    <div data-field="press.painted"></div>
     <p class="quiet">Drag the arrow, the ball or the liner's border; or move to one with Tab, and use the arrow
     keys.</p>
-    <div data-field="shown"></div>
+    <div data-field="press.shown"></div>
     <div id="press-charts"></div>
   </div>
   <div>
-    <div data-field="answered_by"></div>
+    <div data-field="press.answered_by"></div>
     <div id="press-trouble" role="alert"></div>
     <div id="press-offer"></div><div data-field="press.run"></div>
     <div id="press-numbers"></div>
@@ -75,6 +77,16 @@ class Press(LongView):
         self._cancel_further: Callable[[], None] = lambda: None
         self._real: OffAxisContact | None = None
         self._requested: Hashable = None  # bore for which the real cup was requested
+        self.actions["press.run"] = self._request_cup
+
+    def controls(self, screen: Screen) -> list[Control]:
+        pieces = {name: swatch(line_of(name)) for name in _EVERY}
+        one_model = bool(self._needs_cup(screen, pressed(screen.file, (screen.answered_by, reference.name))))
+        return [
+            chosen(screen, "answered_by", "Model", _EVERY).but(hidden=one_model),
+            chosen(screen, "painted", "Colours show", _PAINTED.items(), segments),
+            Control(several("shown", "Curves of the models", _EVERY, screen.shown, pieces), _read_shown),
+        ]
 
     def question_of(self, screen: Screen) -> Hashable:
         return bore_of(screen.file)
@@ -101,18 +113,19 @@ class Press(LongView):
         is_prepared(file)  # notes a bore whose rings are on disk, which needs no work
         return reason
 
-    def _edited(self, key: str, value: Any) -> None:
-        self._requested = bore_of(self.page.screen.file) if value else None
-        super()._edited(key, value)
-        if value and is_prepared(self.page.screen.file):
-            self.show(self.page.screen)
+    def _request_cup(self, starts: Any) -> None:
+        screen = self.page.screen
+        self._requested = bore_of(screen.file) if starts else None
+        self.long.click(starts)
+        if starts and is_prepared(screen.file):
+            self.show_inputs(screen)
+            self.show(screen)
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
         """Show the numbers of a model of a load along the axis of the cup."""
         self.long.leave()
         near_rim = bool(_reason(comparison, screen))
         self.long.put_button(hidden=not near_rim)
-        self.channel.put_fields(_fields(screen))
         by = comparison.contacts.get(screen.answered_by)
         if by is not None:
             exact = comparison.contacts.get(reference.name)
@@ -126,8 +139,6 @@ class Press(LongView):
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
         """Show the numbers of the real cup; its bore is set up first if it is new."""
-        fields = _fields(screen)
-        self.channel.put_fields({**fields, "answered_by": {**fields["answered_by"], "hidden": True}})  # one model alone
         self.put(offer="")
         if self.long.result(screen) is None:
             self.put(numbers=self._reason(screen))
@@ -166,7 +177,7 @@ class Press(LongView):
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
         file, tilt = complete(screen.file)[0], screen.file.tilt
         painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
-        drawing = first_view(file, contact, self.page.inputs, (tilt, screen.reading.length), painted)
+        drawing = first_view(file, contact, fields_of(self.page.controls), (tilt, screen.reading.length), painted)
         if contact is None:
             legend = ""
         elif inside is None:
@@ -256,13 +267,10 @@ def _reason(comparison: Comparison, screen: Screen) -> str:
     return real_cup_reason(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
 
 
-def _fields(screen: Screen) -> dict[str, Any]:
-    pieces = {name: swatch(line_of(name)) for name in _EVERY}
-    return {
-        "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
-        "painted": segments("painted", "Colours show", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
-        "shown": several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
-    }
+def _read_shown(value: Any) -> Changes:
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise ValueError(f"shown = {shown(value)} is not a list of models")
+    return {"shown": tuple(value)}
 
 
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:

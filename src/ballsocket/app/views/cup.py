@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import degrees, radians
+from math import degrees
 from typing import Any
 
 import numpy
@@ -29,10 +29,10 @@ from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..running import Work
 from ..state.screen import STANDINGS, Screen
 from ..view import Document, Host, field_places
+from ..widgets.controls import Changes, Control, by_name, chosen
 from ..widgets.fields import segments
-from ..widgets.joint_fields import cup_edited, cup_fields
+from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading
-from ..widgets.settings import chosen
 from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, unit_of_files, value_text
 from .real_cup import (
     LEWINNEK,
@@ -60,7 +60,6 @@ class CupView(LongView):
     """View of the load in the present cup, followed by a map over orientations."""
 
     name, title, run_label, automatic = "cup", "Cup", "Prepare the cup", True
-    settings = (chosen("standing", "Map of", STANDINGS, segments, lambda name: QUANTITIES[name].title, key="show"),)
     body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
@@ -79,7 +78,12 @@ class CupView(LongView):
             self._show_map,
             automatic=True,
         )
-        self.further = [self.orientations]
+        self.add(self.orientations)
+        self.actions |= {"cup.usual": lambda value: self._set_angles(**_TYPICAL), "cup.pick": self._pick}
+
+    def controls(self, screen: Screen) -> list[Control]:
+        titles = [(name, QUANTITIES[name].title) for name in STANDINGS]
+        return [*cup_controls(screen), chosen(screen, "standing", "Map of", titles, segments, "show")]
 
     def question_of(self, screen: Screen) -> Hashable:
         return bore_of(screen.file)
@@ -87,9 +91,9 @@ class CupView(LongView):
     def work(self, screen: Screen) -> Work:
         return partial(set_up, *bore_of(screen.file))
 
-    def show_inputs(self, screen: Screen) -> None:
-        self.channel.put_fields({**cup_fields(screen), **self.fields(screen)})
+    def show(self, screen: Screen) -> None:
         is_prepared(screen.file)
+        super().show(screen)
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
         if self.long.result(screen) is None:
@@ -105,24 +109,16 @@ class CupView(LongView):
         else:
             self.orientations.show(screen)
 
-    def edit(self, key: str, value: Any) -> None:
-        if key == "show":
-            super().edit(key, value)
-        elif key == "usual":
-            self._set_angles(**_TYPICAL)
-        elif key == "pick":
-            inclination, anteversion = (round(angle, 1) for angle in read_point(value, 2))
-            self._set_angles(inclination=inclination, anteversion=anteversion)
-        else:
-            self.page.ask(file=cup_edited(self.page.screen, key, value))
+    def _pick(self, point: Any) -> Changes:
+        inclination, anteversion = (round(angle, 1) for angle in read_point(point, 2))
+        return self._set_angles(inclination=inclination, anteversion=anteversion)
 
-    def _set_angles(self, **angles: float) -> None:
+    def _set_angles(self, **angles: float) -> Changes:
         """Change angles of the cup, in degrees."""
         screen = self.page.screen
-        factor = 1.0 if screen.angle == "degrees" else radians(1.0)
         for name, angle in angles.items():
-            screen = replace(screen, file=cup_edited(screen, name, angle * factor))
-        self.page.ask(file=screen.file)
+            screen = replace(screen, **by_name(cup_controls(screen))[name].read(f"{angle} deg"))
+        return {"file": screen.file}
 
     def _show_map(self, screen: Screen, orientations: OrientationMap | None) -> None:
         if orientations is None:

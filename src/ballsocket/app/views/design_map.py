@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -20,14 +20,13 @@ from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
-from ..state.screen import AXES, MAPPED, MapAxis, Screen
+from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
 from ..view import Document, Host, View, field_places
+from ..widgets.controls import Changes, Control, chosen, parameter
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ..widgets.fields import Field, choice, empty_number, segments
-from ..widgets.limit_rows import LimitRows, limit_text, present_value
-from ..widgets.numbers import of_parameter
+from ..widgets.fields import choice, empty_number, segments
+from ..widgets.limit_rows import limit_text, limits_control, present_value
 from ..widgets.reading import Reading, box_text
-from ..widgets.settings import Setting, chosen
 from ..widgets.words import alert, column_of, unit_of_files
 from .compare import with_compared
 from .map_study import (
@@ -48,9 +47,7 @@ from .map_study import (
 
 _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))  # quantities that the rows of limits offer
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
-_ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
 _AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
-_SIZES = {"any": "any", "catalogue": "catalogue"}
 _PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
     "<p class='quiet'>Click the map, or move its cross with the arrow keys and press Enter: the design at that point "
@@ -64,57 +61,40 @@ _BELOW_ZERO = -1e300
 _MAX_LEVELS = 12
 
 
-def _axis_setting(which: str) -> Setting:
+def _axis_control(screen: Screen, which: str) -> Control:
     """Return the parameter of an axis; another one runs over half to twice its present value."""
+    present = getattr(screen, which).name
+    names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
+    axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
 
-    def field(screen: Screen) -> Field:
-        present = getattr(screen, which).name
-        names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
-        axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
-        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present)
-
-    def read(screen: Screen, value: Any) -> dict[str, Any]:
+    def read(value: Any) -> Changes:
         check_names([value], AXES, "among the axes of a map")
         return {"picked": None, which: default_axis(value, present_value(screen.file, value))}
 
-    return Setting(which, field, read)
+    return Control(choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present), read)
 
 
-def _end_setting(key: str) -> Setting:
-    which, end = _ENDS[key]
-    label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
+def _end_control(screen: Screen, which: str, end: str) -> Control:
+    label, axis = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}", getattr(screen, which)
+    quantity, spec = QUANTITIES[axis.name], replace(parameter(axis.name), label=label)
+    unit = screen.reading.unit(quantity)
 
-    def field(screen: Screen) -> Field:
-        axis: MapAxis = getattr(screen, which)
-        unit = screen.reading.unit(QUANTITIES[axis.name])
-        text = box_text(getattr(axis, end) * unit.factor, unit.text)
-        return empty_number(key, label, unit, text)
-
-    def read(screen: Screen, value: Any) -> dict[str, Any]:
-        axis: MapAxis = getattr(screen, which)
-        quantity = QUANTITIES[axis.name]
-        spec = replace(of_parameter(axis.name), label=label)
-        number = spec.meant(value, screen.reading) / quantity.written.factor
-        ends = {**vars(axis), end: number}
+    def read(value: Any) -> Changes:
+        ends = {**vars(axis), end: spec.meant(value, screen.reading) / quantity.written.factor}
         low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
         if not ends["low"] < ends["high"]:
             raise ValueError(f"{quantity.title} from {low} to {high} is not a range: it must end above its start")
         return {which: MapAxis(**ends)}
 
-    return Setting(key, field, read)
+    return Control(
+        empty_number(f"{which}_{end}", label, unit, box_text(getattr(axis, end) * unit.factor, unit.text)), read
+    )
 
 
 class DesignMap(View):
     """View of one quantity over two parameters, computed as one study by a quick model."""
 
     name, title = "map", "Design map"
-    settings = (
-        *map(_axis_setting, ("across", "up")),
-        *map(_end_setting, _ENDS),
-        chosen("quantity", "Map of", MAPPED, titles=lambda name: QUANTITIES[name].title),
-        chosen("map_model", "Model", models_of, key="model"),
-        chosen("sizes", "Sizes at a selected point", _SIZES, segments, _SIZES.__getitem__),
-    )
     body = f"""
 <div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>
 <div data-field="map.limits"></div>
@@ -131,60 +111,46 @@ class DesignMap(View):
 
     def __init__(self, page: Host) -> None:
         super().__init__(page)
-        self._rows = LimitRows("map.limits", _LIMITED)
+        self.actions |= {
+            "map.drag": self._drag,
+            "map.pick": self._pick,
+            "map.best": self._best,
+            "map.use": lambda value: {"file": self._picked_file(), "picked": None},
+            "map.compare": lambda value: with_compared(self.page.screen, self._picked_file()),
+            "map.drop": lambda value: {"picked": None},
+        }
+
+    def controls(self, screen: Screen) -> list[Control]:
+        quantities = [(name, QUANTITIES[name].title) for name in MAPPED]
+        controls = [
+            *(_axis_control(screen, which) for which in _AXIS_LETTERS),
+            *(_end_control(screen, which, end) for which in _AXIS_LETTERS for end in _END_WORDS),
+            chosen(screen, "quantity", "Map of", quantities),
+            chosen(screen, "map_model", "Model", models_of(screen), name="model"),
+            chosen(screen, "sizes", "Sizes at a selected point", PICKED, segments),
+        ]
+        return [*(Control(control.field, _checked(screen, control.read)) for control in controls), _limits(screen)]
 
     def show(self, screen: Screen) -> None:
-        self._put_fields()
         if not self.channel.shown_value("#map-picture"):
             self.put(picture="<p class='quiet'>Preparing the map …</p>", point=_HINT)
         self.expect("picture", "note", "point")
         self.compute(lambda: _drawn(screen), lambda parts: self.put(trouble="", **parts))
 
-    def _put_fields(self) -> None:
-        limits = self._rows.field(self.page.screen.limits, self.page.screen.reading)
-        self.channel.put_fields({**self.fields(self.page.screen), "map.limits": limits})
-
-    def edit(self, key: str, value: Any) -> None:
+    def _drag(self, value: Any) -> Changes:
+        """Move the line of a limit through a point."""
+        number, *point = read_point(value, 3)
         screen = self.page.screen
-        if key == "limits":
-            self._edit_limits(value)
-        elif key == "drag":
-            number, *point = read_point(value, 3)
-            self.page.ask(limits=move_limit(mapped(screen), screen, int(number), self._in_study(*point)))
-        elif key == "pick":
-            x, y = self._in_study(*read_point(value, 2))
-            self._show_point({screen.across.name: x, screen.up.name: y})
-        elif key == "best":
-            best = best_point(mapped(screen), screen)
-            if best is None:
-                raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
-            self._show_point(best)
-        elif key == "use":
-            self.page.ask(file=self._picked_file(), picked=None)
-        elif key == "compare":
-            self.page.ask(beside=with_compared(screen, self._picked_file()))
-        elif key == "drop":
-            self.page.ask(picked=None)
-        else:
-            changes = self.read(key, value)
-            check_map(replace(screen, **changes))
-            self.page.ask(**changes)
+        return {"limits": move_limit(mapped(screen), screen, int(number), self._in_study(*point))}
 
-    def _edit_limits(self, value: Any) -> None:
-        """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""
-        screen = self.page.screen
+    def _pick(self, value: Any) -> Changes:
+        return self._at(*self._in_study(*read_point(value, 2)))
 
-        def present(name: str) -> float:
-            designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
-            return present_value(screen.file, name, designs[_PRESENT].contact)
-
-        def check(limits: tuple[Limit, ...]) -> None:
-            allowed_points(mapped(screen), replace(screen, limits=limits))
-
-        limits = self._rows.read(value, screen.limits, screen.reading, present, check)
-        self._put_fields()
-        if limits is not None:
-            self.page.ask(limits=limits)
+    def _best(self, value: Any) -> Changes:
+        best = best_point(mapped(self.page.screen), self.page.screen)
+        if best is None:
+            raise ValueError("no point of the map keeps the limits: widen the axes or a limit")
+        return self._at(*best.values())
 
     def _in_study(self, x: float, y: float) -> tuple[float, float]:
         """Convert a point in the units of the axes to those of a study."""
@@ -192,10 +158,13 @@ class DesignMap(View):
         across, up = (screen.reading.unit(QUANTITIES[axis.name]).factor for axis in (screen.across, screen.up))
         return x / across, y / up
 
-    def _show_point(self, point: dict[str, float]) -> None:
-        picked = catalogue_sizes(point) if self.page.screen.sizes == "catalogue" else point
-        joint_at(self.page.screen.file, picked)  # or it is refused here
-        self.page.ask(picked=tuple(picked.values()))
+    def _at(self, x: float, y: float) -> Changes:
+        """Select a point, in the units of a study; raise ValueError if it has no joint."""
+        screen = self.page.screen
+        point = {screen.across.name: x, screen.up.name: y}
+        picked = catalogue_sizes(point) if screen.sizes == "catalogue" else point
+        joint_at(screen.file, picked)
+        return {"picked": tuple(picked.values())}
 
     def _picked_file(self) -> JointFile:
         picked = picked_point(self.page.screen)
@@ -211,6 +180,31 @@ class DesignMap(View):
             rows=lambda: _rows(results, screen.reading),
             sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
         )
+
+
+def _checked(screen: Screen, read: Callable[[Any], Changes]) -> Callable[[Any], Changes]:
+    """Let an edit be refused for which no map can be computed."""
+
+    def checked(value: Any) -> Changes:
+        changes = read(value)
+        check_map(replace(screen, **changes))
+        return changes
+
+    return checked
+
+
+def _limits(screen: Screen) -> Control:
+    """Return the rows of limits; those that the joint does not have are refused."""
+
+    def present(name: str) -> float:
+        designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+        return present_value(screen.file, name, designs[_PRESENT].contact)
+
+    def change(limits: tuple[Limit, ...]) -> Changes:
+        allowed_points(mapped(screen), replace(screen, limits=limits))
+        return {"limits": limits}
+
+    return limits_control(_LIMITED, screen.limits, screen.reading, present, change)
 
 
 def _drawn(screen: Screen) -> dict[str, str]:

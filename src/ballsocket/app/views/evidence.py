@@ -42,9 +42,9 @@ from ..running import Reached, Report, Work
 from ..state.screen import EvidenceQuestion, Screen, phrases_of
 from ..state.use import Use
 from ..view import Document, Host, field_places
+from ..widgets.controls import Changes, Control, changed, chosen, text
 from ..widgets.fields import segments
-from ..widgets.limit_rows import LimitRows, present_value
-from ..widgets.settings import chosen, text
+from ..widgets.limit_rows import limits_control, present_value
 from ..widgets.words import VERDICT_KINDS, alert
 
 _NO_YES = ("no", "yes")
@@ -59,25 +59,13 @@ _WORST_CASE_STEPS = 6  # approximate steps of the worst cases
 class Evidence(LongView):
     """View that gathers evidence for a question and resumes after a stop."""
 
-    settings = (
-        text("asked.question", "Decision", 2),
-        text("asked.context", "Context: what the result is for, and not for", 2),
-        chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
-        chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
-        text("asked.accuracy", "Allowed error of the numbers"),
-        text("asked.matrix", "Cases, such as force = 2, 3 kN"),
-        text("asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
-        text("asked.friction", "Coefficient of friction, if any"),
-        chosen("asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
-        chosen("asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
-    )
     title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
     body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
 
     def __init__(self, page: Host) -> None:
         super().__init__(page)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._rows = LimitRows("evidence.limits", _LIMITED)
+        self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 
     def question_of(self, screen: Screen) -> Hashable:
         use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
@@ -91,38 +79,43 @@ class Evidence(LongView):
             self._folder = tempfile.TemporaryDirectory(prefix="ballsocket-")
         return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder.name)
 
-    def show_inputs(self, screen: Screen) -> None:
-        limits = self._rows.field(_limits(screen.asked), screen.reading)
-        self.channel.put_fields({**self.fields(screen), "evidence.limits": limits})
+    def controls(self, screen: Screen) -> list[Control]:
+        def present(name: str) -> float:
+            contact = pressed(screen.file, (reference.name,)).contacts.get(reference.name)
+            return present_value(screen.file, name, contact)
+
+        def limited(limits: tuple[Limit, ...]) -> Changes:
+            return changed(
+                screen, "asked.limits", "; ".join(phrase for limit in limits for phrase in phrases_of(limit))
+            )
+
+        return [
+            text(screen, "asked.question", "Decision", 2),
+            text(screen, "asked.context", "Context: what the result is for, and not for", 2),
+            chosen(screen, "asked.influence", "Influence of the model on the decision", LEVELS, segments),
+            chosen(screen, "asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
+            text(screen, "asked.accuracy", "Allowed error of the numbers"),
+            limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
+            text(screen, "asked.matrix", "Cases, such as force = 2, 3 kN"),
+            text(screen, "asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
+            text(screen, "asked.friction", "Coefficient of friction, if any"),
+            chosen(screen, "asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
+            chosen(screen, "asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
+        ]
 
     def show_result(self, screen: Screen, result: EvidencePack | None) -> None:
         self.put(found=_case_table(screen) if result is None else _pack_html(result, screen.reading.units))
 
-    def edit(self, key: str, value: Any) -> None:
-        screen = self.page.screen
-        if key == "take":
-            content = b64encode(self.result(screen).content).decode("ascii")
-            self.channel.once("file", {"name": "evidence.zip", "content": content})
-        elif key == "allowable":
-            pressure = screen.file.joint.liner.allowable_pressure
-            if pressure is None:
-                raise ValueError("the liner has no allowable pressure: enter it beside the liner")
-            self.page.ask(asked=replace(screen.asked, limits=f"max_pressure <= {float(pressure):g} MPa"))
-        elif key == "limits":
-            self._edit_limits(value)
-        else:
-            super().edit(key, value)
+    def _take(self, value: Any) -> None:
+        content = b64encode(self.result(self.page.screen).content).decode("ascii")
+        self.channel.once("file", {"name": "evidence.zip", "content": content})
 
-    def _edit_limits(self, value: Any) -> None:
-        """Take the rows of limits, or show which row is wrong."""
+    def _limit_allowable(self, value: Any) -> Changes:
         screen = self.page.screen
-        contact = pressed(screen.file, (reference.name,)).contacts.get(reference.name)
-        present = partial(present_value, screen.file, contact=contact)
-        limits = self._rows.read(value, _limits(screen.asked), screen.reading, present)
-        self.show_inputs(screen)
-        if limits is not None:
-            phrases = "; ".join(phrase for limit in limits for phrase in phrases_of(limit))
-            self.page.ask(asked=replace(screen.asked, limits=phrases))
+        pressure = screen.file.joint.liner.allowable_pressure
+        if pressure is None:
+            raise ValueError("the liner has no allowable pressure: enter it beside the liner")
+        return changed(screen, "asked.limits", f"max_pressure <= {float(pressure):g} MPa")
 
     def document(self, screen: Screen) -> Document:
         pack: EvidencePack = self.result(screen)

@@ -32,7 +32,8 @@ from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import Screen
 from ..view import Document, field_places
-from ..widgets.joint_fields import cup_edited, cup_fields
+from ..widgets.controls import Control
+from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading, number_text
 from ..widgets.words import distinct_quantities, notes_list, percent
 
@@ -70,12 +71,8 @@ class ElementCheck(LongView):
     def work(self, screen: Screen) -> Work:
         return partial(run_finite_elements, screen.file)
 
-    def show_inputs(self, screen: Screen) -> None:
-        fields = cup_fields(screen, self.name)
-        self.channel.put_fields({name: fields[name] for name in (f"{_NAME}.{key}" for key in _FIELDS)})
-
-    def edit(self, key: str, value: Any) -> None:
-        self.page.ask(file=cup_edited(self.page.screen, key, value))
+    def controls(self, screen: Screen) -> list[Control]:
+        return [control for control in cup_controls(screen) if control.field["name"] in _FIELDS]
 
     def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:

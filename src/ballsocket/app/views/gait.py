@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from base64 import b64encode
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from html import escape
 from math import radians
@@ -30,9 +30,9 @@ from ..running import Work
 from ..state.screen import Screen
 from ..state.use import FIELDS, UploadedCycle
 from ..view import Document, Host
+from ..widgets.controls import Changes, Control, changed, chosen, cycle_controls
 from ..widgets.fields import segments
 from ..widgets.reading import Reading
-from ..widgets.settings import CYCLE_SETTINGS, chosen
 from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
 from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
@@ -61,7 +61,6 @@ class Gait(LongView):
     """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
 
     name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
-    settings = (*CYCLE_SETTINGS, chosen("use.field", "Shown on the cup", FIELDS, segments))
     body = long_body("gait", _INPUTS, _SHOWN)
 
     def __init__(self, page: Host) -> None:
@@ -78,7 +77,11 @@ class Gait(LongView):
             automatic=True,
             longest=_FILM_SECONDS,
         )
-        self.further = [self.film]
+        self.add(self.film)
+        self.actions |= {"gait.own": self._take_upload, "gait.instant": self._take_instant}
+
+    def controls(self, screen: Screen) -> list[Control]:
+        return [*cycle_controls(screen), chosen(screen, "use.field", "Shown on the cup", FIELDS, segments)]
 
     def question_of(self, screen: Screen) -> Hashable:
         return gait_key(screen.file, screen.use, self._upload)
@@ -86,12 +89,12 @@ class Gait(LongView):
     def work(self, screen: Screen) -> Work:
         return partial(simulate_gait, screen.file, screen.use, self._upload)
 
-    def show_inputs(self, screen: Screen) -> None:
+    def show(self, screen: Screen) -> None:
         if screen.use.cycle != self._cycle:
             self._upload, self._cycle = None, screen.use.cycle
-        super().show_inputs(screen)
         upload_note = "" if self._upload is None else f" {escape(self._upload.name)}: a link does not hold it."
         self.put(load=f"The load is that of the cycle; the force beside the joint is not used.{upload_note}")
+        super().show(screen)
 
     def show_result(self, screen: Screen, result: GaitResult | None) -> None:
         if result is None:
@@ -119,16 +122,14 @@ class Gait(LongView):
             courses=gait_charts(result, film, reading),
         )
 
-    def edit(self, key: str, value: Any) -> None:
-        if key == "own":
-            self._upload = _read_upload(value)
-            self.show(self.page.screen)
-        elif key == "instant":
-            if not isinstance(value, int) or isinstance(value, bool):
-                raise ValueError("an instant of a cycle is a whole number")
-            self.page.ask(use=replace(self.page.screen.use, instant=value))
-        else:
-            super().edit(key, value)
+    def _take_upload(self, value: Any) -> None:
+        self._upload = _read_upload(value)
+        self.show(self.page.screen)
+
+    def _take_instant(self, value: Any) -> Changes:
+        if not isinstance(value, int) or isinstance(value, bool):
+            raise ValueError("an instant of a cycle is a whole number")
+        return changed(self.page.screen, "use.instant", value)
 
     def document(self, screen: Screen) -> Document:
         result, film, reading = self.result(screen), self.film.result(screen), screen.reading

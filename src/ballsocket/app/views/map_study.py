@@ -27,7 +27,7 @@ from ...studies.parameters import LOADS, PARAMETERS, press_arguments
 from ...studies.run import default_model, joint_of_arrays, study
 from ...studies.task import with_bounds
 from ..state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
-from ..widgets.numbers import of_parameter
+from ..widgets.controls import parameter
 
 _POINTS = 61
 _SOLVED_POINTS = 17  # values along an axis where every joint is solved: a second in all
@@ -185,6 +185,6 @@ def picked_point(screen: Screen) -> dict[str, float] | None:
 def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
     """Replace each number of a point by the nearest catalogue size, where there are sizes."""
     return {
-        name: min(of_parameter(name).typical.sizes, key=lambda size: abs(size - value), default=value)
+        name: min(parameter(name).typical.sizes, key=lambda size: abs(size - value), default=value)
         for name, value in point.items()
     }

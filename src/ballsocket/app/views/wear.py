@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -27,91 +27,90 @@ from ..running import Work
 from ..state.screen import Screen
 from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
 from ..view import Document, field_places
-from ..widgets.fields import Field, choice, number, segments
-from ..widgets.numbers import capital
+from ..widgets.controls import Changes, Control, amount, changed, chosen, cycle_controls
+from ..widgets.fields import capital, choice, number, segments
 from ..widgets.reading import Reading
-from ..widgets.settings import CYCLE_SETTINGS, Setting, amount, changed, chosen
 from ..widgets.words import checked, doubt, notes_list, number_text, percent, unit_of_files
 from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]  # quantities whose units depths and pressures have
+_FIELDS = (
+    *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
+    *(*CREEP_INPUTS, "beside"),
+)
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
-def _beside_field(screen: Screen) -> Field:
+def _beside(screen: Screen) -> Control:
+    present = {_ALONE: (), _NOW: (screen.file,), _AS_COMPARED: screen.beside}
     compared = [(_AS_COMPARED, f"{screen.beside[0].joint.name or 'a joint'}, {_AS_COMPARED}")] if screen.beside else []
     options = [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *joints]
-    return choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE)
+
+    def read(value: Any) -> Changes:
+        if value in present:
+            return {"beside": present[value]}
+        check_names([value], joints, "as design")
+        return {"beside": (replace(screen.file, joint=joints[value]),)}
+
+    return Control(choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE), read)
 
 
-def _read_beside(screen: Screen, value: Any) -> dict[str, Any]:
-    present = {_ALONE: (), _NOW: (screen.file,), _AS_COMPARED: screen.beside}
-    if value in present:
-        return {"beside": present[value]}
-    check_names([value], joints, "as design")
-    return {"beside": (replace(screen.file, joint=joints[value]),)}
+def _coefficient(screen: Screen) -> Control:
+    """Return the wear coefficient, hidden for a law without one."""
+    part = screen.use.coefficient_field
+    if part is None:
+        return amount(screen, "use.coefficient", "Coefficient", (0.0, 1.0), 0.01).but(hidden=True)
+    return _law_control(
+        *("coefficient", part, screen.use.coefficient, "Coefficient"),
+        lambda value: changed(screen, "use.coefficient", value),
+    )
 
 
-def _law_field(key: str, part: LawField, value: float, title: str) -> Field:
-    """Describe the input of a number of a law, over three decades around its example."""
+def _law_number(screen: Screen, key: str) -> Control:
+    """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
+    part, use = LAW_INPUTS[key], screen.use
+    control = _law_control(
+        *(key, part, use.law_number(key), capital(part.meaning)), lambda value: {"use": use.with_law_number(key, value)}
+    )
+    return control.but(hidden=key not in use.used_inputs)
+
+
+def _law_control(key: str, part: LawField, value: float, title: str, change: Callable[[float], Changes]) -> Control:
+    """Return the input of a number of a law, over three decades around its example.
+
+    A typed number has a decimal point or comma, with or without its unit.
+    """
     unit = f" [{part.unit.text}]" if part.unit.text else ""
     step = part.example / 100 or 0.01
-    return number(key, f"{title}{unit}", Unit(""), (step, 1000 * step), step, value)
 
+    def read(text: Any) -> Changes:
+        return change(float(part.unit.read(key, text.strip().replace(",", ".") if isinstance(text, str) else text)))
 
-def _read_law_number(key: str, part: LawField, value: Any) -> float:
-    """Read a typed number with a decimal point or comma, with or without its unit."""
-    return float(part.unit.read(key, value.strip().replace(",", ".") if isinstance(value, str) else value))
-
-
-def _coefficient_field(screen: Screen) -> Field:
-    part = screen.use.coefficient_field
-    if part is None:
-        return {**number("coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), "hidden": True}
-    return _law_field("coefficient", part, screen.use.coefficient, "Coefficient")
-
-
-def _read_coefficient(screen: Screen, value: Any) -> dict[str, Any]:
-    part = screen.use.coefficient_field
-    if part is None:
-        raise ValueError(f"the law {screen.use.law!r} has no coefficient")
-    return changed(screen, "use.coefficient", _read_law_number("coefficient", part, value))
-
-
-def _law_setting(key: str) -> Setting:
-    """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
-    part = LAW_INPUTS[key]
-    return Setting(
-        key,
-        lambda screen: {
-            **_law_field(key, part, screen.use.law_number(key), capital(part.meaning)),
-            "hidden": key not in screen.use.used_inputs,
-        },
-        lambda screen, value: {"use": screen.use.with_law_number(key, _read_law_number(key, part, value))},
-    )
+    return Control(number(key, f"{title}{unit}", Unit(""), (step, 1000 * step), step, value), read)
 
 
 class Wear(LongView):
     """View of wear that runs on request and shows stored results at once."""
 
     title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
-    settings = (
-        *CYCLE_SETTINGS,
-        chosen("use.law", "Wear law", CHOICES["law"]),
-        Setting("coefficient", _coefficient_field, _read_coefficient),
-        *map(_law_setting, WEAR_INPUTS),
-        amount("use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
-        amount("use.millions", "Million cycles", (0.5, 20.0), 0.5),
-        chosen("use.creep", "Include creep", CHOICES["creep"], segments),
-        *map(_law_setting, CREEP_INPUTS),
-        Setting("beside", _beside_field, _read_beside),
-    )
     body = long_body(
         "wear",
-        field_places("wear", (setting.key for setting in settings)),
+        field_places("wear", _FIELDS),
         '<div id="wear-curve"></div><div class="beside" id="wear-maps"></div><div id="wear-numbers"></div>',
     )
+
+    def controls(self, screen: Screen) -> list[Control]:
+        return [
+            *cycle_controls(screen),
+            chosen(screen, "use.law", "Wear law", CHOICES["law"]),
+            _coefficient(screen),
+            *(_law_number(screen, key) for key in LAW_INPUTS),
+            amount(screen, "use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
+            amount(screen, "use.millions", "Million cycles", (0.5, 20.0), 0.5),
+            chosen(screen, "use.creep", "Include creep", CHOICES["creep"], segments),
+            _beside(screen),
+        ]
 
     def question_of(self, screen: Screen) -> Hashable:
         return tuple(_files_by_key(screen))

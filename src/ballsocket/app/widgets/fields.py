@@ -19,10 +19,13 @@ _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 _MAX_SHOWN = 60  # characters of typed text in a message
 
 Field = dict[str, Any]  # one input: its name, kind, label, value, and what its kind needs
-
-
 Options = Iterable[Sequence[str]]  # values of a choice, each with its label unless that is the value
 _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
+
+
+def capital(title: str) -> str:
+    """Write a title with a capital letter."""
+    return f"{title[:1].upper()}{title[1:]}"
 
 
 def choice(name: str, label: str, options: Options, value: str) -> Field:
@@ -104,6 +107,19 @@ def typed_quantity(label: str, text: Any, quantity: Quantity, reading: Reading) 
     """Convert typed text to a number in internal units; a bare number has the unit of the page."""
     unit, written = reading.unit(quantity), quantity.written.factor
     return typed(label, text, Unit(unit.text, unit.factor / written), quantity.kind) / written
+
+
+def refusal_of(field: Field, error: ValueError, value: Any) -> Field | None:
+    """Return what a field shows beside a refused value, which stays in its box; None for a field without a box.
+
+    The refusal of a key becomes one of the field's label, and states the number in use.
+    """
+    if field["kind"] == "limits":
+        return {"error": str(error), "refused": value, "wrong": getattr(error, "index", None)}
+    if field["kind"] not in ("number", "words"):
+        return None
+    sentence = in_words_of(field, str(error), value)
+    return {"error": sentence, "refused": value if isinstance(value, str) else None}
 
 
 def in_words_of(field: Field, sentence: str, text: Any) -> str:

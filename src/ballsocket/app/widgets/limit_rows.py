@@ -14,8 +14,8 @@ from ...files.joint_file import JointFile
 from ...studies.limits import Limit
 from ...studies.parameters import nominal_value
 from ...studies.task import EDGE_DISTANCE
-from .fields import Field, typed_quantity
-from .numbers import capital
+from .controls import Changes, Control
+from .fields import capital, typed_quantity
 from .reading import Reading, box_text
 
 _SIGNS = {"<=": "at most", ">=": "at least"}
@@ -27,60 +27,57 @@ _DIGITS = 3  # digits of a limit that starts at the present design
 Row = tuple[str, str, str]  # name of a quantity, sign, and the text of the value in the unit of the page
 
 
-class LimitRows:
-    """Input for limits on the quantities of `names`; refused rows stay as typed until the limits change."""
+class WrongRowError(ValueError):
+    """Refusal of one row of limits, by its index."""
 
-    def __init__(self, name: str, names: Iterable[str]) -> None:
-        self._name, self._names = name, tuple(names)
-        self._refused: tuple[tuple[Limit, ...], tuple[Row, ...], str, int | None] | None = None
+    def __init__(self, index: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.index = index
 
-    def field(self, limits: tuple[Limit, ...], reading: Reading) -> Field:
-        """Return the rows of some limits, or the refused ones with the index of the wrong row."""
-        rows, sentence, wrong = tuple(row for limit in limits for row in _rows_of(limit, reading)), "", None
-        if self._refused is not None and self._refused[0] == limits:
-            _, rows, sentence, wrong = self._refused
-        listed = dict.fromkeys([*self._names, *(row[0] for row in rows)])
-        return {
-            "name": self._name,
-            "kind": "limits",
-            "label": "Limits",
-            "options": [[key, capital(QUANTITIES[key].title), reading.unit(QUANTITIES[key]).text] for key in listed],
-            "signs": [list(pair) for pair in _SIGNS.items()],
-            "value": [list(row) for row in rows],
-            "error": sentence,
-            "wrong": wrong,
-        }
 
-    def read(
-        self,
-        value: Any,
-        limits: tuple[Limit, ...],
-        reading: Reading,
-        present: Callable[[str], float],
-        check: Callable[[tuple[Limit, ...]], Any] = lambda limits: None,
-    ) -> tuple[Limit, ...] | None:
-        """Read rows as the page sends them; None if one of them, or `check`, refuses.
+def limits_control(
+    names: Iterable[str],
+    limits: tuple[Limit, ...],
+    reading: Reading,
+    present: Callable[[str], float],
+    change: Callable[[tuple[Limit, ...]], Changes],
+) -> Control:
+    """Return the input "limits" for limits on the quantities of `names`.
 
-        `present` gives the number of the design for a row without a value. Raises ValueError if there are no rows.
-        """
-        if not isinstance(value, list) or not all(
-            isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
-        ):
-            raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
-        check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
-        check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
-        rows, read, wrong = tuple((name, sign, text.strip()) for name, sign, text in value), [], None
-        known = {row: limit for limit in limits for row in _rows_of(limit, reading)}  # an untouched row is not rounded
+    `present` gives the number of the design for a row without a value.
+    """
+    rows = [row for limit in limits for row in _rows_of(limit, reading)]
+    listed = dict.fromkeys([*names, *(row[0] for row in rows)])
+    field = {
+        "name": "limits",
+        "kind": "limits",
+        "label": "Limits",
+        "options": [[key, capital(QUANTITIES[key].title), reading.unit(QUANTITIES[key]).text] for key in listed],
+        "signs": [list(pair) for pair in _SIGNS.items()],
+        "value": [list(row) for row in rows],
+    }
+    return Control(field, lambda value: change(read_limits(value, limits, reading, present)))
+
+
+def read_limits(
+    value: Any, limits: tuple[Limit, ...], reading: Reading, present: Callable[[str], float]
+) -> tuple[Limit, ...]:
+    """Read rows as the page sends them; raise `WrongRowError` for a wrong row, and ValueError if there are no rows."""
+    if not isinstance(value, list) or not all(
+        isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
+    ):
+        raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
+    check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
+    check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
+    known = {row: limit for limit in limits for row in _rows_of(limit, reading)}  # an untouched row is not rounded
+    read = []
+    for index, (name, sign, text) in enumerate(value):
+        row = name, sign, text.strip()
         try:
-            for wrong, row in enumerate(rows):  # noqa: B007 - the refused row
-                read.append(known.get(row) or _limit(row, reading, present))
-            wrong = None
-            check(tuple(read))
+            read.append(known.get(row) or _limit(row, reading, present))
         except ValueError as error:
-            self._refused = limits, rows, str(error), wrong
-            return None
-        self._refused = None
-        return tuple(read)
+            raise WrongRowError(index, str(error)) from error
+    return tuple(read)
 
 
 def present_value(file: JointFile, name: str, contact: Contact | None = None) -> float:

@@ -1,0 +1,185 @@
+"""Inputs of the page: each is a field that shows a value of the screen, and the reader of its edits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
+
+from ...core.checks import shown
+from ...core.kinds import Kind, Unit
+from ...core.quantities import QUANTITIES, Quantity
+from ...core.unit_systems import Units
+from ...files.inputs import Input, Typical, inputs_of
+from ...files.joint_file import JointFileTable
+from ...hip.cycle_registry import CYCLES
+from ...hip.schema import HipTable
+from ...problem.dimensions import DIAMETERS
+from ..state.screen import Screen
+from ..state.use import CHOICES
+from .fields import Field, Options, choice, empty_number, number, segments, typed, words
+from .reading import Reading, box_text, handy_step, unit_suffix
+
+_NEARLY_ZERO = 0.01  # share of the largest number below which the smallest is stated as zero
+Changes = dict[str, Any]  # values of the screen by name
+Reader = Callable[[Any], Changes | None]  # raises ValueError for a value that is not allowed; None changes nothing
+
+
+@dataclass(frozen=True)
+class Control:
+    """Input of the page for one screen: its field, and the reader of its edits.
+
+    `read` returns the changes of the screen; it raises ValueError for a value that is not allowed.
+    """
+
+    field: Field
+    read: Callable[[Any], Changes]
+
+    def but(self, **more: Any) -> Control:
+        """Return the input with more entries of its field, such as `hidden`."""
+        return Control({**self.field, **more}, self.read)
+
+
+def by_name(controls: Iterable[Control], prefix: str = "") -> dict[str, Control]:
+    """Return inputs by their names, which begin with a prefix."""
+    named = (control.but(name=f"{prefix}{control.field['name']}") for control in controls)
+    return {control.field["name"]: control for control in named}
+
+
+def fields_of(controls: Mapping[str, Control]) -> dict[str, Field]:
+    """Return the fields of inputs by name."""
+    return {name: control.field for name, control in controls.items()}
+
+
+def changed(screen: Screen, path: str, value: Any) -> Changes:
+    """Return the change of the screen that sets a path such as "quantity" or "use.law"."""
+    part, _, key = path.rpartition(".")
+    return {part: replace(getattr(screen, part), **{key: value})} if part else {key: value}
+
+
+def chosen(
+    screen: Screen, path: str, label: str, options: Options, build: Callable[..., Field] = choice, name: str = ""
+) -> Control:
+    """Return the choice of a word of the screen, named after it."""
+    name = name or path.rpartition(".")[2]
+
+    def read(value: Any) -> Changes:
+        if not isinstance(value, str):
+            raise ValueError(f"{name} = {shown(value)} is not a choice")
+        return changed(screen, path, value)
+
+    return Control(build(name, label, options, attrgetter(path)(screen)), read)
+
+
+def amount(screen: Screen, path: str, label: str, ends: tuple[float, float], step: float) -> Control:
+    """Return the input of a number of the screen without a unit, with its typical range."""
+    unit = Unit("")
+    return Control(
+        number(path.rpartition(".")[2], label, unit, ends, step, attrgetter(path)(screen)),
+        lambda value: changed(screen, path, typed(label, value, unit, Kind.NUMBER)),
+    )
+
+
+def text(screen: Screen, path: str, label: str, rows: int = 1) -> Control:
+    """Return the input of a text of the screen, of several rows."""
+    name = path.rpartition(".")[2]
+
+    def read(value: Any) -> Changes:
+        if not isinstance(value, str):
+            raise ValueError(f"{name} = {shown(value)} must be text")
+        return changed(screen, path, value.strip())
+
+    return Control(words(name, label, attrgetter(path)(screen), rows), read)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """Number of a file with an input on the page."""
+
+    entry: Input
+    quantity: Quantity
+    label: str
+
+    @property
+    def typical(self) -> Typical:
+        """Typical range, step, sizes and bounds of the number."""
+        assert self.entry.typical is not None
+        return self.entry.typical
+
+    def unit(self, reading: Reading) -> Unit:
+        """Return the unit beside the box, and the factor to it from the table's unit."""
+        unit = reading.unit(self.quantity)
+        return Unit(unit.text, unit.factor / self.quantity.written.factor)
+
+    def control(self, name: str, value: float | None, reading: Reading, change: Callable[[float], Changes]) -> Control:
+        """Return the input for a number of a table, and for a change to another number of it."""
+        return Control(self._field(name, value, reading), lambda value: change(self.meant(value, reading)))
+
+    def _field(self, name: str, value: float | None, reading: Reading) -> Field:
+        """Return the field of a number; an empty box for None."""
+        unit = self.unit(reading)
+        ratio = reading.unit(self.quantity).factor / self.quantity.shown.factor  # from the unit of metric pages
+        hint = f"{self.quantity.symbol}: {self.quantity.meaning}".removeprefix(": ").replace("`", "")
+        if value is None:
+            return {**empty_number(name, self.label, unit), "hint": hint}
+        low, high = (float(f"{end * ratio:.3g}") for end in self.typical.ends)
+        step = self.typical.step * ratio
+        step = step if ratio == 1 else handy_step(step)
+        stated = "" if reading.units is Units.SI else " mm"  # of catalogue sizes where the page has another unit
+        sizes = [f"{size:g}{stated}" for size in self.typical.sizes]
+        drag = unit.factor * (2 if self.entry.key in DIAMETERS else 1)  # box unit per unit of a radius
+        extra = {"hint": hint, "factor": drag, **({"sizes": sizes} if sizes else {})}
+        return {**number(name, self.label, unit, (low, high), step, value * unit.factor), **extra}
+
+    def meant(self, value: object, reading: Reading) -> float:
+        """Convert typed text to the number of the table; raise ValueError for other text and numbers out of bounds."""
+        unit = self.unit(reading)
+        number = typed(self.label, value, unit, self.quantity.kind)
+        low, high = self.typical.bounds
+        if low <= number <= high:
+            return number
+        texts = [box_text(end * unit.factor, unit.text) for end in (low, high, number)]
+        rule = f"{texts[0]} to {texts[1]}{unit_suffix(unit.text)} ({self.typical.reason})"
+        if number <= 0 <= low < _NEARLY_ZERO * high:
+            rule = "positive" if low else "zero or positive"
+        raise ValueError(f"{self.label} must be {rule}, got {texts[2]}{unit_suffix(unit.text)}")
+
+
+_INPUTS = {f"{entry.part}.{entry.key}".lstrip("."): entry for entry in inputs_of(JointFileTable) + inputs_of(HipTable)}
+
+
+def number_of(path: str, **changes: Any) -> Number:
+    """Return the number of a key of a file, such as "liner.young", with another quantity or label."""
+    entry = _INPUTS[path]
+    return Number(**{"entry": entry, "quantity": entry.quantity, "label": entry.label, **changes})
+
+
+def parameter(name: str) -> Number:
+    """Return the number of a parameter of a study, such as "liner_young"."""
+    part, _, key = name.partition("_")
+    named = (f"joint.{name}", f"{part}.{key}", f"load.{name}")
+    return number_of(next(path for path in named if path in _INPUTS))
+
+
+def file_choice(path: str, value: str, name: str = "") -> Field:
+    """Return the input for a choice of a file, such as "cup.side"."""
+    entry = _INPUTS[path]
+    return segments(name or entry.key, entry.label, entry.choices, value)
+
+
+_BODY_WEIGHT = number_of("body_weight", quantity=QUANTITIES["force"], label="Body weight")
+_FOUNDATIONS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
+
+
+def cycle_controls(screen: Screen) -> list[Control]:
+    """Return cycle, body weight where the cycle was measured in patients, and model of the liner: for Gait and Wear."""
+    use = screen.use
+    weight = _BODY_WEIGHT.control(
+        "body_weight", use.body_weight, screen.reading, lambda value: changed(screen, "use.body_weight", value)
+    )
+    return [
+        chosen(screen, "use.cycle", "Cycle", CHOICES["cycle"]),
+        weight.but(hidden=not CYCLES[use.cycle].per_body_weight),
+        chosen(screen, "use.contact", "Liner model", _FOUNDATIONS.items(), segments),
+    ]

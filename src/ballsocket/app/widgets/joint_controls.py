@@ -1,0 +1,317 @@
+"""Inputs of joint, load, layers and cup."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from html import escape
+from math import atan2, degrees, inf, isinf, radians, tan
+from typing import Any
+
+from ...core.checks import check_names, check_text, shown
+from ...core.quantities import LOADS, STRESS_LIMITS
+from ...files.joint_file import JointFile, joint_of, varied
+from ...files.joint_toml import Tables, tables_of
+from ...problem import Joint, Layer, Material, Support
+from ...problem.cup import UP, Side
+from ...problem.dimensions import DIAMETERS, LENGTHS, give
+from ...problem.presets import joints, materials
+from ...question import complete
+from ..pressing import same_load
+from ..state.screen import Screen
+from .controls import Control, Number, file_choice, number_of
+from .fields import choice, segments, tick, words
+
+_CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
+_CUSTOM_NUMBERS = "– custom numbers –"
+_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
+_CHANGED = " (changed)"
+_DIAMETERS = {single: double for double, single in DIAMETERS.items()}
+_MAX_NAME = 80  # characters of a design's name
+_NO_CHOICE, _REMOVE = "", "away"
+_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
+_BODY, _AXIS = "body", "axis"
+_AIMS = {_BODY: "in the body", _AXIS: "from the cup's axis"}
+_ALLOWABLE = number_of("liner.allowable_pressure")
+_TILT = number_of("load.tilt", label="Tilt of the load")
+_LEANS = {
+    name: number_of("load.direction", quantity=_TILT.quantity, label=f"Load direction, {side}")
+    for name, side in (("inwards", "medial"), ("forwards", "anterior"))
+}
+
+
+def joint_controls(screen: Screen) -> list[Control]:
+    """List the inputs of the joint on the screen and of its load, in the order of the page."""
+    file, tables, joint = screen.file, tables_of(screen.file), screen.file.joint
+    ((kind_of_load, _),) = file.load.items()
+    presets = [(_PRESET, "– choose –"), *joints]
+    preset = joint.name if joints.get(joint.name) == joint else _PRESET
+    kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind_of_load)
+    solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
+    liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
+    limit, load = partial(_edited, file, ("liner", "allowable_pressure")), number_of(f"load.{kind_of_load}")
+    allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
+    return [
+        _control(words("name", "Design", joint.name), partial(_with_name, file)),
+        _control(choice("preset", "Start from", presets, preset), partial(_with_preset, file)),
+        *_lengths(screen),
+        *([] if joint.backing else [_control(solid, partial(_with_solid_socket, file))]),
+        _control(kinds, partial(_with_kind_of_load, screen)),
+        _number(screen, "load", load, tables["load"][kind_of_load], partial(_edited, file, ("load", kind_of_load))),
+        _number(screen, "tilt", _TILT, degrees(file.tilt), partial(_with_tilt, file)),
+        _control(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
+        *_moduli(screen, "liner"),
+        Control(allowable.field, lambda value: {"file": limit(None)} if value == "" else allowable.read(value)),
+        *_thicknesses(screen),
+        _control(choice("ball", "Ball", (_RIGID, *_MATERIALS), ball), partial(_with_material, file, "ball")),
+        *_moduli(screen, "ball"),
+    ]
+
+
+def _control(field: dict[str, Any], edit: Callable[[Any], JointFile]) -> Control:
+    """Return an input whose edit to a value makes another joint file."""
+    return Control(field, lambda value: {"file": edit(value)})
+
+
+def _number(screen: Screen, name: str, spec: Number, value: Any, edit: Callable[[float], JointFile]) -> Control:
+    """Return the input of a number, of which an edit makes another joint file."""
+    return spec.control(name, value, screen.reading, lambda number: {"file": edit(number)})
+
+
+def _lengths(screen: Screen) -> Iterator[Control]:
+    """Yield the lengths of the joint: an interference is no clearance, and a solid socket has no thickness."""
+    joint, as_diameters = screen.file.joint, screen.size == "diameter"
+    for name in ("ball_radius", "clearance", "liner_thickness", "outer_radius"):
+        key = _DIAMETERS.get(name, name) if as_diameters else name
+        value = float(getattr(joint, key))
+        if 0 <= value < inf:
+            yield _number(screen, name, number_of(f"joint.{key}"), value, partial(_with_length, screen.file, key))
+
+
+def _moduli(screen: Screen, part: str) -> Iterator[Control]:
+    material = getattr(screen.file.joint, part)
+    for key in ("young", "poisson") if material else ():
+        edit = partial(_edited, screen.file, (part, key))
+        yield _number(screen, f"{part}_{key}", number_of(f"{part}.{key}"), float(getattr(material, key)), edit)
+
+
+def _thicknesses(screen: Screen) -> Iterator[Control]:
+    for index, layer in enumerate(screen.file.joint.backing):
+        if not isinf(float(layer.thickness)):
+            spec = number_of("backing.thickness", label=f"{layer.material.name or 'Layer'} thickness")
+            edit = partial(_edited, screen.file, ("backing", index, "thickness"))
+            yield _number(screen, f"layer{index}", spec, float(layer.thickness), edit)
+
+
+def _chosen(table: Tables) -> str:
+    """Return the name of a material, or "own" if a number differs from it."""
+    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
+
+
+def joint_words(joint: Joint) -> str:
+    """List the lengths that stay while others change, and the layers behind the liner, as HTML."""
+    given = ", ".join(LENGTHS[name].title for name in joint.given_lengths)
+    layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
+    behind = f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
+    return f"<p>Held while other lengths change: {given}.</p>{behind}"
+
+
+def _edited(file: JointFile, path: Sequence[str | int], value: Any) -> JointFile:
+    """Set a value in the tables of a joint file; None removes it."""
+    tables = tables_of(file)
+    part: Any = tables
+    for key in path[:-1]:
+        part = part[key]
+    if value is None:
+        part.pop(path[-1], None)
+    else:
+        part[path[-1]] = value
+    return _made_of(tables, file)
+
+
+def _with_length(file: JointFile, key: str, value: float) -> JointFile:
+    """Set a length, which takes the place of the one that would follow from it; a diameter sets its radius."""
+    tables = tables_of(file)
+    lengths, name = tables["joint"], DIAMETERS.get(key, key)
+    kept = give(name, [length for length in lengths if length in LENGTHS])
+    for length in [length for length in lengths if length in LENGTHS and length not in kept]:
+        del lengths[length]
+    lengths[name] = value if name == key else value / 2
+    return _made_of(tables, file)
+
+
+def _made_of(tables: Tables, file: JointFile) -> JointFile:
+    """Make a joint file of changed tables; drop its source if a number differs."""
+    made = joint_of(tables)
+    unchanged = made.joint == file.joint or tables == tables_of(file)
+    return made if unchanged else replace(made, joint=_as_changed(made.joint))
+
+
+def _as_changed(joint: Joint) -> Joint:
+    """Return a joint that differs from its source, with a preset marked as changed in its name."""
+    base = joint.name.removesuffix(_CHANGED)
+    if base not in joints:
+        return joint.replace(name=joint.name, source="")
+    preset = joints[base]
+    same = joint.replace(name=preset.name, source=preset.source) == preset
+    return preset if same else joint.replace(name=base + _CHANGED, source="")
+
+
+def _with_name(file: JointFile, value: Any) -> JointFile:
+    name = " ".join(check_text("the name", value).split())
+    if len(name) > _MAX_NAME:
+        raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
+    return replace(file, joint=file.joint.replace(name=name, source=file.joint.source))
+
+
+def _with_preset(file: JointFile, name: Any) -> JointFile:
+    """Replace the joint by a preset, under the same load in the same cup."""
+    if name == _PRESET:
+        return file
+    check_names([name], joints, "as preset")
+    return replace(file, joint=joints[name])
+
+
+def _with_solid_socket(file: JointFile, value: Any) -> JointFile:
+    """Make the liner a solid socket, or one of a third of the radius."""
+    if not isinstance(value, bool):
+        raise ValueError(f"massive = {shown(value)} must be true or false")
+    return _with_length(file, "liner_thickness", inf if value else round(float(file.joint.socket_radius) / 3, 1))
+
+
+def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
+    """State the load as force, indentation or half angle, with the same contact."""
+    check_names([kind], LOADS, "as load")
+    return replace(screen.file, load=same_load(screen.file, screen.answered_by, kind))
+
+
+def _with_tilt(file: JointFile, tilt: float) -> JointFile:
+    along = tilt == 0 and replace(file, aim={}).tilt == 0
+    return replace(file, aim={}) if along else varied(file, {"load": {"tilt": tilt}})
+
+
+def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
+    """Change the material of liner or ball; custom numbers start from those of the previous material."""
+    if not isinstance(chosen, str):
+        raise ValueError(f"{part} = {shown(chosen)} is not a material")
+    if chosen == _RIGID and part == "ball":
+        return _edited(file, (part,), None)
+    if chosen != _CUSTOM:
+        return _edited(file, (part,), {"material": chosen})
+    material = getattr(file.joint, part) or Material(young=2e5, poisson=0.3)
+    return _edited(file, (part,), {"young": float(material.young), "poisson": float(material.poisson)})
+
+
+def layer_controls(screen: Screen) -> list[Control]:
+    """List a material for each layer behind the liner, one to add a layer, and the support of the outermost."""
+    file, listed = screen.file, []
+    for index, layer in enumerate(file.joint.backing):
+        named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
+        custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
+        options = [*custom, *materials, (_REMOVE, "– remove –")]
+        field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named)
+        listed.append(_control(field, partial(_with_layer, file, index)))
+    additions = [(_NO_CHOICE, "– choose –"), *materials]
+    added = choice("behind.add", "Add a layer behind the liner", additions, _NO_CHOICE)
+    listed.append(_control(added, partial(_with_new_layer, file)))
+    if file.joint.backing:
+        support = file_choice("joint.support", file.joint.support.value, "behind.support")
+        listed.append(_control(support, partial(_with_support, file)))
+    return listed
+
+
+def _with_layer(file: JointFile, index: int, value: Any) -> JointFile:
+    """Change the material of a layer, or remove it."""
+    if value == _CUSTOM:
+        return file
+    layers = list(file.joint.backing)
+    if value == _REMOVE:
+        del layers[index]
+    else:
+        check_names([value], materials, "as material")
+        layers[index] = replace(layers[index], material=materials[value])
+    return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
+
+
+def _with_new_layer(file: JointFile, value: Any) -> JointFile:
+    if value == _NO_CHOICE:
+        return file
+    check_names([value], materials, "as material")
+    if len(file.joint.backing) >= _MAX_LAYERS:
+        raise ValueError(f"{shown(value)} is one layer too many: at most {_MAX_LAYERS}")
+    return _with_joint(file, backing=(*file.joint.backing, Layer(thickness=_NEW_THICKNESS, material=materials[value])))
+
+
+def _with_support(file: JointFile, value: Any) -> JointFile:
+    check_names([value], [support.value for support in Support], "as support")
+    return _with_joint(file, support=Support(value))
+
+
+def _with_joint(file: JointFile, **changes: Any) -> JointFile:
+    joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
+    return replace(file, joint=_as_changed(joint))
+
+
+def cup_controls(screen: Screen) -> list[Control]:
+    """List the inputs of the cup and of the direction of its load; those without effect are hidden."""
+    file, cup, tilted = screen.file, complete(screen.file)[0].cup, "tilt" in screen.file.aim
+    angles = {"inclination": tilted, "anteversion": tilted, "arc_of_cover": False}
+    leans = dict(zip(_LEANS, leaning(file), strict=True))
+    aims = segments("aim", "Load direction given", _AIMS.items(), _AXIS if tilted else _BODY)
+    numbers: list[tuple[str, Number, float, bool, Callable[[float], JointFile]]] = [
+        *(
+            (name, number_of(f"cup.{name}"), degrees(getattr(cup, name)), hidden, partial(_with_cup, file, name))
+            for name, hidden in angles.items()
+        ),
+        ("chamfer", number_of("cup.chamfer"), cup.chamfer, False, partial(_with_cup, file, "chamfer")),
+        *((name, _LEANS[name], leans[name], tilted, partial(_with_lean, file, name)) for name in _LEANS),
+        (
+            "tilt",
+            _TILT,
+            degrees(file.aim.get("tilt", 0.0)),
+            not tilted,
+            lambda angle: varied(file, {"load": {"tilt": angle}}),
+        ),
+    ]
+    return [
+        *(
+            _number(screen, name, spec, round(value, 9) + 0.0, edit).but(hidden=hidden)
+            for name, spec, value, hidden, edit in numbers
+        ),
+        _control(aims, partial(_with_aim, file)),
+        _control(file_choice("cup.side", cup.side.value), partial(_with_cup, file, "side")),
+        _control(file_choice("cup.interface", cup.interface.value), partial(_with_cup, file, "interface")),
+    ]
+
+
+def leaning(file: JointFile) -> tuple[float, float]:
+    """Compute the angles in degrees by which a load leans medially and anteriorly."""
+    x, y, z = file.aim.get("direction", UP)
+    return degrees(atan2(_inwards(file) * x, z)), degrees(atan2(y, z))
+
+
+def _inwards(file: JointFile) -> float:
+    """Return the sign of the body's x axis that points medially."""
+    return -1.0 if file.cup.side is Side.RIGHT else 1.0
+
+
+def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
+    direction = (_inwards(file) * tan(radians(inwards)), tan(radians(forwards)), 1.0)
+    return replace(file, aim={} if direction[:2] == (0.0, 0.0) else {"direction": direction})
+
+
+def _with_lean(file: JointFile, name: str, angle: float) -> JointFile:
+    return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), name: angle})
+
+
+def _with_aim(file: JointFile, value: Any) -> JointFile:
+    """State the direction of the load in the body, or from the cup's axis at the same angle where possible."""
+    check_names([value], _AIMS, "as aim")
+    return replace(file, aim={} if value == _BODY else {"tilt": file.tilt})
+
+
+def _with_cup(file: JointFile, key: str, value: Any) -> JointFile:
+    """Change a value of the cup; on the other side the load leans medially as before."""
+    changed = varied(file, {"cup": {key: value}})
+    return _aimed(changed, *leaning(file)) if key == "side" and "direction" in file.aim else changed
