@@ -116,13 +116,10 @@ class Units(StrEnum):
         return Unit(converted.text, unit.factor * converted.factor)
 
     def amount(self, amount: Amount) -> str:
-        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer.
-
-        A number that is converted has at most four significant digits.
-        """
+        """Write an amount with its unit; with fixed decimals, those of a smaller unit are fewer."""
         unit = self.written(amount.unit)
         if amount.decimals is None:
-            return _written(amount.value, unit, amount.digits if self is Units.SI else min(amount.digits, 4))
+            return _written(amount.value, unit, amount.digits)
         decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
         text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
         return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"

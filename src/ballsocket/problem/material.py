@@ -72,9 +72,12 @@ def short_text(value: Array) -> str:
 
 
 def number_with_unit(value: Array, unit: Unit = PLAIN) -> Amount | str:
-    """Return a number with six digits for a sentence; the shape of an array, or "<traced>", with the unit."""
+    """Return a number for a sentence, with six digits if four do not state it; the shape of an array with the unit."""
     text = short_text(value)
-    return f"{text} {unit.text}".strip() if text.startswith("<") else Amount(float(value), unit, 6)
+    if text.startswith("<"):
+        return f"{text} {unit.text}".strip()
+    number = float(value)
+    return Amount(number, unit, 4 if float(f"{number:.4g}") == float(text) else 6)
 
 
 def elementwise_maximum(x: Array, y: Array) -> Array:
