@@ -272,9 +272,12 @@ def _allowed_text(check: Mapping[str, Any]) -> str:
 
 
 def print_message(message: str) -> None:
-    """Print one line on stderr if stderr can be written to."""
+    """Print a message as one line of limited length on stderr if stderr can be written to."""
+    text = " ".join(message.split())
+    if len(text) > _MAX_MESSAGE_LENGTH:
+        text = f"{text[: _MAX_MESSAGE_LENGTH // 2]} ... {text[-_MAX_MESSAGE_LENGTH // 4 :]}"
     try:
-        print(f"ballsocket: {_one_line(message)}", file=sys.stderr, flush=True)
+        print(f"ballsocket: {_escape(text)}", file=sys.stderr, flush=True)
     except OSError:
         _discard_output(sys.stderr)
 
@@ -283,14 +286,6 @@ def fail(message: str) -> NoReturn:
     """Print one line on stderr, and exit with the status of a failed computation."""
     print_message(message)
     raise typer.Exit(FAILURE)
-
-
-def _one_line(message: str) -> str:
-    """Return a text as one printable line of limited length."""
-    text = " ".join(message.split())
-    if len(text) > _MAX_MESSAGE_LENGTH:
-        text = f"{text[: _MAX_MESSAGE_LENGTH // 2]} ... {text[-_MAX_MESSAGE_LENGTH // 4 :]}"
-    return _escape(text)
 
 
 def _escape(text: str) -> str:

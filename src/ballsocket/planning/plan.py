@@ -31,7 +31,6 @@ _MAX_DIFFERENCE = 1.0  # largest difference in mm of the radii of bore and head;
 _ROUGH_RIM = 1.0  # root mean square distance in mm of rim points from their plane from which a note is given
 _UNCERTAIN_AXIS = radians(2.0)
 _UNEVEN_TUBERCLES = 10.0  # mm
-_ARCS = (radians(40.0), radians(340.0))
 _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
 
@@ -158,8 +157,6 @@ class HipPlan:
         thickness = wall if liner_thickness is None else liner_thickness
         if thickness is None:
             raise ValueError("a joint needs the liner's thickness: the files have none, state --liner-thickness")
-        if not _ARCS[0] <= self.cup.arc_of_cover <= _ARCS[1]:
-            raise ValueError(f"the arc of cover of {degrees(self.cup.arc_of_cover):.0f}° is not allowed: 40° to 340°")
         tables: dict[str, Any] = {
             "joint": {
                 "ball_radius": round(radius, 4),
@@ -238,11 +235,8 @@ def make_plan(
 
 
 def _rounded(cup: Cup) -> Cup:
-    arc = radians(round(degrees(cup.arc_of_cover), 3))
-    if not cup.oriented:
-        return replace(cup, arc_of_cover=arc)
-    inclination, anteversion = (radians(round(degrees(angle), 3)) for angle in (cup.inclination, cup.anteversion))
-    return replace(cup, arc_of_cover=arc, inclination=inclination, anteversion=anteversion)
+    names = ("arc_of_cover", "inclination", "anteversion") if cup.oriented else ("arc_of_cover",)
+    return replace(cup, **{name: radians(round(degrees(getattr(cup, name)), 3)) for name in names})
 
 
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
