@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import partial
 from math import inf
@@ -11,7 +11,6 @@ from typing import Any, NamedTuple, Self
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
-from .lazy import cached_property
 from .quantities import QUANTITIES
 
 
@@ -86,16 +85,18 @@ class Range:
     low: float = -inf
     high: float = inf
     why: str = ""
+    quantity_of: Callable[[Any], Array] = field(init=False, repr=False, compare=False)
+    """Function that reads or computes the quantity from a contact."""
 
     def __post_init__(self) -> None:
-        if not self.symbol and isinstance(self.quantity, str):
-            name = self.quantity.rpartition(".")[2]
-            object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
-
-    @cached_property
-    def quantity_of(self) -> Callable[[Any], Array]:
-        """Function that reads or computes the quantity from a contact."""
-        return self.quantity if callable(self.quantity) else partial(_read_attributes, self.quantity.split("."))
+        read = self.quantity
+        if isinstance(read, str):
+            names = read.split(".")
+            read = partial(_read_attributes, names)
+            if not self.symbol:
+                known = QUANTITIES.get(names[-1])
+                object.__setattr__(self, "symbol", names[-1] if known is None else known.symbol)
+        object.__setattr__(self, "quantity_of", read)
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
@@ -107,7 +108,7 @@ class Range:
         value = self.quantity_of(contact)
         return (value > self.low) & (value < self.high)
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return f"outside {self}: {self.why}"
@@ -163,7 +164,7 @@ class NeverValid(Range):
     def __str__(self) -> str:
         return "nothing"
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for all contacts of the model."""
         return f"never valid: {self.why}"
@@ -209,7 +210,7 @@ RIGID_BACKING = Range(quantity="joint.backing_ratio", high=0.01, why="the model 
 class Remark(Range):
     """Range outside of which a result gets a note but remains valid."""
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return self.why

@@ -90,12 +90,12 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
     if outer is not None:
         _check_liner_fits(outer, {**held, **numbers}, stored["liner_thickness"], tuple(numbers))
     c, names = stored["clearance"], (*held, *numbers)
-    may_preload = {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers)
+    derived = {name: length for name, length in stored.items() if name not in numbers}
+    may_preload = not any(name in numbers for name in ("clearance", "diametral_clearance", "socket_radius"))
     if may_preload and ("interference" in names or is_plain_number(c)):
         require("interference", -c, -c <= 0.1 * stored["ball_radius"], "it is at most a tenth of the ball's radius")
-        checked = {name: JOINT[name].check(stored[name]) for name in ("ball_radius", "liner_thickness")}
-        return {"clearance": c, **checked, "given": names}
-    return {**{name: JOINT[name].check(length) for name, length in stored.items()}, "given": names}
+        del derived["clearance"]
+    return {**stored, **{name: JOINT[name].check(length) for name, length in derived.items()}, "given": names}
 
 
 def _check_liner_fits(outer: str, lengths: Mapping[str, Array], thickness: Array, changed: Sequence[str]) -> None:
