@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 from functools import partial
 from math import inf
@@ -58,12 +58,6 @@ class OutsideDomainError(ValueError):
     """Error raised if no point of a press lies in the domain of the model."""
 
 
-def _read_attributes(names: list[str], owner: Any) -> Any:
-    for name in names:  # `torch.compile` traces no `attrgetter`
-        owner = getattr(owner, name)
-    return owner
-
-
 @dataclass(frozen=True, kw_only=True)
 class Range:
     """Limits of a quantity within which a model is valid or defined, with their reason.
@@ -85,18 +79,20 @@ class Range:
     low: float = -inf
     high: float = inf
     why: str = ""
-    quantity_of: Callable[[Any], Array] = field(init=False, repr=False, compare=False)
-    """Function that reads or computes the quantity from a contact."""
 
     def __post_init__(self) -> None:
-        read = self.quantity
-        if isinstance(read, str):
-            names = read.split(".")
-            read = partial(_read_attributes, names)
-            if not self.symbol:
-                known = QUANTITIES.get(names[-1])
-                object.__setattr__(self, "symbol", names[-1] if known is None else known.symbol)
-        object.__setattr__(self, "quantity_of", read)
+        if not self.symbol and isinstance(self.quantity, str):
+            name = self.quantity.rpartition(".")[2]
+            object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
+
+    def quantity_of(self, contact: Any) -> Array:
+        """Read or compute the quantity of a contact."""
+        if callable(self.quantity):
+            return self.quantity(contact)
+        value = contact
+        for name in self.quantity.split("."):  # `torch.compile` traces no `attrgetter`
+            value = getattr(value, name)
+        return value
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
