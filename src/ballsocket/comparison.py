@@ -54,6 +54,9 @@ class Comparison(Mapping[str, Contact]):
             raise KeyError(f"model {shown(name)} is not in this comparison{nearest(name, self.contacts)}")
         return self.contacts[name]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.contacts
+
     def __iter__(self) -> Iterator[str]:
         return iter(self.contacts)
 

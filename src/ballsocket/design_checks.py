@@ -9,19 +9,14 @@ Every door shows the same checks::
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from math import nextafter
 from typing import Any
 
 from .contact import Contact
-from .contact.verdict import (
-    EDGE_DISTANCE,
-    Bounded,
-    Verdict,
-    ball_von_mises,
-    error_bar,
-    ratio_text,
-)
+from .contact.strength import unchecked_strength_reason
+from .contact.verdict import EDGE_DISTANCE, Bounded, Verdict, ball_von_mises, error_bar, exact_number, ratio_text
 from .core.answers import Check
 from .core.quantities import STRENGTH
 from .problem import Joint, Material
@@ -110,6 +105,7 @@ def _material_checks(
             limit=title,
             source=f"no {title} of the {part} is known" if capacity is None else _source_of(material, title),
             trusted=trusted,
+            part=part,
         )
 
 
@@ -162,4 +158,81 @@ _WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)
 
 def _uses(rows: Sequence[Check]) -> str:
     """Write the ratios of checks in words, such as "pressure on the liner is 81 % of the allowable pressure"."""
-    return "; ".join(f"{row.title} is {ratio_text(row.ratio)} the {row.limit}" for row in rows if row.ratio is not None)
+    return "; ".join(f"{row.title} is {_ratio_text(row)} the {row.limit}" for row in rows)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrengthVerdict:
+    """Verdict on the strength of a contact, with its reason.
+
+    Attributes
+    ----------
+    verdict : Verdict
+        Kept below all strengths, exceeded above one of them. Undecided if an error bar contains a strength, without a
+        valid result, or without a strength of the liner.
+    words : str
+        Reason in one sentence.
+    check : Check or None
+        Comparison that decides; None without a valid result, or without a strength of the liner.
+    """
+
+    verdict: Verdict
+    words: str
+    check: Check | None = None
+
+
+def strength_checks(contact: Contact) -> tuple[Check, ...]:
+    """Compare the stresses of a single contact with all strengths of its materials, the highest ratio first."""
+    joint, pressure = contact.joint, error_bar(contact, "max_pressure")
+    von_mises = error_bar(contact, "von_mises") if joint.liner.strengths else exact_number(0.0)
+    return tuple(row for row in checks_at(joint, pressure=pressure, von_mises=von_mises) if row.capacity is not None)
+
+
+def assess_strength(contact: Contact) -> StrengthVerdict:
+    """Decide if the stresses of a single contact are below the strengths of its materials.
+
+    Parameters
+    ----------
+    contact : Contact
+        Contact of one joint under one load.
+
+    Returns
+    -------
+    StrengthVerdict
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.design_checks import assess_strength
+    >>> assess_strength(bs.Exact().press(bs.joints["hip-36"], force=2000.0)).verdict.word
+    'kept'
+    """
+    if contact.status.failed:
+        return _undecided(f"no answer: {contact.status.sentence}")
+    checks = strength_checks(contact)
+    worst = max(checks, key=lambda row: row.verdict, default=None)  # the first one has the highest ratio
+    if worst is not None and (worst.verdict is Verdict.EXCEEDED or (contact.valid and contact.joint.liner.strengths)):
+        words = f"{worst.verdict.word}: {_ratio_text(worst)} the {worst.limit} of the {worst.part}"
+        return StrengthVerdict(verdict=worst.verdict, words=words, check=worst)
+    if not contact.valid:
+        return _undecided(f"result not valid: {'; '.join(contact.notes)}")
+    return _undecided(unchecked_strength_reason(contact.joint))
+
+
+def _undecided(reason: str) -> StrengthVerdict:
+    return StrengthVerdict(verdict=Verdict.UNDECIDED, words=f"undecided: {reason}")
+
+
+def _ratio_text(row: Check) -> str:
+    return "" if row.ratio is None else ratio_text(row.ratio)
+
+
+def strength_lines(contacts: Mapping[str, Contact]) -> Iterator[str]:
+    """Yield the verdicts on single contacts by name on each strength that decides, one line for each strength."""
+    verdicts: dict[str, list[str]] = {}
+    for name, contact in contacts.items():
+        strength = assess_strength(contact)
+        if strength.check is not None:
+            words = f"{name} {strength.verdict.word}, {_ratio_text(strength.check).removesuffix(' of')}"
+            verdicts.setdefault(f"{strength.check.limit} of the {strength.check.part}", []).append(words)
+    yield from (f"{title}: {'; '.join(words)}" for title, words in verdicts.items())

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 from .comparison import Comparison, relative_deviation
 from .contact import Contact
 from .contact.describe import number_of, quantities_of
-from .contact.verdict import Verdict, rim_verdict, strength_lines
+from .contact.verdict import Verdict, rim_verdict
 from .core.answers import PAGE, Answer, Column, Row, Table
 from .core.arrays import to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
 from .core.quantities import CONTACT, HEADLINE, LOADS
 from .core.unit_systems import Amount, Sentence
-from .design_checks import checks_of, unchecked_text, verdict_of
+from .design_checks import checks_of, strength_lines, unchecked_text, verdict_of
 from .model_catalogue import JUDGE, OFF_AXIS, reference
 from .question import PressAnswer
 

@@ -12,7 +12,8 @@ import ballsocket as bs
 from ballsocket.contact import strength
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, TABLE_ERROR
 from ballsocket.contact.stress_ratio import poisson_at, thickness_ratio_at, von_mises_ratio
-from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number, strength_uses
+from ballsocket.contact.verdict import Bounded, Verdict, error_bar, exact_number
+from ballsocket.design_checks import assess_strength, strength_checks
 from ballsocket.elasticity.exact import subsurface
 
 from ..extent import either
@@ -335,13 +336,13 @@ def test_ratios_above_one_are_printed_with_two_digits(ratio, text):
 def test_uses_of_strengths_are_stresses_over_strengths_with_the_largest_first():
     liner = replace(HIP.liner, allowable_pressure=20.0)
     contact = bs.Exact().press(replace(HIP, liner=liner, ball=bs.COCR), force=3000.0)
-    pressed, stressed, ball = strength_uses(contact)
-    assert (pressed.part, pressed.strength) == ("liner", "allowable_pressure")
-    assert (stressed.part, stressed.strength) == ("liner", "yield_stress")
-    assert (ball.part, ball.strength) == ("ball", "yield_stress")
+    pressed, stressed, ball = strength_checks(contact)
+    assert (pressed.part, pressed.limit) == ("liner", "allowable pressure")
+    assert (stressed.part, stressed.limit) == ("liner", "yield stress")
+    assert (ball.part, ball.limit) == ("ball", "yield stress")
     assert pressed.ratio.value == pytest.approx(contact.max_pressure / 20.0)
     assert stressed.ratio.value == pytest.approx(contact.utilisation)
-    assert ball.stress.value == pytest.approx(strength.ball_stress_ratio(bs.COCR.poisson) * contact.max_pressure)
+    assert ball.demand.value == pytest.approx(strength.ball_stress_ratio(bs.COCR.poisson) * contact.max_pressure)
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,9 @@ from math import radians
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact.verdict import Bounded, Verdict, assess_strength, error_bar, exact_number
+from ballsocket.contact.verdict import Bounded, Verdict, error_bar, exact_number
 from ballsocket.core.unit_systems import Units
-from ballsocket.design_checks import checks_at, checks_of, verdict_of, wear_check
+from ballsocket.design_checks import assess_strength, checks_at, checks_of, verdict_of, wear_check
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.pages import checks_html, table, write_page
 from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_sections

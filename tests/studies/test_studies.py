@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 from pyarrow import parquet
 
 import ballsocket as bs
-from ballsocket.contact.verdict import Verdict, assess_strength
+from ballsocket.contact.verdict import Verdict
 from ballsocket.core.executors import Processes, Serial
+from ballsocket.design_checks import assess_strength
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.file import read_study

@@ -14,12 +14,13 @@ import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact, Model
-from ..contact.verdict import assess_strength, error_bar
+from ..contact.verdict import error_bar
 from ..core.arrays import to_list
 from ..core.checks import known_name
 from ..core.kinds import NEWTON_METRES
 from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Status
+from ..design_checks import assess_strength
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap

@@ -166,6 +166,11 @@ class Contact(Outcome):
         stress = self._mask_failed(lambda: Contact._compute_von_mises(self))
         return Bounded(*map(self._match_load, strength.bounded_von_mises(self, stress)))
 
+    @cached_property
+    def _rim_error(self) -> Array:
+        """Bound of the relative increase of the von Mises stress by a free rim; 0 if the model includes the rim."""
+        return strength.free_rim_error(self)
+
     @property
     def error(self) -> dict[str, Array]:
         """Estimated relative errors as of `Outcome`; that of the stress contains the error of the pressure."""

@@ -132,10 +132,10 @@ class Outcome(ABC):
         valid = arrays.to_numpy(valid)
         return [sentence if valid.size == 1 else f"{int((~valid).sum())} of {valid.size}: {sentence}"]
 
-    @property
+    @cached_property
     def _failed(self) -> Array:
         """Mask of the points whose results are NaN."""
-        return is_missing(self.status)
+        return self.status.failed if self._is_plain else is_missing(self.status)
 
     @cached_property
     def _is_plain(self) -> bool:
@@ -151,7 +151,7 @@ class Outcome(ABC):
     @cached_property
     def _has_failed_points(self) -> bool:
         """True if at least one point failed, or if JAX traces the status."""
-        return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
+        return arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     def _match_load(self, value: Array) -> Array:
         """Convert values to the type and the shape of the load, a float for one number, or a read-only array."""

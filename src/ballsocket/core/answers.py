@@ -120,6 +120,7 @@ class Check:
     limit: str  # capacity in words, such as "allowable pressure"
     source: str  # origin of the capacity, or the input that is missing
     trusted: bool = True  # the demand lies in the range of its model
+    part: str = ""  # body of a stress: "liner" or "ball"
 
     @property
     def ratio(self) -> Bounded | None:

@@ -41,25 +41,39 @@ MILLIONS = Unit("million", 1e-6)
 
 
 class Kind(StrEnum):
-    """Physical kind of a number, such as a length or a force, with its internal unit and an example for messages.
+    """Physical kind of a number, such as a length or a force, with its units and an example for messages.
 
-    The unit is in the spelling of the CF conventions, such as "mm2" or "1".
+    Attributes
+    ----------
+    unit : str
+        Internal unit in the spelling of the CF conventions, such as "mm2" or "1".
+    example : str
+    written : Unit
+        Unit in JSON, files and plain tables: degrees for an angle, otherwise the internal unit.
+    assumed_unit : str
+        Assumed unit of an input without a unit, in a file or on the command line; empty for a plain number.
     """
 
     unit: str
     example: str
+    written: Unit
+    assumed_unit: str
 
-    def __new__(cls, name: str, unit: str = "", example: str = "") -> Self:
+    def __new__(
+        cls, name: str, unit: str = "", example: str = "", written: Unit | None = None, assumed: str | None = None
+    ) -> Self:
         kind = str.__new__(cls, name)
         kind._value_, kind.unit, kind.example = name, unit, example
+        kind.written = Unit(unit) if written is None else written
+        kind.assumed_unit = unit if assumed is None else assumed
         return kind
 
     LENGTH = "length", "mm", "a length, such as '16 mm'"
     FORCE = "force", "N", "a force, such as '3 kN'"
     MODULUS = "modulus", "MPa", "a pressure, stress or modulus, such as '12 MPa'"
-    ANGLE = "angle", "rad", "an angle, such as '40 deg'"
-    NUMBER = "number", "1", "a number, such as 0.4"
-    AREA = "area", "mm2", "an area, such as '8 cm^2'"
+    ANGLE = "angle", "rad", "an angle, such as '40 deg'", Unit("°", degrees(1.0)), "deg"
+    NUMBER = "number", "1", "a number, such as 0.4", PLAIN, ""
+    AREA = "area", "mm2", "an area, such as '8 cm^2'", Unit("mm²")
     STIFFNESS = "stiffness", "N/mm", "a stiffness, such as '60 kN/mm'"
     ENERGY = "energy", "N mm", "an energy, such as '50 N*mm'"
     FOUNDATION = "foundation modulus", "MPa/mm", "a foundation modulus, such as '280 MPa/mm'"
@@ -71,31 +85,12 @@ class Kind(StrEnum):
     VISCOSITY = "viscosity", "Pa s", "a viscosity, such as '2.5 mPa s'"
     ROTATION_RATE = "rotation rate", "rad/s", "a rotation rate, such as '1.5 rad/s'"
     SPEED = "speed", "mm/s", "a speed, such as '0.1 m/s'"
-    VOLUME = "volume", "mm3", "a volume, such as '80 mm^3'"
-    CYCLES = "number of cycles", "1", "a number of cycles, such as 5e6"
+    VOLUME = "volume", "mm3", "a volume, such as '80 mm^3'", CUBIC_MILLIMETRES
+    CYCLES = "number of cycles", "1", "a number of cycles, such as 5e6", None, ""
     TIME = "time", "years", "a time in years, such as 5"
     DURATION = "duration", "s", "a time, such as '1.1 s'"
-
-    @property
-    def written(self) -> Unit:
-        """Unit in JSON, files and plain tables: degrees for an angle, otherwise the internal unit."""
-        return _WRITTEN.get(self, Unit(self.unit))
 
     @property
     def column_suffix(self) -> str:
         """Unit at the end of a CSV column name, such as "N_per_mm"; empty for a plain number."""
         return self.assumed_unit.replace("mm**0.5", "sqrt_mm").replace("/", "_per_").replace(" ", "_")
-
-    @property
-    def assumed_unit(self) -> str:
-        """Assumed unit of an input without a unit, in a file or on the command line; empty for a plain number."""
-        return _TYPED.get(self, self.unit)
-
-
-_WRITTEN = {
-    Kind.ANGLE: Unit("°", degrees(1.0)),
-    Kind.NUMBER: Unit(""),
-    Kind.AREA: Unit("mm²"),
-    Kind.VOLUME: Unit("mm³"),
-}
-_TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: "", Kind.CYCLES: ""}

@@ -155,7 +155,7 @@ class Quantity:
         TypeError
             A value that is neither a number nor an array of numbers.
         """
-        if type(value) is float and self.allows(value):
+        if isinstance(value, float) and self.allows(value):
             return value
         number = check_numeric(self.name, value)
         valid = self.allows(number)

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple, Self
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .kinds import Unit
-from .lazy import cached_property
 from .quantities import QUANTITIES
 
 
@@ -59,12 +58,6 @@ class OutsideDomainError(ValueError):
     """Error raised if no point of a press lies in the domain of the model."""
 
 
-def _read_attributes(names: list[str], owner: Any) -> Any:
-    for name in names:  # `torch.compile` traces no `attrgetter`
-        owner = getattr(owner, name)
-    return owner
-
-
 @dataclass(frozen=True, kw_only=True)
 class Range:
     """Limits of a quantity within which a model is valid or defined, with their reason.
@@ -92,10 +85,14 @@ class Range:
             name = self.quantity.rpartition(".")[2]
             object.__setattr__(self, "symbol", QUANTITIES[name].symbol if name in QUANTITIES else name)
 
-    @cached_property
-    def quantity_of(self) -> Callable[[Any], Array]:
-        """Function that reads or computes the quantity from a contact."""
-        return self.quantity if callable(self.quantity) else partial(_read_attributes, self.quantity.split("."))
+    def quantity_of(self, contact: Any) -> Array:
+        """Read or compute the quantity of a contact."""
+        if callable(self.quantity):
+            return self.quantity(contact)
+        value = contact
+        for name in self.quantity.split("."):  # `torch.compile` traces no `attrgetter`
+            value = getattr(value, name)
+        return value
 
     def holds(self, contact: Any) -> Array:
         """Return a mask of the contacts inside the closed range, limits included."""
@@ -107,7 +104,7 @@ class Range:
         value = self.quantity_of(contact)
         return (value > self.low) & (value < self.high)
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return f"outside {self}: {self.why}"
@@ -163,7 +160,7 @@ class NeverValid(Range):
     def __str__(self) -> str:
         return "nothing"
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for all contacts of the model."""
         return f"never valid: {self.why}"
@@ -209,7 +206,7 @@ RIGID_BACKING = Range(quantity="joint.backing_ratio", high=0.01, why="the model 
 class Remark(Range):
     """Range outside of which a result gets a note but remains valid."""
 
-    @cached_property
+    @property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return self.why

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 from math import floor, log10
 from types import MappingProxyType
 from typing import Any, TypedDict
 
-from ..core.arrays import Array, all_true, is_plain_number
+from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_names, require, shown
 from ..core.quantities import FIT, JOINT
 
@@ -65,60 +64,11 @@ class Lengths(TypedDict, total=False):
     outer_diameter: Array
 
 
-class Dimensions:
-    """Mixin of the lengths of a joint that follow from radius, clearance and thickness."""
-
-    ball_radius: Array
-    clearance: Array
-    liner_thickness: Array
-
-    @property
-    @abstractmethod
-    def shell(self) -> Array:
-        """Thickness in mm of the finite layer directly behind the liner; 0 if there is none."""
-
-    @property
-    def socket_radius(self) -> Array:
-        """Socket radius R2 = R1 + c in mm."""
-        return self.ball_radius + self.clearance
-
-    @property
-    def outer_radius(self) -> Array:
-        """Outer radius in mm of the liner, or of the shell if there is one."""
-        return self.socket_radius + self.liner_thickness + self.shell
-
-    @property
-    def head_diameter(self) -> Array:
-        """Diameter 2 R1 of the ball in mm."""
-        return 2 * self.ball_radius
-
-    @property
-    def diametral_clearance(self) -> Array:
-        """Diametral clearance 2 c in mm, difference of the diameters."""
-        return 2 * self.clearance
-
-    @property
-    def interference(self) -> Array:
-        """Interference -c in mm, positive in a preloaded joint."""
-        return -self.clearance
-
-    @property
-    def fit(self) -> tuple[str, Array]:
-        """Name and positive radial value in mm of the fit: "clearance", or "interference" of a preloaded joint."""
-        preloaded = all_true(self.clearance < 0)
-        return ("interference", self.interference) if preloaded else ("clearance", self.clearance)
-
-    @property
-    def outer_diameter(self) -> Array:
-        """Outer diameter in mm, twice the outer radius."""
-        return 2 * self.outer_radius
-
-
 def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], shell: Array) -> dict[str, Any]:
     """Check new lengths, and derive the `STORED_LENGTHS` of a joint in mm; `given` has the names that determine them.
 
     The given lengths, those that an existing joint was made from, stay as far as the new ones allow; a new joint has
-    none. `shell` is that of `Dimensions`.
+    none. `shell` is the thickness in mm of the finite layer right behind the liner, 0 without one.
 
     Raises ValueError: a length that is not allowed; too few or too many lengths; a given length that would change
     although nothing says which one.
@@ -130,19 +80,22 @@ def resolve_lengths(lengths: Mapping[str, Array], given: Mapping[str, Array], sh
         check_unique_lengths(numbers)
     except ValueError as error:
         raise ValueError(f"{error}{_contradiction(numbers, given, shell)}") from None
-    if not given:
+    if given:
+        held = held_lengths(numbers, given)
+    else:
+        held = {}
         _check_sufficient_lengths(numbers)
-    held = held_lengths(numbers, given)
     stored = derive_lengths({**held, **numbers}, shell)
     outer = next((name for name in (*numbers, *held) if canonical(name) == "outer_radius"), None)
     if outer is not None:
         _check_liner_fits(outer, {**held, **numbers}, stored["liner_thickness"], tuple(numbers))
-    if "interference" in numbers:
-        good = numbers["interference"] <= 0.1 * stored["ball_radius"]
-        require("interference", numbers["interference"], good, "it is at most a tenth of the ball's radius")
-    unchecked = {"clearance"} if {"clearance", "diametral_clearance", "socket_radius"}.isdisjoint(numbers) else set()
-    checked = {name: length if name in unchecked else JOINT[name].check(length) for name, length in stored.items()}
-    return {**checked, "given": (*held, *numbers)}
+    c, names = stored["clearance"], (*held, *numbers)
+    derived = {name: length for name, length in stored.items() if name not in numbers}
+    may_preload = not any(name in numbers for name in ("clearance", "diametral_clearance", "socket_radius"))
+    if may_preload and ("interference" in names or is_plain_number(c)):
+        require("interference", -c, -c <= 0.1 * stored["ball_radius"], "it is at most a tenth of the ball's radius")
+        del derived["clearance"]
+    return {**stored, **{name: JOINT[name].check(length) for name, length in derived.items()}, "given": names}
 
 
 def _check_liner_fits(outer: str, lengths: Mapping[str, Array], thickness: Array, changed: Sequence[str]) -> None:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import reduce
 from itertools import chain
 from math import inf
 from typing import Any, Unpack
 
-from ..core.arrays import Array, is_plain_number, read_only, to_list, where
+from ..core.arrays import Array, all_true, is_plain_number, read_only, to_list, where
 from ..core.checks import check_names, require, shown
 from ..core.display import OneLine, html_list
 from ..core.kinds import MILLIMETRES, Choice
 from ..core.quantities import JOINT
 from ..core.unit_systems import Sentence
-from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, check_given, lost_lengths, resolve_lengths
+from .dimensions import LENGTHS, STORED_LENGTHS, Lengths, check_given, lost_lengths, resolve_lengths
 from .material import (
     ByValue,
     Layer,
@@ -39,7 +39,7 @@ class Support(Choice):
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False, eq=False)
-class Joint(OneLine, ByValue, Dimensions):
+class Joint(OneLine, ByValue):
     """Ball in a socket of nearly equal radius, lined with an elastic layer.
 
     The support of the liner is rigid unless `backing` or `support` define it. The validity of a model states if it
@@ -115,6 +115,22 @@ class Joint(OneLine, ByValue, Dimensions):
         **lengths: Unpack[Lengths],
     ) -> None:
         """Check the parts, and derive radius, clearance and thickness from the lengths."""
+        self._define(lengths, {}, liner=liner, ball=ball, backing=backing, support=support, name=name, source=source)
+        if given:
+            set_fields(self, given=check_given(given))
+
+    def _define(
+        self,
+        lengths: Mapping[str, Array],
+        old_lengths: Mapping[str, Array],
+        *,
+        liner: Any,
+        ball: Any,
+        backing: Any,
+        support: Any,
+        **texts: str,
+    ) -> None:
+        """Set all fields: checked parts, and lengths that follow from new and old ones, see `resolve_lengths`."""
         if not isinstance(liner, Material):
             raise TypeError(f"liner must be a Material, got {shown(liner)}")
         if not (ball is None or isinstance(ball, Material)):
@@ -122,21 +138,54 @@ class Joint(OneLine, ByValue, Dimensions):
         if not isinstance(support, Support):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _check_backing(backing)
-        set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
-        if given:
-            set_fields(self, given=check_given(given))
-        set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
-        for name, inner in self._named_thicknesses()[:-1]:
-            require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
-
-    def _named_thicknesses(self) -> list[tuple[str, Array]]:
-        layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
-        return [("liner_thickness", self.liner_thickness), *layers]
+        stored = resolve_lengths(lengths, old_lengths, _shell_thickness(layers))
+        set_fields(self, **stored, liner=liner, ball=ball, backing=layers, support=support, **texts)
+        allowed = "only the outermost layer may be infinite, and there is one behind this"
+        inner, thickness = "liner_thickness", self.liner_thickness
+        for number, layer in enumerate(layers):
+            require(inner, thickness, thickness < inf, allowed)
+            inner, thickness = f"backing[{number}].thickness", layer.thickness
 
     @property
     def shell(self) -> Array:
         """Thickness in mm of the finite layer directly behind the liner; 0 if there is none."""
         return _shell_thickness(self.backing)
+
+    @property
+    def socket_radius(self) -> Array:
+        """Socket radius R2 = R1 + c in mm."""
+        return self.ball_radius + self.clearance
+
+    @property
+    def outer_radius(self) -> Array:
+        """Outer radius in mm of the liner, or of the shell if there is one."""
+        return self.socket_radius + self.liner_thickness + self.shell
+
+    @property
+    def head_diameter(self) -> Array:
+        """Diameter 2 R1 of the ball in mm."""
+        return 2 * self.ball_radius
+
+    @property
+    def diametral_clearance(self) -> Array:
+        """Diametral clearance 2 c in mm, difference of the diameters."""
+        return 2 * self.clearance
+
+    @property
+    def interference(self) -> Array:
+        """Interference -c in mm, positive in a preloaded joint."""
+        return -self.clearance
+
+    @property
+    def fit(self) -> tuple[str, Array]:
+        """Name and positive radial value in mm of the fit: "clearance", or "interference" of a preloaded joint."""
+        preloaded = all_true(self.clearance < 0)
+        return ("interference", self.interference) if preloaded else ("clearance", self.clearance)
+
+    @property
+    def outer_diameter(self) -> Array:
+        """Outer diameter in mm, twice the outer radius."""
+        return 2 * self.outer_radius
 
     @property
     def thickness_ratio(self) -> Array:
@@ -165,7 +214,7 @@ class Joint(OneLine, ByValue, Dimensions):
         )
         if self.support is Support.FIXED:
             return softest
-        _, outermost = self._named_thicknesses()[-1]
+        outermost = self.backing[-1].thickness if self.backing else self.liner_thickness
         if is_plain_number(outermost):
             return softest if outermost == inf else inf + softest
         return where(outermost < inf, inf, softest)
@@ -251,33 +300,30 @@ class Joint(OneLine, ByValue, Dimensions):
         >>> print(bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0).dimensions)
         R1 16 mm, clearance 0.1 mm, liner 5 mm
         """
-        attributes = [one.name for one in fields(self) if one.name not in (*STORED_LENGTHS, "given")]
-        check_names(changes, (*LENGTHS, *attributes), "in a joint")
+        check_names(changes, (*LENGTHS, *_PARTS), "in a joint")
         lengths = {name: value for name, value in changes.items() if name in LENGTHS}
-        new_attributes = {name: value for name, value in changes.items() if name not in LENGTHS}
-        shell = _shell_thickness(_check_backing(new_attributes.get("backing", self.backing)))
-        stored = resolve_lengths(lengths, self.given_lengths, shell)
-        lost = lost_lengths(stored["given"], self.given)
-        if is_plain_number(stored["clearance"]) and stored["clearance"] < 0:
-            stored["interference"] = -stored.pop("clearance")
+        parts: dict[str, Any] = {name: getattr(self, name) for name in _PARTS}
         base = self.name.split(_VARIED)[0]
-        names = {"name": f"{base}{_VARIED}", "source": ""} if changes and self.name else {}
-        old_attributes: dict[str, Any] = {name: getattr(self, name) for name in attributes}
-        joint = Joint(**old_attributes | names | new_attributes, **stored)
+        if changes and self.name:
+            parts |= {"name": f"{base}{_VARIED}", "source": ""}
+        parts |= {name: value for name, value in changes.items() if name not in LENGTHS}
+        joint: Joint = object.__new__(Joint)
+        joint._define(lengths, self.given_lengths, **parts)
+        lost = lost_lengths(joint.given, self.given)
         changed = [(name, getattr(self, name), getattr(joint, name)) for name in lost]
         words = [
             f"{LENGTHS[name].title} {new:.6g} mm in place of {old:.6g} mm"
             for name, old, new in changed
             if is_plain_number(old) and is_plain_number(new) and abs(new - old) > 1e-9 * abs(old)
         ]
-        if words and "name" not in new_attributes:
+        if words and "name" not in changes:
             set_fields(joint, name=f"{base}{_VARIED}: {', '.join(words)}".removeprefix(", "))
         return joint
 
     def with_floats(self) -> Joint:
         """Return a copy of the joint with floats in place of integers; its numbers must be plain."""
         numbers = self.numbers()
-        return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
+        return self if {*map(type, numbers)} == {float} else self.with_numbers(map(float, numbers))
 
     def summary(self) -> dict[str, Any]:
         """Return the joint as a dictionary for JSON, in mm and MPa.
@@ -325,6 +371,9 @@ class Joint(OneLine, ByValue, Dimensions):
         parts = [head, self.dimensions, " of ", str(self.liner), *layers, free, *outside, "; ball ", ball]
         return Sentence("{}" * len(parts), *parts)
 
+
+_PARTS = ("liner", "ball", "backing", "support", "name", "source")
+"""Fields of a joint beside its lengths."""
 
 _VARIED = ", varied"
 """End of the name of a changed joint."""

@@ -137,8 +137,7 @@ class Material(OneLine, ByValue):
     @property
     def stress_limits(self) -> dict[str, Array]:
         """Known strengths and proportional limit in MPa, by name."""
-        listed = {name: getattr(self, name) for name in STRESS_LIMITS}
-        return {name: limit for name, limit in listed.items() if limit is not None}
+        return {name: limit for name in STRESS_LIMITS if (limit := getattr(self, name)) is not None}
 
     def without_strengths(self) -> Material:
         """Return a copy of the material without strengths and proportional limit."""

@@ -19,6 +19,9 @@ from .material import Material
 _PAPER = "Heß & Forsbach 2021, Table 2, doi 10.3390/app112311170"
 _REVIEW = "Di Puccio & Mattei 2015, Table 2, doi 10.5312/wjo.v6.i1.77"
 _PLANK = "thickness: Plank et al. 2007, J. Biomed. Mater. Res. B 80B, 1-10; clearance: representative"
+_TABLE_1 = "representative, within Heß & Forsbach 2021, Table 1"
+_BALL_JOINT = "representative (construction: Wozniak et al. 2021, doi 10.3390/en14113238); run in, its preload lost"
+_PIVOT = "representative (pivot type: Kirk & Reedy 1988, J. Vib. Acoust. 110, 165)"
 _GLENOSPHERE = "representative; insert thickness 3-9 mm in Giles et al. 2015, doi 10.1007/s11999-015-4526-0"
 
 UHMWPE = Material(
@@ -271,53 +274,34 @@ materials: dict[str, Material] = _Materials("material", _MATERIALS)
 """Materials by the name in files and on the command line: the name of the constant in lower case with hyphens."""
 
 
-def _make_joint(
-    name: str, radius: float, clearance: float, thickness: float, pair: tuple[Material, Material], source: str
-) -> Joint:
-    """Make a preset joint from lengths in mm and the pair (ball material, liner material)."""
-    ball, liner = pair
-    return Joint(
-        ball_radius=radius,
-        clearance=clearance,
-        liner_thickness=thickness,
-        liner=liner,
-        ball=ball,
-        name=name,
-        source=source,
-    )
-
-
-_ALL_JOINTS = (
-    _make_joint("hess-forsbach", 17.9, 0.1, 6.75, (STEEL, UHMWPE), "Heß & Forsbach 2021, Figs. 3 and 4"),
-    _make_joint("hip-22", 11.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
-    _make_joint("hip-28", 14.0, 0.1, 5.0, (COCR, UHMWPE), _PLANK),
-    _make_joint(
-        "hip-32", 16.0, 0.1, 6.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"
-    ),
-    _make_joint(
-        "hip-36", 18.0, 0.1, 5.0, (ALUMINA, CROSSLINKED_PE), "representative, within Heß & Forsbach 2021, Table 1"
-    ),
-    _make_joint("reverse-shoulder-36", 18.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
-    _make_joint("reverse-shoulder-42", 21.0, 0.1, 6.0, (COCR, UHMWPE), _GLENOSPHERE),
-    _make_joint(
-        "suspension-ball-joint",
-        13.5,
-        0.02,
-        2.5,
-        (STRUCTURAL_STEEL, POM),
-        "representative (construction: Wozniak et al. 2021, doi 10.3390/en14113238); run in, its preload lost",
-    ),
-    _make_joint(
-        "tilting-pad-pivot",
-        12.5,
-        0.05,
-        inf,
-        (STRUCTURAL_STEEL, STRUCTURAL_STEEL),
-        "representative (pivot type: Kirk & Reedy 1988, J. Vib. Acoust. 110, 165)",
-    ),
+_JOINTS = (
+    ("hess-forsbach", 17.9, 0.1, 6.75, STEEL, UHMWPE, "Heß & Forsbach 2021, Figs. 3 and 4"),
+    ("hip-22", 11.0, 0.1, 5.0, COCR, UHMWPE, _PLANK),
+    ("hip-28", 14.0, 0.1, 5.0, COCR, UHMWPE, _PLANK),
+    ("hip-32", 16.0, 0.1, 6.0, ALUMINA, CROSSLINKED_PE, _TABLE_1),
+    ("hip-36", 18.0, 0.1, 5.0, ALUMINA, CROSSLINKED_PE, _TABLE_1),
+    ("reverse-shoulder-36", 18.0, 0.1, 6.0, COCR, UHMWPE, _GLENOSPHERE),
+    ("reverse-shoulder-42", 21.0, 0.1, 6.0, COCR, UHMWPE, _GLENOSPHERE),
+    ("suspension-ball-joint", 13.5, 0.02, 2.5, STRUCTURAL_STEEL, POM, _BALL_JOINT),
+    ("tilting-pad-pivot", 12.5, 0.05, inf, STRUCTURAL_STEEL, STRUCTURAL_STEEL, _PIVOT),
 )
+"""Name, ball radius, clearance and liner thickness in mm, materials of ball and liner, and source of each joint."""
 
-joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _ALL_JOINTS})
+joints: dict[str, Joint] = NamedItems(
+    "joint",
+    {
+        name: Joint(
+            ball_radius=radius,
+            clearance=clearance,
+            liner_thickness=thickness,
+            liner=liner,
+            ball=ball,
+            name=name,
+            source=source,
+        )
+        for name, radius, clearance, thickness, ball, liner, source in _JOINTS
+    },
+)
 """Joints by name: common hips, reverse shoulders, a suspension ball joint and a tilting-pad pivot."""
 
 
