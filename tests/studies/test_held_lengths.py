@@ -14,7 +14,7 @@ from ballsocket.app.widgets.joint_controls import joint_controls
 from ballsocket.files.joint_file import joint_of, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.studies.distributions import Rectangular
-from ballsocket.studies.limits import joint_dimension
+from ballsocket.studies.metadata import joint_dimension
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.variance_shares import sensitivity
 from tests.cli.command import run

@@ -20,7 +20,8 @@ from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
 from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
 from ballsocket.studies.file import read_study
-from ballsocket.studies.limits import Limit, allowed, joint_dimension, limited_quantities, margin_on_plane, verdicts
+from ballsocket.studies.limits import Limit, allowed, limited_quantities, margin_on_plane, verdicts
+from ballsocket.studies.metadata import joint_dimension
 from ballsocket.studies.optimisation import optimise, pareto
 from ballsocket.studies.run import default_model
 from ballsocket.studies.task import OUTCOMES

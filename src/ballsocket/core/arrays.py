@@ -364,7 +364,7 @@ def to_numpy(x: Array) -> numpy.ndarray:
 def to_list(x: Array) -> Any:
     """Convert an array to nested lists for JSON, with None for NaN and the text "inf" for infinity."""
     values = to_numpy(x)
-    if values.dtype == bool:
+    if values.dtype.kind in "bOUS":
         return values.tolist()
     listed = values.astype(object)
     listed = numpy.where(numpy.isnan(values), numpy.array(None), listed)

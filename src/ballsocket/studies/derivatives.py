@@ -26,13 +26,11 @@ Derivatives = dict[str, dict[str, float]]
 REPORTED_QUANTITIES = ("max_pressure", "half_angle", "indentation", "area", "stiffness")
 """Quantities whose elasticities and bands are computed."""
 
-_VARIED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")  # dimensions of the joint with an elasticity
-_ORIENTATION = ("inclination", "anteversion")  # angles of the cup that set the direction of a load in the body
+_VARIED = ("ball_radius", "clearance", "liner_thickness", "liner_young", "liner_poisson")  # have an elasticity
 _SAMPLE_COUNT = 512
 _QUADRATIC_SAMPLE_COUNT = 8192
 _NODE = 3**0.5  # nodes of a quadratic in standard deviations from the mean, as of Gauss-Hermite quadrature
 _BAND_PROBABILITIES = (0.025, 0.5, 0.975)
-_NO_RESULT = "some joints within the tolerances have no result; narrow the tolerances"
 
 Bands = dict[str, tuple[float, ...]]
 """Low end of a band, median, and high end, by quantity."""
@@ -219,9 +217,8 @@ def local_uncertainty(
     model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
     check_aims(model, tolerances)
     _check_nominal_values(joint, load, tolerances)
-    numbers = {name: float(getattr(joint, name)) for name in _VARIED_LENGTHS}
-    numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
-    point = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}
+    numbers = {name: nominal_value(joint, name) for name in _VARIED}
+    point = {name: number for name, number in numbers.items() if number is not None and 0 < number < numpy.inf}
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
     if not tolerances:
         return LocalUncertainty(model=model.name, changes=changes, band={})
@@ -231,9 +228,7 @@ def local_uncertainty(
     fixed = {} if set(samples) & set(load) else dict(load)
     ranges = {name: [values.min(), values.max()] for name, values in samples.items()}
     scattered = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
-    results = press_quantities(scattered, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
-    if not all(numpy.isfinite(values).all() for values in results.values()):
-        raise ValueError(_NO_RESULT)
+    results = _press_scattered(scattered, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
     bands = {name: _ends(values) for name, values in results.items()}
     return LocalUncertainty(model=model.name, changes=changes, band=bands)
 
@@ -256,7 +251,8 @@ def off_axis_uncertainty(
 
     Raises ValueError: an unknown name, joints without a result, or a number outside its own tolerances.
     """
-    angles = {name: getattr(model.cup, name) for name in _ORIENTATION} if tilt is None else {"tilt": tilt}
+    cup_angles = ("inclination", "anteversion")  # which set the direction of a load in the body
+    angles = {name: getattr(model.cup, name) for name in cup_angles} if tilt is None else {"tilt": tilt}
     for name in tolerances:
         if name in AIMS and name not in angles:
             raise ValueError(f"{name} has a tolerance, and the direction of the load is set by {' and '.join(angles)}")
@@ -265,9 +261,7 @@ def off_axis_uncertainty(
     steps = numpy.array([_NODE * float(distribution.frozen.std()) for distribution in tolerances.values()])
     fixed = {} if set(means) & set(load) else load
     star = _star({**means, **fixed}, {name: (step, -step) for name, step in zip(means, steps, strict=True)})
-    results = press_quantities(model, joint, star, (*REPORTED_QUANTITIES, EDGE_DISTANCE))
-    if not all(numpy.isfinite(values).all() for values in results.values()):
-        raise ValueError(_NO_RESULT)
+    results = _press_scattered(model, joint, star, (*REPORTED_QUANTITIES, EDGE_DISTANCE))
     design = sample(_QUADRATIC_SAMPLE_COUNT, **dict[str, Any](tolerances))
     samples = design.values_in([slice(None)])
     offsets = numpy.stack([samples[name] - mean for name, mean in means.items()])
@@ -289,6 +283,16 @@ def _check_nominal_values(joint: Joint, stated: Mapping[str, float], tolerances:
         nominal = stated.get(name) if name in (*AIMS, *LOADS) else nominal_value(joint, name)
         if nominal is not None:
             check_nominal(name, float(nominal), distribution, PARAMETERS[name].written)
+
+
+def _press_scattered(
+    model: Model, joint: Joint, values: Mapping[str, Any], quantities: Iterable[str]
+) -> dict[str, Numbers]:
+    """Press joints within tolerances as `press_quantities`; raise ValueError if one of them has no result."""
+    results = press_quantities(model, joint, values, quantities)
+    if not all(numpy.isfinite(numbers).all() for numbers in results.values()):
+        raise ValueError("some joints within the tolerances have no result; narrow the tolerances")
+    return results
 
 
 def _ends(values: Numbers) -> tuple[float, ...]:

@@ -51,12 +51,10 @@ def check_suffix(path: Path) -> None:
         raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
     needs("study", *_LIBRARIES.get(suffix, ()))
     address = address_of(path)
-    if address is not None:
-        _open_export(address)
-        return
-    check_parent_folder(path)
-    if suffix == ".zarr" and path.exists():
-        raise ValueError(f"{path} exists: choose another name for the Zarr group, or remove it")
+    if address is None:
+        check_parent_folder(path)
+    if folder_at(path).exists() and suffix == ".zarr":
+        raise ValueError(f"{address or path} exists: choose another name for the Zarr group, or remove it")
 
 
 _LIBRARIES = {".nc": ("h5netcdf",), ".parquet": ("pyarrow",), ".zarr": ("zarr",)}
@@ -110,23 +108,12 @@ def _upload(study: xarray.Dataset, address: str) -> None:
     with TemporaryDirectory() as folder:
         local = Path(folder) / address.rpartition("/")[2]
         export(study, local)
-        system, target = _open_export(address)
+        system, target = open_address(address)
+        slash = "/" if local.is_dir() else ""
         try:
-            if local.is_dir():
-                system.put(f"{local}/", f"{target}/", recursive=True)
-            else:
-                system.put_file(str(local), target)
+            system.put(f"{local}{slash}", f"{target}{slash}", recursive=True)
         except Exception as error:  # each store raises errors of its own
             raise OSError(None, f"cannot be written: {error}", address) from error
-
-
-def _open_export(address: str) -> tuple[Any, str]:
-    """Return the file system of an address and the path in it; ValueError for a Zarr group that exists."""
-    system, target = open_address(address)
-    exists = folder_at(address).exists()
-    if exists and target.lower().endswith(".zarr"):
-        raise ValueError(f"{address} exists: choose another name for the Zarr group, or remove it")
-    return system, target
 
 
 def _plain_dataset(study: xarray.Dataset) -> xarray.Dataset:
@@ -155,15 +142,14 @@ def _write_parquet(study: xarray.Dataset, path: Path) -> None:
 
 def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]]:
     """Yield the columns of each chunk by their heads, in the units of files."""
-    names = [str(name) for name in (*study.coords, *study.data_vars)]
     dims, reasons = study.status.dims, invalid_reasons(study)
     words = numpy.array([*(verdict.word for verdict in Verdict), "no result"])
     for chunk in iterate_chunks(study):
-        variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
-        columns = (variable.transpose(*dims).values.ravel() for variable in variables)
-        values = dict(zip(names, columns, strict=True))
-        parameters = {name: values[name] for name in map(str, study.coords)}
-        values = {**parameters, **derived_lengths(study, parameters), **values}
+        variables: dict[Any, xarray.DataArray] = {**chunk.coords, **derived_lengths(chunk), **chunk.data_vars}
+        values = {
+            str(name): variable.broadcast_like(chunk.status).transpose(*dims).values.ravel()
+            for name, variable in variables.items()
+        }
         kinds = zip(values["status"].tolist(), values.pop("broken_limit").tolist(), strict=True)
         why = [reasons.get(kind, "") for kind in kinds]
         written = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, pi
@@ -14,13 +13,12 @@ from ..contact import Model
 from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
 from ..core.kinds import Kind
-from ..core.quantities import CONTACT, SHELL
+from ..core.quantities import CONTACT
 from ..core.quantities import QUANTITIES as ALL_QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
-from ..problem.dimensions import LENGTHS, STORED_LENGTHS, derive_lengths, length_of
-from .metadata import missing_reasons
+from .metadata import joint_dimension, missing_reasons
 from .parameters import PARAMETERS
 from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
 
@@ -109,27 +107,6 @@ class Limit:
         if self.low == -inf:
             return Sentence("{} ≤ {}", self.name, high)
         return Sentence("{} ≤ {} ≤ {}", low, self.name, high)
-
-
-def joint_dimension(study: xarray.Dataset, name: str) -> Any:
-    """Return a dimension (mm) or material property of the joints of a study: varied, fixed, or derived from others.
-
-    Raises ValueError: the joint has no such number, such as the modulus of a rigid ball.
-    """
-    if name in study.coords:
-        return study[name]
-    joint = json.loads(study.attrs["joint"])
-    if name in (*LENGTHS, *SHELL):
-        varied = {str(coord): study[coord] for coord in study.coords if coord in (*LENGTHS, *SHELL)}
-        thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
-        shell = varied.pop("shell_thickness", thickness if thickness < inf else 0.0)
-        lengths = derive_lengths(varied or {length: float(joint[length]) for length in STORED_LENGTHS}, shell)
-        return shell if name in SHELL else length_of(name, lengths, shell)
-    part, _, number = name.rpartition("_")
-    value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
-    if value is None:
-        raise ValueError(f"the joint of this study has no {name}")
-    return float(value)
 
 
 def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> Bounded:

@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from hashlib import sha256
 from itertools import chain
+from math import inf
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from ..contact.verdict import Verdict
 from ..core import arrays
 from ..core.arrays import Numbers
 from ..core.kinds import MILLIMETRES
-from ..core.quantities import QUANTITIES
+from ..core.quantities import QUANTITIES, SHELL
 from ..core.storage.pieces import fingerprint
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
@@ -38,7 +39,7 @@ _PARAMETERS = "parameters"  # attribute with the names of varied and fixed param
 HELD = "held"
 """Attribute with the lengths of the joint in mm that stay while others vary, as JSON."""
 
-_DERIVED = "derived_lengths"  # attribute with the lengths that follow from varied ones and the shell in mm, as JSON
+_DERIVED = "derived_lengths"  # attribute with the names of the lengths that follow from varied ones, as JSON
 _LIMITS = "limits"  # attribute with the sentences of the limits of the model's validity, as JSON
 _MISSING = "missing"  # attribute with the reason why a quantity is missing at some points, by its name, as JSON
 _LABELS = "labels"  # attribute with the names of materials by axis, as JSON
@@ -49,11 +50,7 @@ _MAX_VALUE_CHARACTERS = 60  # characters of a value in a message
 def variable_attributes(name: str) -> dict[str, Any]:
     """Return the attributes of a variable or axis by the CF conventions."""
     if name == "status":
-        return {
-            "long_name": "how the press ended",
-            "flag_values": [-1, *(int(status) for status in Status)],
-            "flag_meanings": " ".join(["not_computed", *(status.name.lower() for status in Status)]),
-        }
+        return _flags("how the press ended", {status.name.lower(): int(status) for status in Status})
     if name == "valid":
         return {"long_name": "joint and answer lie where the model can be trusted"}
     if name == "broken_limit":
@@ -61,13 +58,14 @@ def variable_attributes(name: str) -> dict[str, Any]:
     if name in MATERIAL_PARTS:
         return {"long_name": f"material of the {name}"}
     if name == VERDICT:
-        return {
-            "long_name": "verdict on the yield stress",
-            "flag_values": [-1, *(int(verdict) for verdict in Verdict)],
-            "flag_meanings": " ".join(["not_computed", *(verdict.word for verdict in Verdict)]),
-        }
+        return _flags("verdict on the yield stress", {verdict.word: int(verdict) for verdict in Verdict})
     quantity = BOUNDS.get(name) or QUANTITIES[name]
     return {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
+
+
+def _flags(title: str, codes: Mapping[str, int]) -> dict[str, Any]:
+    codes = {"not_computed": -1, **codes}
+    return {"long_name": title, "flag_values": list(codes.values()), "flag_meanings": " ".join(codes)}
 
 
 def study_attributes(task: Task) -> dict[str, Any]:
@@ -90,7 +88,7 @@ def study_attributes(task: Task) -> dict[str, Any]:
         "source": f"ballsocket {fingerprint()}",
         _PARAMETERS: " ".join((*chain.from_iterable(names), *task.design.constants)),
         HELD: json.dumps(task.design.held),
-        _DERIVED: json.dumps([derived, float(task.joint.shell)]),
+        _DERIVED: json.dumps(derived),
         _LIMITS: json.dumps([limit.sentence for limit in (*task.model.validity, ELASTIC)], ensure_ascii=False),
         _MISSING: json.dumps(_missing_reasons(task), ensure_ascii=False),
         "Conventions": "CF-1.10",
@@ -99,14 +97,30 @@ def study_attributes(task: Task) -> dict[str, Any]:
     }
 
 
-def derived_lengths(study: xarray.Dataset, values: Mapping[str, Numbers]) -> dict[str, Numbers]:
-    """Compute the lengths in mm that follow from the varied and held ones, by name; `values` has those by name."""
-    names, shell = json.loads(study.attrs.get(_DERIVED, "[[], 0]"))
-    if not names:
-        return {}
-    shell = values.get("shell_thickness", shell)
-    stored = derive_lengths({name: values[name] for name in values if name in LENGTHS}, shell)
-    return {name: length_of(name, stored, shell) for name in names}
+def joint_dimension(study: xarray.Dataset, name: str) -> Any:
+    """Return a dimension (mm) or material property of the joints of a study: varied, fixed, or derived from others.
+
+    Raises ValueError: the joint has no such number, such as the modulus of a rigid ball.
+    """
+    if name in study.coords:
+        return study[name]
+    joint = json.loads(study.attrs["joint"])
+    if name in (*LENGTHS, *SHELL):
+        varied = {str(coord): study[coord] for coord in study.coords if coord in (*LENGTHS, *SHELL)}
+        thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
+        shell = varied.pop("shell_thickness", thickness if thickness < inf else 0.0)
+        lengths = derive_lengths(varied or {length: float(joint[length]) for length in STORED_LENGTHS}, shell)
+        return shell if name in SHELL else length_of(name, lengths, shell)
+    part, _, number = name.rpartition("_")
+    value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
+    if value is None:
+        raise ValueError(f"the joint of this study has no {name}")
+    return float(value)
+
+
+def derived_lengths(study: xarray.Dataset) -> dict[str, Any]:
+    """Compute the lengths in mm that follow from the varied and held ones, by name."""
+    return {name: joint_dimension(study, name) for name in json.loads(study.attrs[_DERIVED])}
 
 
 def held_in(result: xarray.Dataset) -> dict[str, float]:

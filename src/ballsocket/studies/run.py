@@ -19,9 +19,7 @@ from ..core.executors.processes import Engine, Serial, available_memory, count_t
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
-from ..elasticity.exact.exact_curve import ExactCurve
-from ..elasticity.exact.tabulated.model import Tabulated
-from ..model_catalogue import catalogue, reference
+from ..model_catalogue import catalogue, named_models, reference
 from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
@@ -48,7 +46,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Listener", "Progress", "read", "study"]
 _SERIAL = Serial()
-_TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
 _MANY_HOURS = 100.0  # number of hours that is written without digits after the point
 
 
@@ -282,10 +279,10 @@ def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
     if arrays.all_true(joint_of_arrays(joint, ranges).clearance_ratio > MAX_LINEAR_CLEARANCE_RATIO):
         return reference
     try:
-        check_model_domain(_TABULATED, joint, ranges)
+        check_model_domain(named_models["tabulated"], joint, ranges)
     except OutsideDomainError:
-        return _EXACT_CURVE if all(name in LOADS for name in ranges) else reference
-    return _TABULATED
+        return named_models["exact-curve"] if all(name in LOADS for name in ranges) else reference
+    return named_models["tabulated"]
 
 
 def check_model_domain(model: Model, joint: Joint, ranges: Mapping[str, Any]) -> None:

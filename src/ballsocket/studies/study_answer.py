@@ -128,7 +128,7 @@ def _values(study: xarray.Dataset) -> dict[str, Any]:
     """Return the varied parameters and the results at all points, in the order of the axes."""
     flat = study.stack(point=study.status.dims) if study.status.dims else study.expand_dims("point")
     bounds = [name for name in BOUNDS if name in study.data_vars]
-    values = {n: _plain_values(flat[n].values) for n in (*_varying_parameters(study), *_result_names(study), *bounds)}
+    values = {n: to_list(flat[n].values) for n in (*_varying_parameters(study), *_result_names(study), *bounds)}
     if VERDICT in study.data_vars:
         values[VERDICT] = [None if code < 0 else Verdict(code).word for code in flat[VERDICT].values.tolist()]
     return values
@@ -235,7 +235,7 @@ def front_summary(front: xarray.Dataset) -> dict[str, Any]:
     return {
         "model": front.attrs["model"],
         "held": held_in(front),
-        "points": {name: _plain_values(front[name].values) for name in names},
+        "points": {name: to_list(front[name].values) for name in names},
     }
 
 
@@ -264,11 +264,6 @@ def _coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
         value = variable.isel({dim: int(index[dim]) for dim in variable.dims}).values.item()
         values[str(name)] = None if value != value else value
     return values
-
-
-def _plain_values(values: numpy.ndarray) -> Any:
-    """Return numbers, with None for missing ones, or names of materials as lists for JSON."""
-    return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
 def _end_table(study: xarray.Dataset, quantities: Mapping[str, Mapping[str, Any]], key: str, title: str) -> Table:

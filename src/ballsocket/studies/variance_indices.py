@@ -79,22 +79,22 @@ def sobol_indices(
         terms += [(f_ba[i] * f_ab[j] + f_ba[j] * f_ab[i]) / 2 - f_a * f_b for i, j in pairs]
 
     def indices(means: Numbers) -> Numbers:
-        """Compute the indices (..., quantities, indices) from means of the terms (..., quantities, terms)."""
-        shares = means[..., 2:] / (means[..., 1] - means[..., 0] ** 2)[..., None]
-        first = [shares[..., index] for index in range(dimension)]
-        closed = shares[..., 2 * dimension :]
-        interactions = [closed[..., k] - first[i] - first[j] for k, (i, j) in enumerate(pairs)]
-        return numpy.concatenate([shares[..., : 2 * dimension], *(row[..., None] for row in interactions)], axis=-1)
+        """Compute the indices from means of the terms (..., quantities, terms).
 
-    arrays = {}
-    for name, values in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
-        arrays[f"first_order{name}"] = values[:, :dimension]
-        arrays[f"total_order{name}"] = values[:, dimension : 2 * dimension]
-        if second_order:  # a symmetric matrix for each quantity, with NaN on its diagonal
-            matrix = numpy.full((len(values), dimension, dimension), numpy.nan)
-            for k, (i, j) in enumerate(pairs):
-                matrix[:, i, j] = matrix[:, j, i] = values[:, 2 * dimension + k]
-            arrays[f"second_order{name}"] = matrix
+        Their rows (..., quantities, rows, parameters) are first order, total order, and those of the matrix of pairs.
+        """
+        shares = means[..., 2:] / (means[..., 1] - means[..., 0] ** 2)[..., None]
+        first, total, closed = numpy.split(shares, [dimension, 2 * dimension], axis=-1)
+        matrix = numpy.full((*first.shape, dimension if second_order else 0), numpy.nan)
+        for k, (i, j) in enumerate(pairs):
+            matrix[..., i, j] = matrix[..., j, i] = closed[..., k] - first[..., i] - first[..., j]
+        return numpy.concatenate([first[..., None], total[..., None], matrix], axis=-1).swapaxes(-2, -1)
+
+    arrays: dict[str, Numbers] = {}
+    for end, rows in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
+        arrays |= {f"first_order{end}": rows[:, 0], f"total_order{end}": rows[:, 1]}
+        if second_order:
+            arrays[f"second_order{end}"] = rows[:, 2:]
     return arrays
 
 
@@ -167,27 +167,26 @@ def shapley_effects(
     terms += [(f_a - values(subset)) ** 2 / 2 for subset in subsets]
 
     def indices(means: Numbers) -> Numbers:
-        """Compute the indices (..., quantities, indices) from means of the terms (..., quantities, terms)."""
+        """Compute the three kinds of indices (..., quantities, kinds, parameters) from means of the terms."""
         unexplained = means[..., 2:] / (means[..., 1] - means[..., 0] ** 2)[..., None]
         explained = {subset: 1 - unexplained[..., k] for k, subset in enumerate(subsets)}
         explained |= {(): 0 * unexplained[..., 0], tuple(range(dimension)): 1 + 0 * unexplained[..., 0]}
-        rows = [explained[(index,)] for index in range(dimension)]
-        rows += [1 - explained[_without(range(dimension), index)] for index in range(dimension)]
-        for index in range(dimension):  # Shapley effects
+        columns = []
+        for index in range(dimension):
             gains = [
                 (share - explained[_without(subset, index)]) / (dimension * comb(dimension - 1, len(subset) - 1))
                 for subset, share in explained.items()
                 if index in subset
             ]
-            rows.append(numpy.sum(gains, axis=0))
-        return numpy.stack(rows, axis=-1)
+            total = 1 - explained[_without(range(dimension), index)]
+            columns.append(numpy.stack([explained[(index,)], total, numpy.sum(gains, axis=0)], axis=-1))
+        return numpy.stack(columns, axis=-1)
 
-    arrays: dict[str, Numbers] = {}
-    for name, results in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
-        blocks = numpy.split(results, 3, axis=-1)
-        orders = ("first_order", "total_order", "shapley")
-        arrays |= {f"{order}{name}": block for order, block in zip(orders, blocks, strict=True)}
-    return arrays
+    return {
+        f"{kind}{end}": rows[:, number]
+        for end, rows in _with_intervals(numpy.stack(terms), indices, confidence, seed).items()
+        for number, kind in enumerate(("first_order", "total_order", "shapley"))
+    }
 
 
 def _without(indices: Sequence[int], removed: int) -> tuple[int, ...]:
@@ -217,8 +216,8 @@ def _with_intervals(
 
     Resamples are drawn in chunks: the memory grows only linearly with the number of points. The terms have the shape
     (n_terms, n_quantities, n_points); the statistic maps means (..., n_quantities, n_terms) to values (...,
-    n_quantities, n_values). The result has the statistic under "", and the ends under "_low" and "_high", each
-    (n_quantities, n_values). Efron & Tibshirani 1993, An Introduction to the Bootstrap, section 14.3.
+    n_quantities, ...). The result has the statistic under "", and the ends under "_low" and "_high". Efron & Tibshirani
+    1993, An Introduction to the Bootstrap, section 14.3.
     """
     from scipy.special import ndtr, ndtri
 
