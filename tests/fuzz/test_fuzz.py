@@ -51,8 +51,8 @@ optimise | hip-28 | --force=1 kN | --vary=clearance=50..200 um | --minimise=area
 sensitivity | hip-28 | --force=3 kN | --spread=clearance=0.1+-0.05 mm | --spread=liner_young=0.7..1.1 GPa | --count=8
 sensitivity | hip-28 | --force=3 kN | --spread=ball_radius=14±0.5 | --count=16 | --of=max_pressure | --intervals=none
 sensitivity | hip-28 | --force=1 kN | --spread=clearance=0.1+-0.05 | --correlation=clearance, liner_young = 0.5
-deck | hip-28 | --force=1 kN | --out=out | --steps=2 | --scale=1 | --element=bilinear | --element-size=2 mm
-calibrate | hip-36 | --force=2 kN | --thickness=3 mm | --form=polynomial
+deck | hip-28 | --force=3 kN | --out=out | --steps=2 | --scale=1 | --element=bilinear | --element-size=0.9 mm
+calibrate | hip-36 | --force=2 kN | --thickness=3 mm | --thickness=5 | --form=corrected-vessel
 cite | hertz
 models | hertz
 presets | --help
