@@ -57,10 +57,6 @@ def end_with_tests():
         pass
     os.kill(os.getpid(), signal.SIGTERM)
 threading.Thread(target=end_with_tests, daemon=True).start()
-from ballsocket.app import running
-running.MAX_SECONDS = 3600.0  # a run on a slow machine is not refused
-from ballsocket.app import solving
-solving.PRESS_SECONDS = 3600.0
 from ballsocket.cli import main
 main()
 """

@@ -2,6 +2,10 @@
 
 import json
 import operator
+import os
+import subprocess
+import sys
+import time
 from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
@@ -32,7 +36,7 @@ from ballsocket.models.plane_layer import PlaneLayer
 from ballsocket.problem.cup import Cup
 
 from ..extent import some
-from ..processes import PATIENCE, wait_until
+from ..processes import wait_until
 from .asking import does, edits, saved
 
 HIP = bs.joints["hip-28"]
@@ -52,8 +56,7 @@ def waited_for(page):
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left_running(monkeypatch):
-    monkeypatch.setattr(solving, "PRESS_SECONDS", PATIENCE)
+def nothing_is_left_running():
     solving._solved.clear()
     yield
     assert len(running.QUEUE) == 0
@@ -114,12 +117,41 @@ def test_what_takes_too_long_is_ended_and_said(monkeypatch):
     monkeypatch.setattr(solving, "PRESS_SECONDS", 0.01)
     page = Page(link(190))
     waited_for(page)
-    words = "exact has no result here: stopped after 0.01 s, the time limit of a run"
+    words = "exact has no result here: stopped after 0.01 s of processor time, the limit of a run"
     assert words in page.channel.shown_value("#press-numbers")
     assert "hess-forsbach" in page.channel.shown_value("#press-table")
     again = Page(link(190))
     assert not again._slow_presses.job.works
     assert words in again.channel.shown_value("#press-numbers")
+
+
+BUSY = partial(operator.countOf, range(10**18))
+"""Work of hours."""
+
+
+def test_a_run_that_waits_for_the_processor_goes_on_and_one_that_hangs_ends(monkeypatch):
+    """The clock and the processor time are stated here: 60 s are a limit of the processor, 660 s one of the clock."""
+    now, used = [0.0], [0.0]
+    monkeypatch.setattr(running, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(running, "processor_seconds", lambda pid: used[0])
+    for seconds, processor, why in (
+        (61.0, 61.0, "60 s of processor time, the"),
+        (661.0, 59.0, "661 s without a result"),
+    ):
+        run, now[0], used[0] = Run(BUSY), 0.0, 59.0
+        assert run.news() is None
+        now[0] = 659.0
+        assert run.news() is None
+        now[0], used[0] = seconds, processor
+        assert why in run.news().why
+
+
+def test_processor_time_includes_that_of_children():
+    before = running.processor_seconds(os.getpid()) - time.process_time()
+    with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
+        wait_until(lambda: running.processor_seconds(os.getpid()) - time.process_time() > before + 0.2)
+        busy.kill()
+    assert running.processor_seconds(busy.pid) == 0.0
 
 
 def test_only_what_is_on_the_screen_is_solved():
@@ -154,7 +186,7 @@ def until_the_end(run):
 def judging(force, **cup):
     from ballsocket.app.views.finite_elements import run_finite_elements
 
-    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))), longest=PATIENCE)
+    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
 
 
 @pytest.mark.long
@@ -180,7 +212,7 @@ def test_a_run_answers_what_a_press_answers():
 
 
 def test_a_run_whose_process_dies_says_so_and_one_that_is_stopped_gives_its_place_back():
-    died, stopped = (Run(partial(operator.countOf, range(10**18))) for _ in range(2))  # work of hours
+    died, stopped = (Run(BUSY) for _ in range(2))
     died.news()
     died._process.kill()
     assert "the process ended unexpectedly, perhaps for lack of memory" in until_the_end(died)[-1].why

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from io import BytesIO, TextIOWrapper
@@ -31,8 +32,23 @@ def run(*words: str, columns: int = 100, encoding: str = "utf-8", folder: Path |
     return CompletedProcess(words, status, said, complained)
 
 
+def printed(*words: str, columns: int = 100, folder: Path | None = None) -> str:
+    """What a command prints that succeeds without a message."""
+    done = run(*words, columns=columns, folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
 def answer(*words: str, folder: Path | None = None) -> dict:
     """The JSON that a command prints."""
     done = run(*words, "--json", folder=folder)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
+
+
+def refusal(*words: str, folder: Path | None = None) -> str:
+    """The line that refuses words of a command, which prints nothing else."""
+    done = run(*words, folder=folder)
+    assert (done.returncode, done.stdout) == (2, ""), done.stderr
+    assert re.fullmatch("ballsocket: .*\n", done.stderr)
+    return done.stderr

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 
 from ballsocket.export.compiler import compiler
 
-from ..cli.command import run
+from ..cli.command import printed, run
 from ..places import EXAMPLES, ROOT
 from .library import needs_compiler, skip_without
 
@@ -31,11 +31,10 @@ def test_a_program_of_the_page_runs_in_its_host(host, tmp_path):
     skip_without(PACKAGES[host])
     joint, folder = str(EXAMPLES / "hip.toml"), tmp_path
     if host == "FMU":
-        exported = run("fmu", joint, "--out", "hip.fmu", "--friction", "0.05", folder=tmp_path)
+        printed("fmu", joint, "--out", "hip.fmu", "--friction", "0.05", folder=tmp_path)
     else:
-        exported = run("export", host.lower(), joint, "--out", "hip", folder=tmp_path)
+        printed("export", host.lower(), joint, "--out", "hip", folder=tmp_path)
         folder = tmp_path / "hip"
-    assert exported.returncode == 0
     program = folder / "program.py"
     program.write_text(f"# {host}{PROGRAMS[host]}", encoding="utf-8")
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}

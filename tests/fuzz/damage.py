@@ -1,4 +1,6 @@
-"""Strategies for damaged files: seeds with replaced, missing or doubled values, lines and bytes."""
+"""Strategies for damaged input: seeds whose values, cells, lines or bytes are replaced, lost, doubled or inserted."""
+
+from functools import reduce
 
 from hypothesis import strategies as st
 
@@ -6,40 +8,41 @@ from . import words
 from .words import number, odd_text, quantity
 
 ODD_VALUES = st.one_of(
-    quantity.map(words.toml),
+    words.plain_number,
+    words.values.map(words.toml),
     number,
-    odd_text.map(words.toml),
     st.sampled_from(("true", "[]", "{}", "[1, 2]", '["a"]', "{a = 1}", "1979-05-27", "'''x\ny'''", "", "9" * 400)),
     st.sampled_from((5, 50, 500, 2000, 9000)).map(lambda depth: "[" * depth + "]" * depth),
     st.just("[" * 500),
 )
-"""Values of entries that are seldom right."""
+"""Values of entries of TOML that are seldom right."""
 
 _WOUNDS = (b"", b"\0", b"\xff", b"[", b"]]", b"=", b'"', b'"""', b".", b"a.b.", b"\n", b",", b"\r", b"\xef\xbb\xbf")
 _BYTES = st.sampled_from((*_WOUNDS, b" " * 3000, b"(" * 2000, b"[" * 3000, b"x." * 9000)) | st.binary(max_size=6)
+_position = st.integers(0, 3) | st.integers(0, 5000)
 
 
-def _edited(seed, position, change, mark=""):
-    """Replace one of the lines that have the mark."""
-    lines = seed.decode("utf-8").splitlines()
-    marked = [i for i, line in enumerate(lines) if mark in line]
-    if marked:
-        i = marked[position % len(marked)]
-        lines[i : i + 1] = change(lines[i])
-    return "\n".join(lines).encode("utf-8", "surrogatepass")
+def _with_fault(lines, fault):
+    position, change = fault
+    place = position % max(len(lines), 1)
+    return [part for i, line in enumerate(lines) for part in (change(line) if i == place else [line])]
 
 
-def _with_value(seed, position, value):
-    return _edited(seed, position, lambda line: [f"{line.partition(' = ')[0]} = {value}"], " = ")
+def lines_of(seeds, change):
+    """Draw the lines of a seed with at most three faults; a change turns one line into several."""
+    others = st.sampled_from(list(dict.fromkeys(line for seed in seeds for line in seed)))
+    moved = st.one_of(
+        st.just(lambda line: []),
+        st.just(lambda line: [line, line]),
+        others.map(lambda other: lambda line: [line, other]),
+    )
+    faults = st.lists(st.tuples(_position, change | change | moved), max_size=3)
+    return st.builds(lambda seed, faults: reduce(_with_fault, faults, seed), st.sampled_from(seeds), faults)
 
 
-def _with_cell(seed, position, column, cell):
-    def change(line):
-        cells = line.split(",")
-        cells[column % len(cells)] = cell
-        return [",".join(cells)]
-
-    return _edited(seed, position, change)
+def value_after(equals, values):
+    """Draw a change of the value behind a sign."""
+    return values.map(lambda value: lambda line: [f"{line.partition(equals)[0]}{equals}{value}"])
 
 
 def with_bytes(seed, position, width, wound):
@@ -47,35 +50,39 @@ def with_bytes(seed, position, width, wound):
     return seed[:position] + wound + seed[position + width :]
 
 
-_position = st.integers(0, 5000)
-
-
-def _mostly_once(seed, *faults):
-    """Draw a seed, usually with one of the faults, a line lost or doubled, or some bytes replaced."""
-    lines = st.builds(_edited, seed, _position, st.sampled_from((lambda line: [], lambda line: [line, line])))
-    once = st.one_of(*faults, lines, st.builds(with_bytes, seed, _position, st.integers(0, 6), _BYTES))
-    return st.one_of(seed, once, once, once, st.binary(max_size=200))
+def _bytes_of(seeds, change):
+    """Draw the bytes of a file, some of them with a wound."""
+    lines = lines_of([seed.decode().splitlines() for seed in seeds], change)
+    whole = lines.map(lambda lines: "\n".join(lines).encode("utf-8", "surrogatepass"))
+    wounded = st.builds(with_bytes, whole, _position, st.integers(0, 6), _BYTES)
+    return st.one_of(whole, whole, wounded, st.binary(max_size=200))
 
 
 def file_of(*seeds):
-    """Draw the bytes of a file: a seed, usually with one fault."""
-    seed = st.sampled_from(seeds)
-    value = st.builds(_with_value, seed, _position, ODD_VALUES)
-    return _mostly_once(seed, value, value)
+    """Draw the bytes of a file in TOML."""
+    return _bytes_of(seeds, value_after(" = ", ODD_VALUES))
 
 
 def table_of(*seeds):
-    seed = st.sampled_from(seeds)
-    cell = st.builds(_with_cell, seed, _position, st.integers(0, 6), number | odd_text | quantity)
-    head = st.builds(_with_cell, seed, st.just(0), st.integers(0, 6), odd_text | st.sampled_from(HEADS))
-    return _mostly_once(seed, cell, head)
+    """Draw the bytes of a table in text."""
+
+    def change(column, cell):
+        def changed(line):
+            cells = line.split(",")
+            cells[column % len(cells)] = cell
+            return [",".join(cells)]
+
+        return changed
+
+    cells = number | odd_text | quantity | st.sampled_from(HEADS)
+    return _bytes_of(seeds, st.builds(change, st.integers(0, 6), cells))
 
 
 HEADS = (
     "force [N]", "force [kN]", "force" + " " * 3000 + "!", "force (" + " " * 3000 + "x", "time [s]", "phase [%]",
     "force [%BW]", "flexion", "force_x [N]", "Fx", "indentation [um]", "area_mm2", "force_", "pressure [MPa]",
     "angle_deg", "half_angle_deg", "indentation_uncertainty_um", "max_pressure_psi", "force [N", "[N]", "'", '"',
-    "(" * 999, "a(" * 999,
+    "(" * 999, "a(" * 999, "ball_radius", "liner_young", "liner", "clearence",
 )  # fmt: skip
 """Valid, misspelt and hostile column heads."""
 

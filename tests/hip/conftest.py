@@ -1,12 +1,10 @@
 """Fixtures that several test files of hips share."""
 
-import json
-
 import pytest
 
 from ballsocket.hip.hip_setup import HipSetup
 
-from ..cli.command import run
+from ..cli.command import answer
 from .hips import SHORT, UNCERTAINTY, write_edited_file
 
 
@@ -26,6 +24,4 @@ def solved_file(tmp_path_factory):
     file.write_text(f"{file.read_text(encoding='utf-8')}\n{tables}", encoding="utf-8")
     (folder / "logo.svg").write_text("<svg/>", encoding="utf-8")
     files = ("--report", str(folder / "hip.html"), "--csv", str(folder / "hip.csv"), "--store", str(folder / "store"))
-    process = run("hip", str(file), "--json", *files)
-    assert process.returncode == 0, process.stderr
-    return folder, json.loads(process.stdout)
+    return folder, answer("hip", str(file), *files)

@@ -1,6 +1,5 @@
 """Simulated patient cohorts: samples, pieces, the store and its resumption, and the table of patients."""
 
-import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -15,7 +14,7 @@ from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, tabl
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Rectangular
 
-from ..cli.command import run
+from ..cli.command import answer, printed
 from ..processes import stopped_program
 from .hips import QUICK, K, hip, refuses
 from .test_uncertainty import short_file
@@ -166,27 +165,24 @@ def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
 
 def test_the_command_stores_every_patient(tmp_path):
     file = short_file(tmp_path, ("instants = 16", "instants = 40"))  # more than the coarse simulation of a patient
-    done = run("hip", str(file), "--patients", "5", "--store", str(tmp_path / "store"), "--json")
-    assert done.returncode == 0, done.stderr
+    said = answer("hip", str(file), "--patients", "5", "--store", str(tmp_path / "store"))
     names, *rows = (tmp_path / "store" / "patients.csv").read_text(encoding="utf-8").splitlines()
     assert names.startswith("coefficient,clearance_mm,volume_mm3_at_5000,")
     assert len(rows) == 5
     volumes = [float(row.split(",")[2]) for row in rows]
-    answer = json.loads(done.stdout)
-    assert answer["bands"][0]["volume"]["median"] == pytest.approx(np.median(volumes), rel=1e-6)
-    assert 0 < answer["uncertainty"]["quick_run_off"]["volume"] < 0.01
-    assert answer["valid"] is True
+    assert said["bands"][0]["volume"]["median"] == pytest.approx(np.median(volumes), rel=1e-6)
+    assert 0 < said["uncertainty"]["quick_run_off"]["volume"] < 0.01
+    assert said["valid"] is True
 
 
 def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path):
     """In 80 columns, with springs outside the range of their formula."""
     path = short_file(tmp_path, ('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
     words = "hip", str(path), "--patients", "4"
-    shown = run(*words, columns=80)
-    assert shown.returncode == 0, shown.stderr
-    assert "…" not in shown.stdout
-    assert "valid in 0 % of the predictions" in shown.stdout
-    notes = json.loads(run(*words, "--json").stdout)["notes"]
+    shown = printed(*words, columns=80)
+    assert "…" not in shown
+    assert "valid in 0 % of the predictions" in shown
+    notes = answer(*words)["notes"]
     assert any(note.startswith("outside R2/L") and "nominal patient, in the first cycle" in note for note in notes)
     assert any("4 of 4 patients have contacts outside the validity" in note for note in notes)
 
@@ -200,11 +196,11 @@ def test_results_do_not_depend_on_the_executor():
 @pytest.mark.long
 def test_a_killed_cohort_resumes(tmp_path):
     file, store = short_file(tmp_path, ("cycles = 1e4", "cycles = 1e6")), tmp_path / "store"
-    words = ["hip", str(file), "--patients", "112", "--store", str(store), "--json"]
+    words = ["hip", str(file), "--patients", "112", "--store", str(store)]
     program = stopped_program(12, ".npz")  # the fourth file has a folder and a content, but not yet its name
     subprocess.run([sys.executable, "-c", program, *words], stdout=subprocess.DEVNULL)
     times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}
     assert len(times) == 3
-    again = json.loads(run(*words).stdout)
+    again = answer(*words)
     assert all((store / name).stat().st_mtime_ns == when for name, when in times.items())
-    assert again["bands"] == json.loads(run(*words[:4], "--json").stdout)["bands"]
+    assert again["bands"] == answer(*words[:4])["bands"]

@@ -1,6 +1,5 @@
 """Cohorts by a series: accuracy against simulations, patients outside, the store, and the words of the command."""
 
-import json
 import pickle
 import re
 from dataclasses import replace
@@ -22,7 +21,7 @@ from ballsocket.hip.variability import RESULT_UNITS, result_table
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
-from ..cli.command import run as run_command
+from ..cli.command import answer, printed
 from .hips import QUICK, UNCERTAINTY, K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
@@ -248,15 +247,15 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance(few_held_out):
 def test_the_command_states_method_and_error(tmp_path, few_held_out):
     file = short_file(tmp_path, extra=UNCERTAINTY.partition("clearance")[0])
     words = "hip", str(file), "--patients", "200"
-    answer = json.loads(run_command(*words, "--json").stdout)
-    series = answer["uncertainty"]["series"]
-    assert (answer["uncertainty"]["method"], series["simulations"], series["within_tolerance"]) == ("series", 1, True)
+    said = answer(*words)
+    series = said["uncertainty"]["series"]
+    assert (said["uncertainty"]["method"], series["simulations"], series["within_tolerance"]) == ("series", 1, True)
     assert series["error"]["volume"] <= series["tolerance"]["volume"]
-    assert set(answer["sobol"]["volume"]) == {"coefficient"}
-    shown = " ".join(run_command(*words).stdout.split())
+    assert set(said["sobol"]["volume"]) == {"coefficient"}
+    shown = " ".join(printed(*words).split())
     assert f"series of 1 simulations in place of 200: 95 % of the results of {FEW} simulated" in shown
     assert re.search(r"first order .* volume coefficient ", shown)
-    simulated = json.loads(run_command(*words[:3], "30", "--method", "runs", "--json").stdout)
+    simulated = answer(*words[:3], "30", "--method", "runs")
     assert simulated["uncertainty"]["series"] is None
 
 

@@ -20,7 +20,7 @@ from ballsocket.hip.wear_laws import read_wear_law
 from ballsocket.reports import hip_plots
 from ballsocket.reports.hip_comparison import wear_figure
 
-from ..cli.command import run
+from ..cli.command import answer, printed
 from .hips import COUNTS, QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
@@ -101,13 +101,12 @@ def test_json_has_the_results_of_python(solved_file):
 
 def test_the_table_shows_the_numbers_and_assumptions_of_the_run(solved_file):
     folder, answer = solved_file
-    process = run("hip", str(folder / "hip.toml"), "--store", str(folder / "store"))
-    assert process.returncode == 0
-    text = " ".join(process.stdout.split())
+    shown = printed("hip", str(folder / "hip.toml"), "--store", str(folder / "store"))
+    text = " ".join(shown.split())
     slide, cross_shear = (float(re.search(rf"{name} ([0-9.]+)", text)[1]) for name in ("slide", "cross-shear"))
     assert slide == pytest.approx(answer["cycle"]["slide_mm"], rel=5e-3)
     assert cross_shear == pytest.approx(answer["cycle"]["cross_shear_mean"], abs=1e-3)
-    rows = [line.split() for line in process.stdout.splitlines() if line.split()[:1] in (["0.005"], ["0.01"])]
+    rows = [line.split() for line in shown.splitlines() if line.split()[:1] in (["0.005"], ["0.01"])]
     volumes = [report["volume"] for report in answer["history"]]
     assert [float(row[1]) for row in rows[:2]] == pytest.approx(volumes, rel=5e-3)
     assert "creep" not in text
@@ -170,23 +169,22 @@ def files(tmp_path):
 
 def test_two_files_are_side_by_side_in_json_table_csv_and_figure(files, tmp_path):
     out = ["--csv", str(tmp_path / "ab.csv"), "--figure", str(tmp_path / "ab.svg")]
-    process = run("hip", *files, *out)
-    assert process.returncode == 0, process.stderr
-    lines = [line.split() for line in process.stdout.splitlines()]
+    shown = printed("hip", *files, *out)
+    lines = [line.split() for line in shown.splitlines()]
     reports = [line[:2] for line in lines if line[:1] in (["0.005"], ["0.01"])]
     assert reports[:4] == [["0.005", "a"], ["0.005", "b"], ["0.01", "a"], ["0.01", "b"]]
-    assert "b: wear factor of crosslinked-pe: 2e-07 mm³/(N m)" in " ".join(process.stdout.split())
+    assert "b: wear factor of crosslinked-pe: 2e-07 mm³/(N m)" in " ".join(shown.split())
     rows = read_csv(tmp_path / "ab.csv")
     assert [row["hip"] for row in rows] == ["a", "a", "b", "b"]
     assert float(rows[1]["volume_mm3"]) / float(rows[3]["volume_mm3"]) == pytest.approx(5.33, rel=0.05)
     assert rows[0]["volume_low_mm3"] == ""
     assert float(rows[3]["volume_low_mm3"]) < float(rows[3]["volume_mm3"]) < float(rows[3]["volume_high_mm3"])
     assert (tmp_path / "ab.svg").read_text(encoding="utf-8").count("<svg") == 1
-    answer, alone = (json.loads(run("hip", *names, "--json").stdout) for names in (files, files[:1]))
-    assert [(result["name"], result["file"]) for result in answer["results"]] == [("a", files[0]), ("b", files[1])]
-    assert answer["results"][0]["history"] == alone["history"]
-    assert answer["valid"] is all(result["valid"] for result in answer["results"])
-    assert answer["results"][1]["laws"]["wear"]["source"].startswith("wear factor of crosslinked-pe")
+    both, alone = (answer("hip", *names) for names in (files, files[:1]))
+    assert [(result["name"], result["file"]) for result in both["results"]] == [("a", files[0]), ("b", files[1])]
+    assert both["results"][0]["history"] == alone["history"]
+    assert both["valid"] is all(result["valid"] for result in both["results"])
+    assert both["results"][1]["laws"]["wear"]["source"].startswith("wear factor of crosslinked-pe")
     assert "results" not in alone
     assert alone["name"] == "a"
 
@@ -197,11 +195,11 @@ def test_a_stated_name_stands_in_table_csv_and_figure(files, tmp_path):
         paths.append(str(tmp_path / f"named_{stem}.toml"))
         Path(paths[-1]).write_text(name + text, encoding="utf-8")
     names = ["conventional 28 (named_a)", "conventional 28 (named_b)", "named_c"]
-    process = run("hip", *paths, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
+    shown = printed("hip", *paths, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
     figure = (tmp_path / "n.svg").read_text(encoding="utf-8")
-    assert all(name in " ".join(process.stdout.split()) and name in figure for name in names)
+    assert all(name in " ".join(shown.split()) and name in figure for name in names)
     assert list(dict.fromkeys(row["hip"] for row in read_csv(tmp_path / "n.csv"))) == names
-    assert run("hip", paths[0]).stdout.startswith("conventional 28: R1 14 mm")
+    assert printed("hip", paths[0]).startswith("conventional 28: R1 14 mm")
 
 
 def test_a_history_is_a_frame_and_a_figure(monkeypatch):

@@ -1,6 +1,5 @@
 """Resumed runs equal uninterrupted ones bit by bit, and checkpoints of other runs are refused."""
 
-import json
 import os
 import random
 import subprocess
@@ -17,7 +16,7 @@ from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
 from ballsocket.hip import Activity, Archard, FilmLimit, Mix, in_vivo, iso_14242_1, iso_14242_4, logarithmic
 from ballsocket.hip.simulation import make_checkpoint
 
-from ..cli.command import run
+from ..cli.command import answer
 from ..processes import stopped_program
 from .hips import QUICK, K, hip, refuses, write_edited_file
 
@@ -124,10 +123,10 @@ KILLS = int(os.environ.get("BALLSOCKET_KILLS", "8"))
 @pytest.mark.long
 def test_a_process_killed_at_random_changes_of_its_files_gives_the_same_json(tmp_path):
     file = str(write_edited_file(tmp_path, ("instants = 100", "instants = 60")))
-    words, store, draw = ("hip", file, "--json", "--store"), str(tmp_path / "store"), random.Random(20)
-    expected = json.loads(run(*words, str(tmp_path / "other")).stdout)
+    words, store, draw = ("hip", file, "--store"), str(tmp_path / "store"), random.Random(20)
+    expected = answer(*words, str(tmp_path / "other"))
     for _ in range(KILLS):  # each resumes what the one before has stored
         program = stopped_program(draw.randrange(1, 12), "hip_in_use.npz")
         assert subprocess.run([sys.executable, "-c", program, *words, store], stdout=DEVNULL).returncode != 0
-    found = json.loads(run(*words, store).stdout)
+    found = answer(*words, store)
     assert found | {"next": None} == expected | {"next": None}  # these commands name the store

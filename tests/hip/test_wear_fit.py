@@ -1,6 +1,5 @@
 """Wear coefficient from measured wear: simulated data give it back, and each kind of rate gives another one."""
 
-import json
 import re
 
 import numpy as np
@@ -13,7 +12,7 @@ from ballsocket.hip.config import read_wear_test
 from ballsocket.hip.station_file import read_stations
 from ballsocket.reports.hip_comparison import wear_fit_figure
 
-from ..cli.command import run
+from ..cli.command import answer, printed, refusal
 from .hips import COUNTS, QUICK, WEAR_DATA, hip, write_edited_file
 
 REPORTS = [1e5, 2e5, 4e5]
@@ -100,15 +99,14 @@ CHANGES = (
 
 def test_a_file_with_measured_wear_is_identified(tmp_path):
     file = str(write_edited_file(tmp_path, *CHANGES))
-    process = run("identify", file, "--figure", str(tmp_path / "fit.png"))
-    assert process.returncode == 0, process.stderr
-    assert "coefficient of the wear law 'archard'" in " ".join(process.stdout.split())
+    text = printed("identify", file, "--figure", str(tmp_path / "fit.png"))
+    assert "coefficient of the wear law 'archard'" in " ".join(text.split())
     assert (tmp_path / "fit.png").exists()
-    value = json.loads(run("identify", file, "--json").stdout)["coefficient"]
+    value = answer("identify", file)["coefficient"]
     assert value["unit"] == "mm³/(N m)"
     assert (value["low"], value["high"]) == pytest.approx((0.8 * value["value"], 1.2 * value["value"]), rel=0.03)
-    assert "needs coefficient" in run("hip", file).stderr
-    assert "--samples needs measurements of a contact" in run("identify", file, "--samples", "100").stderr
+    assert "needs coefficient" in refusal("hip", file)
+    assert "--samples needs measurements of a contact" in refusal("identify", file, "--samples", "100")
 
 
 def station_totals():

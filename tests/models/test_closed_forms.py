@@ -11,6 +11,7 @@ from ballsocket.models.closed_form import ClosedForm
 
 from ..catalogue import test_contract as contract
 from ..joints import HIP
+from ..refusals import refused_calls
 
 CORRECTED = bs.corrected_vessel(0.9, 0.2, -0.1)
 OWN = {
@@ -93,30 +94,24 @@ def test_moduli_have_their_formulas():
     assert bs.constant(123.0)(joint) == 123.0
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: bs.corrected_vessel(1.0, -1.5, 0.0), r"factor at κ = 0\.7 = .* must be above 0"),
-        (lambda: bs.corrected_vessel(1.0, 0.0, -1.01), r"factor at κ = 1 = "),
-        (lambda: bs.corrected_vessel(-0.1, 2.0, 0.0), r"factor at κ = 0 = "),
-        (lambda: bs.corrected_vessel(np.inf, 0.0, 0.0), "a0 = inf is not allowed"),
-        (lambda: bs.corrected_vessel(1.0, np.nan, 0.0), "a1 = nan is not allowed"),
-        (lambda: bs.polynomial(-1.0, 1.0, 1.0), "c1 = -1 is not allowed"),
-        (lambda: bs.polynomial(0.0, 0.0, 0.0), r"c1 \+ c2 \+ c3 = 0 is not allowed"),
-        (lambda: bs.constant(0.0), "modulus = 0 is not allowed"),
-        (lambda: bs.AdhesiveSocket(work_of_adhesion=-1.0), "work_of_adhesion = -1 is not allowed"),
-        (lambda: bs.LiuReconstruction(coefficient=0.0), "coefficient = 0 is not allowed"),
-        (lambda: bs.Steuermann(exponent=0), "exponent = 0 is not allowed: it must be an integer of 1 or more"),
-        (lambda: bs.Steuermann(exponent=True), "exponent = True is not allowed"),
-        (lambda: bs.Steuermann(exponent=1.5), "exponent = 1.5 is not allowed"),
-        (lambda: bs.PinInHole().press(PLATE, line_load=-1.0), "line_load = -1 is not allowed"),
-        (lambda: bs.PinInHole().press(PLATE, half_angle=1.5), "below 1.480527 .perfect fit."),
-        (lambda: bs.PinInHole().press(PLATE), "exactly one of line_load, half_angle is needed"),
-    ],
+test_numbers_outside_their_range_are_refused = refused_calls(
+    (lambda: bs.corrected_vessel(1.0, -1.5, 0.0), r"factor at κ = 0\.7 = .* must be above 0"),
+    (lambda: bs.corrected_vessel(1.0, 0.0, -1.01), r"factor at κ = 1 = "),
+    (lambda: bs.corrected_vessel(-0.1, 2.0, 0.0), r"factor at κ = 0 = "),
+    (lambda: bs.corrected_vessel(np.inf, 0.0, 0.0), "a0 = inf is not allowed"),
+    (lambda: bs.corrected_vessel(1.0, np.nan, 0.0), "a1 = nan is not allowed"),
+    (lambda: bs.polynomial(-1.0, 1.0, 1.0), "c1 = -1 is not allowed"),
+    (lambda: bs.polynomial(0.0, 0.0, 0.0), r"c1 \+ c2 \+ c3 = 0 is not allowed"),
+    (lambda: bs.constant(0.0), "modulus = 0 is not allowed"),
+    (lambda: bs.AdhesiveSocket(work_of_adhesion=-1.0), "work_of_adhesion = -1 is not allowed"),
+    (lambda: bs.LiuReconstruction(coefficient=0.0), "coefficient = 0 is not allowed"),
+    (lambda: bs.Steuermann(exponent=0), "exponent = 0 is not allowed: it must be an integer of 1 or more"),
+    (lambda: bs.Steuermann(exponent=True), "exponent = True is not allowed"),
+    (lambda: bs.Steuermann(exponent=1.5), "exponent = 1.5 is not allowed"),
+    (lambda: bs.PinInHole().press(PLATE, line_load=-1.0), "line_load = -1 is not allowed"),
+    (lambda: bs.PinInHole().press(PLATE, half_angle=1.5), "below 1.480527 .perfect fit."),
+    (lambda: bs.PinInHole().press(PLATE), "exactly one of line_load, half_angle is needed"),
 )
-def test_numbers_outside_their_range_are_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
 
 
 def test_constants_at_the_end_of_their_range_are_accepted():

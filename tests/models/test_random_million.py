@@ -34,6 +34,8 @@ def test_every_random_point_has_numbers_or_a_status(model):
     both = answered & ~np.isnan(harder.indentation)
     assert np.all(harder.indentation[both] >= contact.indentation[both])
     assert np.mean(harder.indentation[both] > contact.indentation[both]) > 0.999999
+    wider = harder.half_angle[both] >= (1 - 1e-12) * contact.half_angle[both]
+    assert np.all(wider) or model.name in {"bartel", "bonded-layer-exact"}
 
 
 @pytest.mark.long

@@ -10,6 +10,7 @@ from ballsocket.planning import HipPlan, Landmarks, cup_orientation, make_plan, 
 from ballsocket.planning.landmarks import read_landmarks
 from ballsocket.problem.cup import Side
 
+from ..refusals import refused_calls
 from . import scans
 
 NAMES, POINTS = scans.pelvis()
@@ -139,32 +140,26 @@ def inwards():
 SPINES, RIM = ["RASIS", "LASIS"], POINTS[3:] - [90.0, 0, 0]
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: oriented(NAMES[1:], POINTS[1:]), "the landmarks lack the right ASIS; the points are left ASIS, pubic"),
-        (lambda: oriented(["a", "b", "c"], POINTS[:3]), "lack the right ASIS, the left ASIS, the pubic symphysis or"),
-        (lambda: oriented([*SPINES, "left tubercle", *NAMES[3:]], POINTS), "the pubic symphysis or both pubic tuberc"),
-        (lambda: oriented(NAMES[:5], POINTS[:5]), "lack the cup's rim: 2 of at least 3 points with names like rim-1"),
-        (lambda: oriented([NAMES[1], NAMES[0], *NAMES[2:]], POINTS), "right ASIS lies to the left of the left one"),
-        (lambda: oriented(NAMES, POINTS * [-1.0, -1.0, 1.0]), "mirrored, or the file is in LPS coordinates where it"),
-        (lambda: oriented(NAMES, POINTS * [1.0, 1.0, -1.0]), "the pubis lies above the spines"),
-        (lambda: oriented(NAMES, changed(2, POINTS[:2].mean(axis=0))), "pubis is .* mm from the line through both"),
-        (lambda: oriented(NAMES, POINTS / 1000.0), r"spines are 0\.2\d* mm apart: 100 to 400 mm are allowed"),
-        (lambda: oriented([*NAMES, "RASIS"], [*POINTS, POINTS[0]]), "2 points are the landmark right_asis"),
-        (lambda: oriented(NAMES[:6], changed(5, 2 * POINTS[4] - POINTS[3])[:6]), "3 points of the rim lie on a line"),
-        (lambda: oriented([*NAMES[:3], *(f"left {n}" for n in NAMES[3:])], POINTS), "90 mm to the right of the middle"),
-        (lambda: oriented(NAMES, np.concatenate([POINTS[:3], RIM])), " mm from the middle of the pelvis: state"),
-        (lambda: oriented(NAMES, POINTS, vertical=(0, 0, -1)), "vertical is 180° from the pelvic plane's up: at most"),
-        (lambda: oriented(NAMES, POINTS, vertical=(0, 0, 0)), "a direction with a length"),
-        (lambda: oriented(NAMES, POINTS, vertical=(0, 0, 1), pelvic_tilt=0.1), "vertical or pelvic_tilt .* got both"),
-        (lambda: oriented(NAMES, POINTS, pelvic_tilt=float("nan")), "at most 60° are allowed"),
-        (inwards, r"inclination is -[23]\d\.\d°: 0 to 90° are allowed, opening downwards and to the r"),
-    ],
+test_impossible_landmarks_are_refused_in_a_sentence = refused_calls(
+    (lambda: oriented(NAMES[1:], POINTS[1:]), "the landmarks lack the right ASIS; the points are left ASIS, pubic"),
+    (lambda: oriented(["a", "b", "c"], POINTS[:3]), "lack the right ASIS, the left ASIS, the pubic symphysis or"),
+    (lambda: oriented([*SPINES, "left tubercle", *NAMES[3:]], POINTS), "the pubic symphysis or both pubic tuberc"),
+    (lambda: oriented(NAMES[:5], POINTS[:5]), "lack the cup's rim: 2 of at least 3 points with names like rim-1"),
+    (lambda: oriented([NAMES[1], NAMES[0], *NAMES[2:]], POINTS), "right ASIS lies to the left of the left one"),
+    (lambda: oriented(NAMES, POINTS * [-1.0, -1.0, 1.0]), "mirrored, or the file is in LPS coordinates where it"),
+    (lambda: oriented(NAMES, POINTS * [1.0, 1.0, -1.0]), "the pubis lies above the spines"),
+    (lambda: oriented(NAMES, changed(2, POINTS[:2].mean(axis=0))), "pubis is .* mm from the line through both"),
+    (lambda: oriented(NAMES, POINTS / 1000.0), r"spines are 0\.2\d* mm apart: 100 to 400 mm are allowed"),
+    (lambda: oriented([*NAMES, "RASIS"], [*POINTS, POINTS[0]]), "2 points are the landmark right_asis"),
+    (lambda: oriented(NAMES[:6], changed(5, 2 * POINTS[4] - POINTS[3])[:6]), "3 points of the rim lie on a line"),
+    (lambda: oriented([*NAMES[:3], *(f"left {n}" for n in NAMES[3:])], POINTS), "90 mm to the right of the middle"),
+    (lambda: oriented(NAMES, np.concatenate([POINTS[:3], RIM])), " mm from the middle of the pelvis: state"),
+    (lambda: oriented(NAMES, POINTS, vertical=(0, 0, -1)), "vertical is 180° from the pelvic plane's up: at most"),
+    (lambda: oriented(NAMES, POINTS, vertical=(0, 0, 0)), "a direction with a length"),
+    (lambda: oriented(NAMES, POINTS, vertical=(0, 0, 1), pelvic_tilt=0.1), "vertical or pelvic_tilt .* got both"),
+    (lambda: oriented(NAMES, POINTS, pelvic_tilt=float("nan")), "at most 60° are allowed"),
+    (inwards, r"inclination is -[23]\d\.\d°: 0 to 90° are allowed, opening downwards and to the r"),
 )
-def test_impossible_landmarks_are_refused_in_a_sentence(call, message):
-    with pytest.raises(ValueError, match=message):
-        call()
 
 
 @pytest.mark.parametrize(

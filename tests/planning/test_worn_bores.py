@@ -1,13 +1,11 @@
 """Wear of a bore from points: a ball that is shifted into a sphere removes a volume of closed form."""
 
-import json
-
 import numpy as np
 import pytest
 
 from ballsocket.planning import PointCloud, measure_wear, read_points
 
-from ..cli.command import run
+from ..cli.command import answer
 from ..extent import some
 from . import scans
 
@@ -107,7 +105,5 @@ def test_points_of_no_bore_are_refused(tmp_path, content, message):
 
 def test_the_command_prints_the_wear_with_its_error(tmp_path):
     (tmp_path / "a.xyz").write_text(PLAIN, encoding="utf-8")
-    worn = json.loads(run("planning", "--worn", "a.xyz", "--head-diameter", "31.6", "--json", folder=tmp_path).stdout)[
-        "worn"
-    ]
+    worn = answer("planning", "--worn", "a.xyz", "--head-diameter", "31.6", folder=tmp_path)["worn"]
     assert abs(worn["volume"] - scans.removed_volume(15.8, 0.25)) < worn["volume_error"]

@@ -1,6 +1,5 @@
 """Calibration of a foundation modulus to a reference."""
 
-import json
 from functools import cache
 
 import numpy as np
@@ -10,7 +9,7 @@ import ballsocket as bs
 from ballsocket.paper.cases import RATIOS, refit_table_3
 from ballsocket.studies.calibration import max_relative_error
 
-from ..cli.command import run
+from ..cli.command import answer, printed
 from ..joints import HIP
 
 
@@ -80,14 +79,13 @@ def test_a_calibration_uses_three_loads_and_the_exact_model_by_default():
 
 def test_the_command_prints_table_and_json(monkeypatch):
     monkeypatch.setattr("ballsocket.cli.identify.refit_table_3", table_3)
-    assert "C1, paper" in run("calibrate").stdout
-    answer = json.loads(run("calibrate", "hip-28", "--force", "1 kN", "--force", "2kN", "--json").stdout)
-    assert answer["force"] == [1000.0, 2000.0]
-    assert answer["constants"][0] == pytest.approx(bs.calibrate(bs.joints["hip-28"], force=[1e3, 2e3]).wanted)
-    family = run("calibrate", "hip-28", "--thickness", "4", "--thickness", "8 mm", "--form", "corrected-vessel")
-    assert "corrected-vessel" in family.stdout
-    assert "did you mean 'polynomial'?" in run("calibrate", "hip-28", "--form", "polynomal").stderr
-    assert len(json.loads(run("calibrate", "--json").stdout)["table_3"]) == 5
+    assert "C1, paper" in printed("calibrate")
+    said = answer("calibrate", "hip-28", "--force", "1 kN", "--force", "2kN")
+    assert said["force"] == [1000.0, 2000.0]
+    assert said["constants"][0] == pytest.approx(bs.calibrate(bs.joints["hip-28"], force=[1e3, 2e3]).wanted)
+    family = printed("calibrate", "hip-28", "--thickness", "4", "--thickness", "8 mm", "--form", "corrected-vessel")
+    assert "corrected-vessel" in family
+    assert len(answer("calibrate")["table_3"]) == 5
 
 
 def test_a_constant_modulus_is_the_mean_over_loads_and_joints():

@@ -17,7 +17,8 @@ from ballsocket.studies.distributions import Rectangular
 from ballsocket.studies.metadata import joint_dimension
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.variance_shares import sensitivity
-from tests.cli.command import run
+
+from ..cli.command import answer, run
 
 SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
 LINER = {"liner": bs.UHMWPE, "backing": (SHELL,)}
@@ -142,8 +143,8 @@ def test_a_study_takes_the_load_and_the_tilt_of_the_joint_file(tmp_path):
 @pytest.mark.long
 def test_maps_off_the_axis_press_along_the_direction_of_the_joint_file(tmp_path):
     (tmp_path / "cup.toml").write_text(TILTED, encoding="utf-8")
-    ranges = ("--x=clearance=0.2..0.3", "--y=force=1..3 kN", "--points=2", "--limit=edge_distance>=1 mm", "--json")
-    mapped = json.loads(run("map", "cup.toml", "--model=sphere", *ranges, folder=tmp_path).stdout)
+    ranges = ("--x=clearance=0.2..0.3", "--y=force=1..3 kN", "--points=2", "--limit=edge_distance>=1 mm")
+    mapped = answer("map", "cup.toml", "--model=sphere", *ranges, folder=tmp_path)
     contacts = bs.Sphere().press(
         UNBACKED.replace(clearance=np.array([[0.2], [0.3]]), head_diameter=28.0),
         force=np.array([1e3, 3e3]),

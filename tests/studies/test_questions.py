@@ -27,7 +27,7 @@ from ballsocket.studies.run import default_model
 from ballsocket.studies.task import OUTCOMES
 from ballsocket.studies.variance_shares import sensitivity
 
-from ..cli.command import answer, run
+from ..cli.command import answer, refusal, run
 from ..extent import either, some
 
 HIP = bs.joints["hess-forsbach"]
@@ -358,9 +358,7 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
     write_study(old, new)
-    refused = run("study", "s.toml", folder=tmp_path)
-    assert (refused.returncode, len(refused.stderr.strip().splitlines())) == (2, 1)
-    assert re.search(message, refused.stderr)
+    assert re.search(message, refusal("study", "s.toml", folder=tmp_path))
     assert not (tmp_path / "out").exists()
 
 
@@ -372,8 +370,8 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     found = run("map", "backed.toml", *ranges, "--json", folder=tmp_path)
     assert json.loads(found.stdout)["model"] == "exact"
     assert "model exact is used, since tabulated is valid for none of these joints" in found.stderr
-    limited = run("map", "backed.toml", *ranges, "--limit", "max_pressure<=1", folder=tmp_path)
-    assert "no point of the map is allowed by max_pressure ≤ 1 MPa, according to exact" in limited.stderr
+    limited = run("map", "backed.toml", *ranges, "--limit", "max_pressure<=1", folder=tmp_path).stderr
+    assert "no point of the map is allowed by max_pressure ≤ 1 MPa, according to exact" in limited
     named = run("map", "backed.toml", *ranges, "--model", "tabulated", folder=tmp_path)
     assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
     best = answer("optimise", "backed.toml", "--vary", "liner_thickness=4,6 mm", folder=tmp_path)
@@ -410,30 +408,6 @@ def test_maps_and_fronts_on_the_command_line(tmp_path):
     assert np.all(np.diff(front["max_pressure"]) < 0)
     loads = ("--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9")
     assert answer("map", "hess-forsbach", *loads, folder=tmp_path)["limits"] == ["area ≤ 500 mm²"]
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("map L --x 'ball_radius=23..11 mm' --figure map.gif", "must end in"),
-        ("map hess-forsbach", "a load is needed"),
-        ("map L --x 'force=1..4 kN'", "force varies, and a load is given too"),
-        ("optimise L --vary 'ball_radius=23..11 mm'", "a range goes upwards"),
-        ("optimise L --vary clearance=0.05..0.1 --vary clearance=0.1..0.2", "clearance is given twice"),
-        ("optimise L --vary liner=pon,UHMWPE", "liner material 'pon' is not known; did you mean 'pom'?"),
-        ("sensitivity L --spread clearance=much", "is not a range"),
-        ("sensitivity L S --correlation clearance=0.5", "'clearance=0.5' is not a correlation"),
-        ("sensitivity L S --correlation 'clearance, force = 0.5'", "'force' among the correlated parameters is not"),
-        ("sensitivity L S --of pressure", "'pressure' among the quantities is not known"),
-        ("sensitivity L S --csv all.txt", "'all.txt' must end in .csv"),
-        ("sensitivity L S --seed -1", "seed = -1 is not allowed"),
-    ],
-)
-def test_wrong_questions_are_one_sentence_on_the_command_line(tmp_path, words, message):
-    words = words.replace(" L", " hess-forsbach --force '3 kN'").replace(" S", f" {SPREAD}")
-    refused = run(*shlex.split(words), folder=tmp_path)
-    assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr
-    assert refused.stderr.count("\n") == 1
 
 
 def test_sensitivities_in_csv_and_json(tmp_path):

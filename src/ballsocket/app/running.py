@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -12,7 +13,8 @@ from typing import Any
 from ..core.executors.processes import available_cores, exit_with_parent, limit_threads
 from ..core.validity import OutsideDomainError
 
-MAX_SECONDS = 60.0  # seconds that a run may take
+MAX_SECONDS = 60.0  # processor time of a run in s
+MAX_WAITING_SECONDS = 600.0  # longer than its processor time that a run may take: on a busy machine it waits
 MAX_MEMORY = 4_000_000_000  # bytes that its process may ask for
 Report = Callable[[Any], None]  # callback for intermediate results, as plain values
 Work = Callable[[Report], Any]  # function that a process runs; it, its result and its reports must be picklable
@@ -67,7 +69,7 @@ class RunFinished:
 
 @dataclass(eq=False)
 class Run:
-    """Run of some work, at most `longest` seconds; poll `news`, which first waits in the queue."""
+    """Run of some work, at most `longest` seconds of processor time; poll `news`, which first waits in the queue."""
 
     work: Work
     longest: float = MAX_SECONDS
@@ -94,9 +96,13 @@ class Run:
             if isinstance(message, RunFinished | RunRefused):
                 self.stop()
             return message
-        if time.monotonic() - self._start > self.longest:
+        taken = time.monotonic() - self._start
+        if taken > self.longest and processor_seconds(self._process.pid) > self.longest:
             self.stop()
-            return RunRefused(why=f"stopped after {self.longest:g} s, the time limit of a run")
+            return RunRefused(why=f"stopped after {self.longest:g} s of processor time, the limit of a run")
+        if taken > self.longest + MAX_WAITING_SECONDS:
+            self.stop()
+            return RunRefused(why=f"stopped after {taken:.0f} s without a result")
         return None
 
     def _begin(self) -> None:
@@ -116,6 +122,19 @@ class Run:
             self._process.join()
         if self._pipe is not None:
             self._pipe.close()
+
+
+def processor_seconds(pid: int) -> float:
+    """Processor time in s of a process and of its children, ended ones included; 0 for a process that has ended."""
+    import psutil
+
+    total = 0.0
+    with suppress(psutil.Error):
+        worker = psutil.Process(pid)
+        for process in (worker, *worker.children(recursive=True)):
+            times = process.cpu_times()
+            total += times.user + times.system + times.children_user + times.children_system
+    return total
 
 
 def _run(pipe: Connection, work: Work) -> None:

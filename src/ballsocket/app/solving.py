@@ -18,7 +18,7 @@ from ..problem.cup import Cup
 from .jobs import Job
 from .running import Report, RunRefused
 
-PRESS_SECONDS = 20.0  # seconds that the presses of one joint may take
+PRESS_SECONDS = 20.0  # processor time in s of the presses of one joint
 _MAX_SOLVED = 256
 
 Key = tuple[Joint, Cup, tuple[tuple[str, Any], ...], str]

@@ -9,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.deck import SphericalBlock, TiltedDeck, run
 
-from ...cli.command import run as command
+from ...cli.command import printed
 from ..calculix import needs_ccx
 from .shapes import lined
 
@@ -52,15 +52,12 @@ def test_calculix_gives_the_same_forces_in_three_dimensions(tmp_path):
     assert np.linalg.norm(np.subtract(sphere, calculix)) < 3e-3 * np.linalg.norm(calculix)
 
 
-def test_command_writes_a_tilted_deck_or_needs_an_indentation(tmp_path):
+def test_the_command_writes_a_tilted_deck(tmp_path):
     load = ("--tilt", "45", "--indentation", "40 um", "--element-size", "4 mm")
-    assert command("deck", "hip-36", *load, "--out", str(tmp_path)).returncode == 0
+    printed("deck", "hip-36", *load, "--out", str(tmp_path))
     text = (tmp_path / "ballsocket.inp").read_text("ascii")
     assert max(map(len, text.splitlines())) <= 132
     assert "*ELEMENT, TYPE=C3D15" in text
-    process = command("deck", "hip-36", "--tilt", "45", "--force", "3kN", "--out", str(tmp_path))
-    assert process.returncode == 2
-    assert "give an indentation" in process.stderr
 
 
 def test_bricks_and_wedges_share_nodes_and_have_positive_volume():

@@ -52,7 +52,7 @@ _INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuest
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
 _NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 _HIP, _QUESTION = "hip.toml", "question.toml"
-EVIDENCE_SECONDS = 600.0  # seconds that a pack may take
+EVIDENCE_SECONDS = 600.0  # processor time of a pack in s
 _WORST_CASE_STEPS = 6  # approximate steps of the worst cases
 
 

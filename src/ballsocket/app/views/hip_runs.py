@@ -184,7 +184,7 @@ def _frames(hip: HipSimulation, fields: numpy.ndarray, highest: float) -> Frames
     return Frames(cells=cells, highest=highest)
 
 
-WEAR_SECONDS = 300.0  # seconds that a run of wear may take
+WEAR_SECONDS = 300.0  # processor time in s of a run of wear
 _REPORTS = 10
 _PATIENTS = 64
 
