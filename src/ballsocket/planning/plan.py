@@ -236,7 +236,8 @@ def make_plan(
 
 def _rounded(cup: Cup) -> Cup:
     names = ("arc_of_cover", "inclination", "anteversion") if cup.oriented else ("arc_of_cover",)
-    return replace(cup, **{name: radians(round(degrees(getattr(cup, name)), 3)) for name in names})
+    rounded: Any = {name: radians(round(degrees(getattr(cup, name)), 3)) for name in names}
+    return replace(cup, **rounded)
 
 
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
