@@ -10,7 +10,6 @@ from math import nan
 from typing import Any
 
 from ...comparison import relative_deviation
-from ...core.checks import check_names
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED
 from ...files.joint_file import JointFile
@@ -47,11 +46,8 @@ def _beside(screen: Screen) -> Control:
     compared = [(_AS_COMPARED, f"{screen.beside[0].joint.name or 'a joint'}, {_AS_COMPARED}")] if screen.beside else []
     options = [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *joints]
 
-    def read(value: Any) -> Changes:
-        if value in present:
-            return {"beside": present[value]}
-        check_names([value], joints, "as design")
-        return {"beside": (replace(screen.file, joint=joints[value]),)}
+    def read(name: str) -> Changes:
+        return {"beside": present[name] if name in present else (replace(screen.file, joint=joints[name]),)}
 
     return Control(choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE), read)
 
