@@ -182,8 +182,8 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
     rows = []
     for name, base in columns[0].items():
         others = [column[name] for column in columns[1:]]
-        apart = [f" ({percent(float(relative_deviation(value, base)), '+')})" if base else "" for value in others]
-        cells = [number_text(value) + share for value, share in zip(others, apart, strict=True)]
+        apart = [percent(float(relative_deviation(value, base)), "+") if base else "" for value in others]
+        cells = [number_text(value) + f" ({share})" * bool(share) for value, share in zip(others, apart, strict=True)]
         rows.append([name, number_text(base), *cells])
     used = "".join(
         f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"
