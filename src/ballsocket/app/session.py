@@ -162,7 +162,7 @@ class Page:
         """Return the reader of an input or of another event."""
         view = self._views.get(name.partition(".")[0])
         controls = self.controls if view is None else view.named_controls(self.screen)
-        readers: dict[str, Reader] = {**self._actions, **{name: control.read for name, control in controls.items()}}
+        readers: dict[str, Reader] = {**self._actions, **{name: control.take for name, control in controls.items()}}
         check_names([name], readers, "among the inputs")
         return readers[name]
 

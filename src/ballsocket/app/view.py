@@ -83,6 +83,7 @@ class View(ABC):
     def __init__(self, page: Host) -> None:
         self.page, self.channel = page, page.channel
         self.actions: dict[str, Reader] = {}
+        self._cancel: Callable[[], None] = lambda: None
 
     @abstractmethod
     def show(self, screen: Screen) -> None:
@@ -108,6 +109,11 @@ class View(ABC):
     def expect(self, *elements: str) -> None:
         """Mark elements that show an earlier screen until they are filled."""
         self.channel.expect(f"#{self.name}-{element}" for element in elements)
+
+    def later(self, seconds: float, function: Callable[[], None]) -> None:
+        """Call a function later, in place of the last one that still waits."""
+        self._cancel()
+        self._cancel = self.page.later(seconds, function)
 
     def compute(self, work: Callable[[], T], show: Callable[[T], None]) -> None:
         """Run some work in a thread and show its result, unless the screen has changed."""

@@ -1,16 +1,18 @@
+// @ts-check
 // What lies under the pointer in a chart: the nearest point of a curve, with its numbers.
 import { digits, lines, part, pointIn } from "./svg.js";
 
+/** @param {any} curve  @returns {[number, number][]} */
 function points(curve) {
-  if (!curve.points) curve.points = [...curve.getAttribute("d").matchAll(/([-\d.]+),([-\d.]+)/g)].map((one) => [+one[1], +one[2]]);
-  return curve.points;
+  const pairs = curve.getAttribute("d").matchAll(/([-\d.]+),([-\d.]+)/g);
+  return (curve.points ??= [...pairs].map((pair) => [+pair[1], +pair[2]]));
 }
 function nearest(chart, x, y) {
   let best = null;
   for (const curve of chart.querySelectorAll("path[data-name]"))
     for (const [px, py] of points(curve)) {
       const far = Math.hypot(px - x, py - y);
-      if (far < 18 && (!best || far < best.far)) best = { far, x: px, y: py, name: curve.dataset.name };
+      if (far < 18 && (!best || far < best.far)) best = { far, x: px, y: py, name: curve.getAttribute("data-name") };
     }
   return best;
 }
@@ -23,7 +25,7 @@ function tipLines(chart, found) {
 function over(event) {
   for (const old of document.querySelectorAll(".tip")) old.remove();
   const path = event.composedPath();
-  const chart = path.find((one) => one.dataset && one.dataset.box);
+  const chart = /** @type {any} */ (path.find((one) => /** @type {any} */ (one).dataset?.box));
   if (!chart) return;
   const place = pointIn(chart, event);
   const found = nearest(chart, place.x, place.y);

@@ -1,16 +1,27 @@
+// @ts-check
 // The connection to the server: one request at a time, one pending edit per field, and a new start after every loss.
 const SLOW = 100; // ms after the oldest request without an answer, until the answers are marked as updating
 const TICK = 100, PING = 400, SILENT = 2000, DEAD = 10000, HANDSHAKE = 4000, MAX_PAUSE = 3000; // ms
+/**
+ * @typedef {{key: string, since: number, gesture?: any, n?: number, words: Record<string, any>}} Request
+ * @typedef {Record<string, any>} Message
+ */
 const page = document.body;
+/** @type {Set<(message: Message, request: Request | null) => void>} */
 const handlers = new Set();
+/** @type {Map<string, Request>} */
 const pending = new Map(); // by action and name: the latest request that has not been sent
-let socket, open = false, current = null, number = 0, question = -1;
+/** @type {WebSocket | null} */
+let socket = null;
+/** @type {Request | null} */
+let current = null; // the request that the server is to answer
+let open = false, number = 0, question = -1;
 let pause = TICK, started = 0, pinged = 0, heard = 0, slow = 0, presses = 0, pressed = false;
 
 addEventListener("pointerdown", () => { pressed = true; presses += 1; }, true);
 for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => { pressed = false; }, true);
 
-/** Ask the server for something; a later request of the same action and name replaces one that has not been sent. */
+/** Ask the server; a later request of the same action and name replaces one that waits. @param {any} value */
 export function ask(action, name = "", value = "", more = {}) {
   const key = `${action} ${name}`;
   const since = (pending.get(key) || { since: performance.now() }).since;
@@ -42,7 +53,8 @@ function submit(request) {
 }
 function mark() {
   clearTimeout(slow);
-  const left = Math.min(...[current, ...pending.values()].filter(Boolean).map((request) => request.since)) + SLOW - performance.now();
+  const oldest = Math.min(...[current, ...pending.values()].filter(Boolean).map((request) => request.since));
+  const left = oldest + SLOW - performance.now();
   if (left > 0) delete page.dataset.updating;
   else page.dataset.updating = "yes";
   if (left > 0 && left <= SLOW) slow = setTimeout(mark, left);
@@ -86,7 +98,8 @@ function reconnect() {
   if (current && current.key !== "start" && !pending.has(current.key)) {
     const rest = [...pending];
     pending.clear();
-    for (const [key, request] of [[current.key, current], ...rest]) pending.set(key, request);
+    pending.set(current.key, current);
+    for (const [key, request] of rest) pending.set(key, request);
   }
   clearTimeout(slow);
   current = null;

@@ -1,20 +1,25 @@
+// @ts-check
 // Named designs: names and links that this browser keeps for all its windows.
 import { ask, listen } from "./connection.js";
 import { element, known } from "./fields.js";
 import { visit } from "./history.js";
 import { tell } from "./page.js";
+import { hit } from "./svg.js";
 
 const KEY = "ballsocket.designs", MAX = 50;
+/** @typedef {{id: string, name: string, link: string, time: number, removed?: boolean}} Design */
 const at = (id) => document.getElementById(id);
 const chosen = new Set(); // designs that are ticked for a comparison
 let current = history.state?.design ?? null; // the design that the address belongs to, if it is kept
+/** @type {Design | null} */
 let removed = null; // the design that can be restored
 
-/** Return every record {id, name, link, time, removed} of this browser, by id. */
+/** Return every record of this browser, by id. @returns {Map<string, Design>} */
 function stored() {
   try {
     const records = JSON.parse(localStorage.getItem(KEY) || "[]");
-    return new Map(records.filter(({ id, link }) => typeof id === "string" && typeof link === "string").map((one) => [one.id, one]));
+    const valid = records.filter(({ id, link }) => typeof id === "string" && typeof link === "string");
+    return new Map(valid.map((record) => [record.id, record]));
   } catch {
     return new Map();
   }
@@ -22,7 +27,7 @@ function stored() {
 const kept = () => [...stored().values()].filter((design) => !design.removed);
 const plain = (link) => link.replace(/(^|&)theme=\w+/, "").replace(/^&/, "");
 
-/** Add records to those of all windows: of two with one id the later counts. */
+/** Add records to those of all windows: of two with one id the later counts. @param {Design[]} records */
 function write(...records) {
   const designs = stored();
   for (const record of records)
@@ -106,8 +111,8 @@ function render() {
   }));
   if (removed) at("design-list").append(element("li", {},
     element("button", { type: "button", class: "plain", "data-design": "restore" }, `Restore ${removed.name}`)));
-  document.querySelector("[data-design=keep]").hidden = stored().has(current);
-  document.querySelector("[data-design=remove]").disabled = !stored().has(current);
+  document.querySelector("[data-design=keep]").toggleAttribute("hidden", stored().has(current));
+  document.querySelector("[data-design=remove]").toggleAttribute("disabled", !stored().has(current));
 }
 /** Note in the history which design an address belongs to, so that Back returns to the design too. */
 function mark() {
@@ -128,13 +133,14 @@ listen((message, request) => {
   }
   if (!message.link && !message["=name"]) return;
   const link = plain(location.search.slice(1)), design = stored().get(current);
-  if (design && (design.link !== link || design.name !== name())) write({ ...design, link, name: name(), time: Date.now() });
+  const changed = design && (design.link !== link || design.name !== name());
+  if (changed) write({ ...design, link, name: name(), time: Date.now() });
   else if (!design && request?.words.name === "name") add(name(), link);
   document.title = `${name()} – ballsocket`;
   mark();
 });
 document.addEventListener("click", (event) => {
-  const button = event.target.closest("[data-design]");
+  const button = hit(event, "[data-design]");
   if (button) actions[button.dataset.design]();
 });
 addEventListener("popstate", () => { current = history.state?.design ?? null; });

@@ -1,9 +1,11 @@
+// @ts-check
 // Handles of the drawing: what is dragged, or moved by the arrow keys, is the number of an input.
 import { pendingValue } from "./connection.js";
 import { known, move } from "./fields.js";
-import { pointIn } from "./svg.js";
+import { STEPS, hit, pointIn } from "./svg.js";
 
 let held = null, latest = null;
+/** @returns {any} */
 const drawing = () => document.querySelector("#press-section svg");
 
 function place(event) {
@@ -32,17 +34,19 @@ function follow() {
 function hold() {
   const svg = drawing();
   if (!svg || !svg.dataset.centre) return;
-  const [x, y] = svg.dataset.centre.split(" ").map(Number), [, , wide, high] = (svg.box ||= svg.getAttribute("viewBox").split(" ").map(Number));
+  const numbers = (text) => text.split(" ").map(Number), [x, y] = numbers(svg.dataset.centre);
+  const [, , wide, high] = (svg.box ||= numbers(svg.getAttribute("viewBox")));
   const zoom = held ? svg.dataset.scale / held.start.svg.scale : 1;
   svg.setAttribute("viewBox", [x - zoom * x, y - zoom * y, zoom * wide, zoom * high].join(" "));
 }
 document.addEventListener("shown", hold);
 document.addEventListener("pointerdown", (event) => {
-  const handle = event.target.closest?.("[data-drag]");
-  if (!handle || document.getElementById("inputs").disabled) return;
+  const handle = hit(event, "[data-drag]");
+  if (!handle || document.querySelector("#inputs:disabled")) return;
   const { drag: name, how } = handle.dataset;
   const angle = (known("tilt").value / known("tilt").factor) * (Math.PI / 180);
-  held = { name, angle, kind: how === "arrow" ? name : how, start: { ...place(event), svg: { ...drawing().dataset } }, value: known(name).value };
+  const start = { ...place(event), svg: { ...drawing().dataset } };
+  held = { name, angle, kind: how === "arrow" ? name : how, start, value: known(name).value };
   document.documentElement.classList.add("dragging");
   event.preventDefault();
   handle.focus();
@@ -60,8 +64,8 @@ for (const end of ["pointerup", "pointercancel"])
     hold();
   });
 document.addEventListener("keydown", (event) => {
-  const handle = event.target.closest?.("[data-drag]");
-  const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
+  const handle = hit(event, "[data-drag]");
+  const steps = STEPS[event.key];
   if (!handle || !steps) return;
   const { drag: name } = handle.dataset, { value, step } = known(name), pending = Number(pendingValue(name) ?? value);
   move(name, (Number.isNaN(pending) ? value : pending) + steps * step); // quick keys add up before they are answered

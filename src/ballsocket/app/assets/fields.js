@@ -1,12 +1,19 @@
+// @ts-check
 // Inputs made of plain data: each asks for its change, and shows what the server says of it.
 import { ask, listen, pendingValue } from "./connection.js";
 import { limits } from "./limits.js";
 
+/**
+ * @typedef {Record<string, any>} Field
+ * @typedef {{node: HTMLElement, show: (field: Field) => void, field?: Field, units?: Record<string, string>}} Input
+ * @type {Map<string, Input>}
+ */
 const inputs = new Map(); // by name: the element, what the server said last, and how to show it
 const typed = new Set(); // boxes with text that nobody has confirmed yet
 const stale = new Set(); // inputs that show an edit, until the server has answered it
 const UNITS = ["units", "size", "angle"]; // choices that change what a number means
 
+/** @param {string} tag  @param {Record<string, any>} attributes  @param {(string | Node)[]} content  @returns {any} */
 export function element(tag, attributes = {}, ...content) {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
@@ -18,6 +25,7 @@ function edit(name, value) {
   ask("edit", name, value, { units: inputs.get(name).units }); // another choice of units may be on its way
 }
 const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
+/** @param {number} value  @param {Field} field */
 const within = (value, { low, high }) => Math.min(high, Math.max(low, value));
 
 /** Add a place for the refusal of typed text, which stays in its box; return what shows a sentence there. */
@@ -45,10 +53,12 @@ function number(name) {
   const label = element("label", { for: `in-${name}`, id: `label-${name}` });
   const unit = element("span", { class: "unit", id: `unit-${name}` });
   const names = { "aria-labelledby": `label-${name} unit-${name}` };
-  const box = element("input", { id: `in-${name}`, type: "text", inputmode: "decimal", autocomplete: "off", maxlength: 100, ...names });
+  const typing = { type: "text", inputmode: "decimal", autocomplete: "off", maxlength: 100 };
+  const box = element("input", { id: `in-${name}`, ...typing, ...names });
   const sizes = element("datalist", { id: `sizes-${name}` });
   const bar = element("input", { type: "range", step: "any", tabindex: -1, ...names });
-  const node = element("div", { class: "field number" }, label, element("span", { class: "box" }, box, unit), bar, sizes);
+  const boxed = element("span", { class: "box" }, box, unit);
+  const node = element("div", { class: "field number" }, label, boxed, bar, sizes);
   const showError = errorBelow(node, box, name);
   let field;
   function set(value) {
@@ -229,12 +239,15 @@ document.addEventListener("shown", () => {
 export function arrange(names) {
   const home = document.getElementById("controls");
   const nodes = names.map((name) => inputs.get(name).node);
-  for (const child of [...home.children]) { // those that stay are not moved: one of them may have the focus
+  // those that stay are not moved: one of them may have the focus
+  for (const child of /** @type {HTMLElement[]} */ ([...home.children])) {
     if (nodes.includes(child)) continue;
     typed.delete(child.dataset.name);
     child.remove();
   }
-  nodes.forEach((node, index) => { if (node !== home.children[index]) home.insertBefore(node, home.children[index] ?? null); });
+  nodes.forEach((node, index) => {
+    if (node !== home.children[index]) home.insertBefore(node, home.children[index] ?? null);
+  });
 }
 export const known = (name) => (inputs.get(name) || {}).field;
 /** Ask for another value of a number, within its range and in its steps. */

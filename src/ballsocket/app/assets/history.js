@@ -1,5 +1,7 @@
+// @ts-check
 // Undo and redo: each settled change of the screen is one entry of the browser's history.
 import { ask, isPending, listen, withdraw } from "./connection.js";
+import { hit } from "./svg.js";
 
 const SETTLED = 600; // ms after the last change by the same input
 let last = { gesture: null, time: 0 };
@@ -34,7 +36,7 @@ function reopen() {
 listen((message, request) => { if (message.link) record(message.link, request); });
 addEventListener("popstate", reopen);
 addEventListener("keydown", (event) => {
-  const key = event.key.toLowerCase(), text = event.target.matches("textarea, input[type=text]");
+  const key = event.key.toLowerCase(), text = hit(event, "textarea, input[type=text]");
   if (text || !(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key)) return;
   event.preventDefault();
   if (key === "y" || event.shiftKey) redo();

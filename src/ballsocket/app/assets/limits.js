@@ -1,6 +1,8 @@
+// @ts-check
 // Limits as rows: a quantity, at most or at least, a value with its unit, and a button that removes the row.
 import { element } from "./fields.js";
 
+/** @param {string} name  @param {(name: string, rows: string[][]) => void} edit */
 export function limits(name, edit) {
   const title = element("span", { class: "label", id: `label-${name}` });
   const list = element("div", { class: "limit-rows" });
@@ -8,7 +10,8 @@ export function limits(name, edit) {
   const add = element("button", { type: "button", class: "plain" }, "Add a limit");
   const node = element("div", { class: "field", role: "group", "aria-labelledby": title.id }, title, list, add, error);
   let field, focusLast = false;
-  const rows = () => [...list.children].map((row) => [...row.querySelectorAll("select, input")].map((input) => input.value));
+  const inputsOf = (row) => [...row.querySelectorAll("select, input")];
+  const rows = () => [...list.children].map((row) => inputsOf(row).map((input) => input.value));
   const send = (changed) => edit(name, changed);
 
   function addRow() {
@@ -16,7 +19,8 @@ export function limits(name, edit) {
     const sign = element("select", { "aria-label": "kind of limit" });
     const box = element("input", { type: "text", inputmode: "decimal", autocomplete: "off", "aria-label": "value" });
     const remove = element("button", { type: "button", class: "plain", "aria-label": "Remove this limit" }, "×");
-    const row = element("div", {}, quantity, sign, element("span", { class: "box" }, box, element("span", { class: "unit" })), remove);
+    const value = element("span", { class: "box" }, box, element("span", { class: "unit" }));
+    const row = element("div", {}, quantity, sign, value, remove);
     quantity.replaceChildren(...field.options.map(([value, words]) => element("option", { value }, words)));
     sign.replaceChildren(...field.signs.map(([value, words]) => element("option", { value }, words)));
     const index = () => [...list.children].indexOf(row);
@@ -32,7 +36,8 @@ export function limits(name, edit) {
     list.append(row);
   }
   add.addEventListener("click", () => {
-    const used = rows().map((row) => row[0]), unused = field.options.find(([value]) => !used.includes(value)) || field.options[0];
+    const used = rows().map((row) => row[0]);
+    const unused = field.options.find(([value]) => !used.includes(value)) || field.options[0];
     focusLast = true;
     send([...rows(), [unused[0], field.signs[0][0], ""]]);
   });
@@ -44,7 +49,7 @@ export function limits(name, edit) {
     while (list.children.length > shown.length) list.lastChild.remove();
     while (list.children.length < shown.length) addRow();
     shown.forEach(([quantity, sign, text], index) => {
-      const [first, second, box] = list.children[index].querySelectorAll("select, input");
+      const [first, second, box] = inputsOf(list.children[index]);
       [first.value, second.value] = [quantity, sign];
       list.children[index].querySelector(".unit").textContent = field.options.find(([value]) => value === quantity)[2];
       if (!box.dataset.typing) box.value = text;

@@ -1,19 +1,24 @@
+// @ts-check
 // The page: what the server answers is shown, and what a server cannot do: clipboard, files, the theme, news.
 import { ask, listen } from "./connection.js";
 import { arrange, showField } from "./fields.js";
 import { record, redo, theme, undo } from "./history.js";
+import { hit } from "./svg.js";
 
 const LARGEST = 100000; // bytes of a joint file or a table; the server has the same limit
 const NEWS = 6000; // ms for which a sentence is shown
 const LOST = "Connection lost. These numbers may not belong to the inputs; reconnecting …";
-const page = document.body, at = (id) => document.getElementById(id);
+const page = document.body;
+/** @param {string} id  @returns {any} */
+const at = (id) => document.getElementById(id);
 const filled = new Set(); // elements that the server has filled
 let news = 0;
 const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
 // no link holds a table: it is sent again after a lost connection and after a reload, but not to another link
-let table = performance.getEntriesByType("navigation")[0].type === "reload" ? JSON.parse(sessionStorage.getItem(TABLE)) : null;
+const [navigation] = /** @type {PerformanceNavigationTiming[]} */ (performance.getEntriesByType("navigation"));
+let table = navigation.type === "reload" ? JSON.parse(sessionStorage.getItem(TABLE)) : null;
 
-/** Show a sentence for some seconds. */
+/** Show a sentence for some seconds. @param {string} words */
 export function tell(words) {
   at("news").textContent = words;
   clearTimeout(news);
@@ -28,8 +33,9 @@ listen((message, request) => {
   if (message.order) arrange(message.order);
   if (message.view) showView(message.view);
   if (message.file) save(message.file);
+  const expected = message.expected || [];
   if (message.fresh || "expected" in message)
-    for (const name of filled) at(name.slice(1)).toggleAttribute("data-expected", (message.expected || []).includes(name));
+    for (const name of filled) at(name.slice(1)).toggleAttribute("data-expected", expected.includes(name));
   at("inputs").disabled = false;
   if (request) page.dataset.shown = page.dataset.view;
   if (table && table.cycle !== cycle()) { // another cycle was chosen since
@@ -44,15 +50,16 @@ function fill(name, html) {
   const element = at(name.slice(1));
   if (!element) return;
   filled.add(name);
-  const handle = element.contains(document.activeElement) ? document.activeElement.dataset.drag : null;
+  const handle = element.contains(document.activeElement) ? document.activeElement.getAttribute("data-drag") : null;
   element.innerHTML = html;
   const again = handle && element.querySelector(`[tabindex][data-drag="${handle}"]`);
   if (again) again.focus(); // a handle that is moved by keys is a new one after each answer
 }
 function showView(name) {
   page.dataset.view = name;
-  for (const section of document.querySelectorAll("section.view")) section.hidden = section.dataset.view !== name;
-  for (const button of document.querySelectorAll("button[data-view]"))
+  const every = (selector) => /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector));
+  for (const section of every("section.view")) section.hidden = section.dataset.view !== name;
+  for (const button of every("button[data-view]"))
     if (button.dataset.view === name) {
       button.setAttribute("aria-current", "page");
       button.scrollIntoView({ inline: "center", block: "nearest" }); // the views scroll sideways on a telephone
@@ -85,6 +92,18 @@ function sendTable() {
   table.lost = false;
   ask("edit", table.name, table.value);
 }
+/** Show each table that is wider than its place as blocks, in which the numbers have the headings of their columns. */
+function fitTables() {
+  for (const place of document.querySelectorAll(".wide")) {
+    place.classList.remove("cards");
+    if (place.scrollWidth <= place.clientWidth) continue;
+    const [top, ...rows] = place.querySelector("table").rows;
+    const heads = [...top.cells].map((cell) => cell.firstChild?.textContent);
+    for (const row of rows)
+      for (const cell of [...row.cells].slice(1)) if (cell.colSpan === 1) cell.dataset.head = heads[cell.cellIndex];
+    place.classList.add("cards");
+  }
+}
 function setTheme(name) {
   page.classList.remove("light", "dark");
   page.classList.add(name);
@@ -99,12 +118,13 @@ at("theme").addEventListener("click", () => {
 at("undo").addEventListener("click", undo);
 at("redo").addEventListener("click", redo);
 at("share").addEventListener("click", () => {
-  navigator.clipboard?.writeText(location.href).then(() => tell("copied"), () => tell(location.href)) ?? tell(location.href);
+  const show = () => tell(location.href);
+  navigator.clipboard?.writeText(location.href).then(() => tell("copied"), show) ?? show();
 });
 at("joint-file").addEventListener("change", (event) =>
   read(event.target, (name, text) => ask("upload", "", "", { file: name, text })));
 document.addEventListener("change", (event) => {
-  const input = event.target.closest("input[data-tell-file]");
+  const input = hit(event, "input[data-tell-file]");
   if (input) read(input, (name, text) => {
     table = { name: input.dataset.tellFile, value: { name, size: text.length, text }, cycle: cycle() };
     sessionStorage.setItem(TABLE, JSON.stringify(table));
@@ -112,7 +132,7 @@ document.addEventListener("change", (event) => {
   });
 });
 document.addEventListener("click", (event) => {
-  const button = event.target.closest("button");
+  const button = hit(event, "button");
   if (!button) return;
   const { view, file, tell: name, value } = button.dataset;
   if (view) ask("view", "", view);
@@ -121,4 +141,7 @@ document.addEventListener("click", (event) => {
 });
 new MutationObserver(() => { at("lost").textContent = page.dataset.lost ? LOST : ""; })
   .observe(page, { attributeFilter: ["data-lost"] });
-if (innerWidth <= 820) document.querySelector(".side").open = false; // answers first where there is little room
+new ResizeObserver(fitTables).observe(at("view"));
+document.addEventListener("shown", fitTables);
+// answers first where there is little room
+if (innerWidth <= 820) document.querySelector(".side").removeAttribute("open");

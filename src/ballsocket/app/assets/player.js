@@ -1,3 +1,4 @@
+// @ts-check
 // A cycle that is played: one instant of it in all charts, in the numbers and on the bore.
 import { ask } from "./connection.js";
 import { digits, part } from "./svg.js";
@@ -10,11 +11,13 @@ function marker(chart) {
   chart.append(line, spot);
   return { chart, line, spot, box: chart.dataset.box.split(" ").map(Number) };
 }
+/** @param {ReturnType<typeof marker>} marker  @param {number} phase  @param {number | null} value */
 function move({ chart, line, spot, box: [left, top, right, foot] }, phase, value) {
   const x = left + ((right - left) * phase) / chart.dataset.x;
-  for (const [name, place] of [["x1", x], ["x2", x], ["y1", top], ["y2", foot]]) line.setAttribute(name, place);
-  spot.setAttribute("cx", x);
-  spot.setAttribute("cy", value === null ? -99 : foot - ((foot - top) * value) / chart.dataset.y);
+  const ends = { x1: x, x2: x, y1: top, y2: foot };
+  for (const [name, place] of Object.entries(ends)) line.setAttribute(name, String(place));
+  const y = value === null ? -99 : foot - ((foot - top) * value) / chart.dataset.y;
+  for (const [name, place] of Object.entries({ cx: x, cy: y })) spot.setAttribute(name, String(place));
 }
 function begin(player) {
   const find = (selector) => player.querySelector(selector);
@@ -25,7 +28,8 @@ function begin(player) {
     data.courses.forEach((course, number) => move(markers[number], data.phase[instant], course.values[instant]));
     const value = (course) => (course.values[instant] === null ? "–" : digits(course.values[instant]));
     const words = data.courses.map((course) => `${course.name} ${value(course)} ${course.unit}`.trim());
-    output.textContent = `${data.phase[instant].toFixed(1)} % of the cycle: ${words.join(", ")}${data.rim[instant] ? "; ✗ rim contact" : ""}`;
+    const rim = data.rim[instant] ? "; ✗ rim contact" : "";
+    output.textContent = `${data.phase[instant].toFixed(1)} % of the cycle: ${words.join(", ")}${rim}`;
     output.classList.toggle("no", data.rim[instant]);
     bar.setAttribute("aria-valuetext", output.textContent);
     showFrame(find(".viewer"), instant);
@@ -41,7 +45,8 @@ function begin(player) {
     play.textContent = "❚❚ Pause";
     const start = performance.now(), first = instant;
     timer = requestAnimationFrame(function step(now) {
-      const count = data.phase.length, next = (first + Math.max(0, Math.floor(((now - start) / DURATION) * count))) % count;
+      const count = data.phase.length, steps = Math.max(0, Math.floor(((now - start) / DURATION) * count));
+      const next = (first + steps) % count;
       timer = requestAnimationFrame(step);
       if (next === instant) return;
       instant = next;

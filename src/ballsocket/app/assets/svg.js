@@ -1,14 +1,21 @@
+// @ts-check
 // Parts of SVG pictures, and the pointer in their coordinates.
 const SVG = "http://www.w3.org/2000/svg";
+/** Steps of a handle by the key that moves it. */
+export const STEPS = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
+/** @param {string} tag  @param {Record<string, any>} attributes */
 export function part(tag, attributes = {}, words = "") {
   const node = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
   node.textContent = words;
   return node;
 }
-/** Return lines of text, the first at x and y; they end there if `end` is true. */
+/** Return lines of text, the first at x and y; they end there if `end` is true. @param {string[]} words */
 export const lines = (words, x, y, end) => words.map((line, row) =>
   part("text", { x, y: y + 15 * row, "text-anchor": end ? "end" : "start" }, line));
+/** @param {SVGGraphicsElement} picture */
 export const pointIn = (picture, event) =>
   new DOMPoint(event.clientX, event.clientY).matrixTransform(picture.getScreenCTM().inverse());
+/** Return the nearest element at an event or around it that fits a selector. @returns {any} */
+export const hit = (event, selector) => /** @type {Element} */ (event.target).closest?.(selector);
 export const digits = (value, count = 4) => String(Number(value.toPrecision(count)));

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -50,7 +50,6 @@ class Compare(View):
 
     def __init__(self, page: Host) -> None:
         super().__init__(page)
-        self._cancel_stress: Callable[[], None] = lambda: None
         self.actions |= {"compare.keep": self._keep, "compare.remove": self._remove}
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -59,7 +58,9 @@ class Compare(View):
         added = choice("preset", "Add a preset", [(_CHOOSE, "– choose –"), *joints], _CHOOSE)
         options = [(str(index), name) for index, name in enumerate(files)]
         return [
-            Control(added, lambda value: _with_preset(screen, value)),
+            Control(
+                added, lambda name: with_compared(screen, JointFile(joints[name], screen.file.load)) if name else {}
+            ),
             chosen(screen, "base", "Differences from", options).but(value=str(base)),
         ]
 
@@ -88,10 +89,7 @@ class Compare(View):
         def stressed() -> str:
             return design_table(with_drawings(with_stresses(designs)), base, screen)
 
-        self._cancel_stress()
-        self._cancel_stress = self.page.later(
-            STRESS_PAUSE, partial(self.compute, stressed, lambda table: self.put(table=table))
-        )
+        self.later(STRESS_PAUSE, partial(self.compute, stressed, lambda table: self.put(table=table)))
 
     def document(self, screen: Screen) -> Document:
         files = compared_files(screen)
@@ -122,13 +120,6 @@ def with_compared(screen: Screen, file: JointFile) -> Changes:
     if len(screen.beside) >= MAX_COMPARED:
         raise ValueError(f"{MAX_COMPARED} designs are compared with this one already: remove one of them first")
     return {"beside": (*screen.beside, file)}
-
-
-def _with_preset(screen: Screen, name: Any) -> Changes:
-    if name == _CHOOSE:
-        return {}
-    check_names([name], joints, "as preset")
-    return with_compared(screen, JointFile(joints[name], screen.file.load))
 
 
 def compared_files(screen: Screen) -> dict[str, JointFile]:

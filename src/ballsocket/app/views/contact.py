@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -11,7 +11,6 @@ from weakref import WeakKeyDictionary
 
 from ...comparison import Comparison, successful_contacts
 from ...contact import Contact
-from ...core.checks import shown
 from ...core.quantities import BEARING, FIELD
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
@@ -30,7 +29,7 @@ from ..pressing import fine_curves, is_waiting, press_charts, pressed
 from ..running import Work
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document, Host
-from ..widgets.controls import Changes, Control, chosen, fields_of
+from ..widgets.controls import Control, chosen, fields_of
 from ..widgets.fields import segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
 from .contact_drawing import first_view, frame_of, key
@@ -74,7 +73,6 @@ class Press(LongView):
 
     def __init__(self, page: Host) -> None:
         super().__init__(page)
-        self._cancel_further: Callable[[], None] = lambda: None
         self._real: OffAxisContact | None = None
         self._requested: Hashable = None  # bore for which the real cup was requested
         self.actions["press.run"] = self._request_cup
@@ -85,7 +83,10 @@ class Press(LongView):
         return [
             chosen(screen, "answered_by", "Model", _EVERY).but(hidden=one_model),
             chosen(screen, "painted", "Colours show", _PAINTED.items(), segments),
-            Control(several("shown", "Curves of the models", _EVERY, screen.shown, pieces), _read_shown),
+            Control(
+                several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
+                lambda names: {"shown": tuple(names)},
+            ),
         ]
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -96,14 +97,13 @@ class Press(LongView):
 
     def show(self, screen: Screen) -> None:
         self._real = None
-        self._cancel_further()
         self.expect("charts", "table")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
         if self._needs_cup(screen, comparison):
             self.long.show(screen)
         else:
             self._show_axial(screen, comparison)
-        self._cancel_further = self.page.later(_PAUSE, partial(self._fill, screen))
+        self.later(_PAUSE, partial(self._fill, screen))
 
     def _needs_cup(self, screen: Screen, comparison: Comparison) -> str:
         """Return the reason for the real cup; it solves an axial load near the rim on request."""
@@ -196,7 +196,7 @@ class Press(LongView):
             self.put(charts=_AXIAL_CURVES + charts, table=models_table(_with_real(self._real, comparison), reading))
         else:
             self.put(charts=charts, table=models_table(comparison, reading))
-            self._cancel_further = self.page.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
+            self.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
 
     def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
         by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))
@@ -265,12 +265,6 @@ def _reason(comparison: Comparison, screen: Screen) -> str:
     """Return the reason why the screen needs the real cup, judged by the chosen model or the first with a result."""
     contacts = successful_contacts(comparison)
     return real_cup_reason(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
-
-
-def _read_shown(value: Any) -> Changes:
-    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-        raise ValueError(f"shown = {shown(value)} is not a list of models")
-    return {"shown": tuple(value)}
 
 
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy
 
-from ...core.checks import check_names
 from ...core.quantities import JOINT, QUANTITIES, SHELL
 from ...files.joint_file import JointFile
 from ...reports.figure_files import figure_bytes
@@ -67,11 +66,10 @@ def _axis_control(screen: Screen, which: str) -> Control:
     names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
     axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
 
-    def read(value: Any) -> Changes:
-        check_names([value], AXES, "among the axes of a map")
-        return {"picked": None, which: default_axis(value, present_value(screen.file, value))}
-
-    return Control(choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present), read)
+    return Control(
+        choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present),
+        lambda name: {"picked": None, which: default_axis(name, present_value(screen.file, name))},
+    )
 
 
 def _end_control(screen: Screen, which: str, end: str) -> Control:

@@ -10,7 +10,6 @@ from math import nan
 from typing import Any
 
 from ...comparison import relative_deviation
-from ...core.checks import check_names
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED
 from ...files.joint_file import JointFile
@@ -47,11 +46,8 @@ def _beside(screen: Screen) -> Control:
     compared = [(_AS_COMPARED, f"{screen.beside[0].joint.name or 'a joint'}, {_AS_COMPARED}")] if screen.beside else []
     options = [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *joints]
 
-    def read(value: Any) -> Changes:
-        if value in present:
-            return {"beside": present[value]}
-        check_names([value], joints, "as design")
-        return {"beside": (replace(screen.file, joint=joints[value]),)}
+    def read(name: str) -> Changes:
+        return {"beside": present[name] if name in present else (replace(screen.file, joint=joints[name]),)}
 
     return Control(choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE), read)
 
@@ -186,8 +182,8 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
     rows = []
     for name, base in columns[0].items():
         others = [column[name] for column in columns[1:]]
-        apart = [f" ({percent(float(relative_deviation(value, base)), '+')})" if base else "" for value in others]
-        cells = [number_text(value) + share for value, share in zip(others, apart, strict=True)]
+        apart = [percent(float(relative_deviation(value, base)), "+") if base else "" for value in others]
+        cells = [number_text(value) + f" ({share})" * bool(share) for value, share in zip(others, apart, strict=True)]
         rows.append([name, number_text(base), *cells])
     used = "".join(
         f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"

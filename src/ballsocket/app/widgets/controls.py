@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any
 
-from ...core.checks import shown
+from ...core.checks import check_names, check_text, shown
 from ...core.kinds import Kind, Unit
 from ...core.quantities import QUANTITIES, Quantity
 from ...core.unit_systems import Units
@@ -30,11 +30,22 @@ Reader = Callable[[Any], Changes | None]  # raises ValueError for a value that i
 class Control:
     """Input of the page for one screen: its field, and the reader of its edits.
 
-    `read` returns the changes of the screen; it raises ValueError for a value that is not allowed.
+    `read` returns the changes of the screen; it raises ValueError for a value that is not allowed. It gets options of
+    a choice only.
     """
 
     field: Field
     read: Callable[[Any], Changes]
+
+    def take(self, value: Any) -> Changes:
+        """Return the changes of the screen after an edit; raise ValueError for a value that is not allowed."""
+        name, kind = self.field["name"], self.field["kind"]
+        if kind == "several" and not isinstance(value, list):
+            raise ValueError(f"{name} = {shown(value)} is not a list")
+        if kind in ("choice", "segments", "several"):
+            options = [option for option, _ in self.field["options"]]
+            check_names(value if kind == "several" else [value], options, f"as {name}")
+        return self.read(value)
 
     def but(self, **more: Any) -> Control:
         """Return the input with more entries of its field, such as `hidden`."""
@@ -62,14 +73,8 @@ def chosen(
     screen: Screen, path: str, label: str, options: Options, build: Callable[..., Field] = choice, name: str = ""
 ) -> Control:
     """Return the choice of a word of the screen, named after it."""
-    name = name or path.rpartition(".")[2]
-
-    def read(value: Any) -> Changes:
-        if not isinstance(value, str):
-            raise ValueError(f"{name} = {shown(value)} is not a choice")
-        return changed(screen, path, value)
-
-    return Control(build(name, label, options, attrgetter(path)(screen)), read)
+    field = build(name or path.rpartition(".")[2], label, options, attrgetter(path)(screen))
+    return Control(field, lambda value: changed(screen, path, value))
 
 
 def amount(screen: Screen, path: str, label: str, ends: tuple[float, float], step: float) -> Control:
@@ -83,14 +88,8 @@ def amount(screen: Screen, path: str, label: str, ends: tuple[float, float], ste
 
 def text(screen: Screen, path: str, label: str, rows: int = 1) -> Control:
     """Return the input of a text of the screen, of several rows."""
-    name = path.rpartition(".")[2]
-
-    def read(value: Any) -> Changes:
-        if not isinstance(value, str):
-            raise ValueError(f"{name} = {shown(value)} must be text")
-        return changed(screen, path, value.strip())
-
-    return Control(words(name, label, attrgetter(path)(screen), rows), read)
+    field = words(path.rpartition(".")[2], label, attrgetter(path)(screen), rows)
+    return Control(field, lambda value: changed(screen, path, check_text(label, value).strip()))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from html import escape
 from math import atan2, degrees, inf, isinf, radians, tan
 from typing import Any
 
-from ...core.checks import check_names, check_text, shown
+from ...core.checks import check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
@@ -54,10 +54,12 @@ def joint_controls(screen: Screen) -> list[Control]:
     allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
     return [
         _control(words("name", "Design", joint.name), partial(_with_name, file)),
-        _control(choice("preset", "Start from", presets, preset), partial(_with_preset, file)),
+        _control(
+            choice("preset", "Start from", presets, preset), lambda name: replace(file, joint=joints.get(name, joint))
+        ),
         *_lengths(screen),
         *([] if joint.backing else [_control(solid, partial(_with_solid_socket, file))]),
-        _control(kinds, partial(_with_kind_of_load, screen)),
+        _control(kinds, lambda kind: replace(file, load=same_load(file, screen.answered_by, kind))),
         _number(screen, "load", load, tables["load"][kind_of_load], partial(_edited, file, ("load", kind_of_load))),
         _number(screen, "tilt", _TILT, degrees(file.tilt), partial(_with_tilt, file)),
         _control(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
@@ -165,25 +167,11 @@ def _with_name(file: JointFile, value: Any) -> JointFile:
     return replace(file, joint=file.joint.replace(name=name, source=file.joint.source))
 
 
-def _with_preset(file: JointFile, name: Any) -> JointFile:
-    """Replace the joint by a preset, under the same load in the same cup."""
-    if name == _PRESET:
-        return file
-    check_names([name], joints, "as preset")
-    return replace(file, joint=joints[name])
-
-
 def _with_solid_socket(file: JointFile, value: Any) -> JointFile:
     """Make the liner a solid socket, or one of a third of the radius."""
     if not isinstance(value, bool):
         raise ValueError(f"massive = {shown(value)} must be true or false")
     return _with_length(file, "liner_thickness", inf if value else round(float(file.joint.socket_radius) / 3, 1))
-
-
-def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
-    """State the load as force, indentation or half angle, with the same contact."""
-    check_names([kind], LOADS, "as load")
-    return replace(screen.file, load=same_load(screen.file, screen.answered_by, kind))
 
 
 def _with_tilt(file: JointFile, tilt: float) -> JointFile:
@@ -193,9 +181,7 @@ def _with_tilt(file: JointFile, tilt: float) -> JointFile:
 
 def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
     """Change the material of liner or ball; custom numbers start from those of the previous material."""
-    if not isinstance(chosen, str):
-        raise ValueError(f"{part} = {shown(chosen)} is not a material")
-    if chosen == _RIGID and part == "ball":
+    if chosen == _RIGID:
         return _edited(file, (part,), None)
     if chosen != _CUSTOM:
         return _edited(file, (part,), {"material": chosen})
@@ -217,7 +203,7 @@ def layer_controls(screen: Screen) -> list[Control]:
     listed.append(_control(added, partial(_with_new_layer, file)))
     if file.joint.backing:
         support = file_choice("joint.support", file.joint.support.value, "behind.support")
-        listed.append(_control(support, partial(_with_support, file)))
+        listed.append(_control(support, lambda value: _with_joint(file, support=Support(value))))
     return listed
 
 
@@ -229,7 +215,6 @@ def _with_layer(file: JointFile, index: int, value: Any) -> JointFile:
     if value == _REMOVE:
         del layers[index]
     else:
-        check_names([value], materials, "as material")
         layers[index] = replace(layers[index], material=materials[value])
     return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
 
@@ -237,15 +222,9 @@ def _with_layer(file: JointFile, index: int, value: Any) -> JointFile:
 def _with_new_layer(file: JointFile, value: Any) -> JointFile:
     if value == _NO_CHOICE:
         return file
-    check_names([value], materials, "as material")
     if len(file.joint.backing) >= _MAX_LAYERS:
         raise ValueError(f"{shown(value)} is one layer too many: at most {_MAX_LAYERS}")
     return _with_joint(file, backing=(*file.joint.backing, Layer(thickness=_NEW_THICKNESS, material=materials[value])))
-
-
-def _with_support(file: JointFile, value: Any) -> JointFile:
-    check_names([value], [support.value for support in Support], "as support")
-    return _with_joint(file, support=Support(value))
 
 
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
@@ -279,7 +258,7 @@ def cup_controls(screen: Screen) -> list[Control]:
             _number(screen, name, spec, round(value, 9) + 0.0, edit).but(hidden=hidden)
             for name, spec, value, hidden, edit in numbers
         ),
-        _control(aims, partial(_with_aim, file)),
+        _control(aims, lambda aim: replace(file, aim={} if aim == _BODY else {"tilt": file.tilt})),
         _control(file_choice("cup.side", cup.side.value), partial(_with_cup, file, "side")),
         _control(file_choice("cup.interface", cup.interface.value), partial(_with_cup, file, "interface")),
     ]
@@ -303,12 +282,6 @@ def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
 
 def _with_lean(file: JointFile, name: str, angle: float) -> JointFile:
     return _aimed(file, **{**dict(zip(_LEANS, leaning(file), strict=True)), name: angle})
-
-
-def _with_aim(file: JointFile, value: Any) -> JointFile:
-    """State the direction of the load in the body, or from the cup's axis at the same angle where possible."""
-    check_names([value], _AIMS, "as aim")
-    return replace(file, aim={} if value == _BODY else {"tilt": file.tilt})
 
 
 def _with_cup(file: JointFile, key: str, value: Any) -> JointFile:

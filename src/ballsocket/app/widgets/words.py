@@ -72,7 +72,8 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
     exact = comparison.contacts.get(reference.name)
     rows = "".join(_row(name, contact, exact, reading) for name, contact in comparison.items())
     heads = "".join(
-        f"<th scope='col' title='{escape(CONTACT[name].title)}'>{_head(name, reading)}</th>" for name in HEADLINE
+        f"<th scope='col' title='{escape(quantity.title)}'>{escape(quantity.head(reading.unit(quantity)))}</th>"
+        for quantity in map(CONTACT.__getitem__, HEADLINE)
     )
     missing = "".join(
         f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(HEADLINE) + 1}' class='text'>{escape(why)}</td></tr>"
@@ -85,28 +86,24 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
     )
 
 
-@lru_cache(maxsize=64)
-def _head(name: str, reading: Reading) -> str:
-    return escape(CONTACT[name].head(reading.unit(CONTACT[name])))
-
-
 @lru_cache(maxsize=1024)
 def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
     cells = "".join(_number(name, contact, exact, reading) for name in HEADLINE)
     valid = bool(contact.valid)
-    why = "yes" if valid else f"no: {'; '.join(contact.notes)}"
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
-    return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
+    row = f"<tr class='{kind}'>{head}{cells}<td class='text'>{'yes' if valid else 'no'}</td></tr>"
+    why = f"<tr class='why'><td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td></tr>"
+    return row if valid else row + why
 
 
 def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
-    """Return a table cell with its deviation from the exact result, and its own heading for narrow pages."""
+    """Return a table cell with its deviation from the exact result."""
     value, small = float(reading.values_of(contact, CONTACT[name])), ""
     if exact is not None and exact is not contact:
         share = float(relative_deviation(value, float(reading.values_of(exact, CONTACT[name]))))
         small = f"<small>{escape(percent(share, '+'))}</small>" if share else ""
-    return f"<td data-head='{_head(name, reading)}'>{number_text(value)}{small}</td>"
+    return f"<td>{number_text(value)}{small}</td>"
 
 
 def percent(share: float, sign: str = "") -> str:
