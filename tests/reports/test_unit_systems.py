@@ -5,7 +5,7 @@ import re
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.unit_systems import Units
+from ballsocket.core.unit_systems import Sentence, Units
 from ballsocket.reports import study_plots
 from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.design import Span, grid, sample
@@ -37,6 +37,7 @@ def test_numbers_with_units_in_a_sentence_are_converted(metric, imperial):
 def test_the_name_of_a_joint_stays():
     joint = bs.joints["hip-36"].replace(name="36 mm, 3 kN")
     assert Units.IMPERIAL.sentence(str(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
+    assert Units.IMPERIAL.sentence(Sentence(str(joint))) == Units.IMPERIAL.sentence(str(joint))
     title = describe_calibration(bs.calibrate(joint)).title
     assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(str(joint))
 

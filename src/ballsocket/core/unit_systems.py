@@ -176,6 +176,8 @@ class Sentence(str):
     parts: tuple[Amount | str, ...]
 
     def __new__(cls, template: str, *parts: Amount | str) -> Sentence:
+        if isinstance(template, Sentence) and not parts:
+            return template
         text = template.format(*map(Units.SI._part, parts)) if parts else template
         sentence = super().__new__(cls, text)
         sentence.template, sentence.parts = template, parts

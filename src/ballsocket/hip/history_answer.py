@@ -229,5 +229,5 @@ def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[Sentence]:
         for note in dict.fromkeys((*run.history.notes, *(run.bands.notes if run.bands else ()))):
             holders.setdefault(note, []).append(run.name)
     for note, names in holders.items():
-        written = note if isinstance(note, Sentence) else Sentence(note)
+        written = Sentence(note)
         yield written if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), written)
