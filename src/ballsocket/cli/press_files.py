@@ -12,6 +12,7 @@ import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
+from ..core.storage.atomic_files import check_ending
 from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
@@ -22,8 +23,6 @@ from .root import print_message
 if TYPE_CHECKING:
     from ..studies.derivatives import LocalUncertainty
     from ..studies.distributions import Distribution
-
-_VIEW_FORMAT = ".png"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,8 +46,8 @@ class FigureOptions:
     def check(self) -> None:
         """Raise ValueError for a file format that cannot be written."""
         check_format(self.figure, self.section)
-        if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
-            raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
+        if self.view is not None:
+            check_ending("view", self.view, ".png")
         if self.vtk is not None:
             from ..elasticity.finite_elements.section import check_vtk_path
 
