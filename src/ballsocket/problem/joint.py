@@ -308,10 +308,13 @@ class Joint(OneLine, ByValue):
             parts |= {"name": f"{base}{_VARIED}", "source": ""}
         parts |= {name: value for name, value in changes.items() if name not in LENGTHS}
         old_lengths, shell = self.given_lengths, _shell_thickness(_check_backing(parts["backing"]))
-        if not lengths and len(old_lengths) > 3 and all_true(shell == self.shell):  # the outer one gave the shell
+        keeps_lengths = not lengths and len(old_lengths) > 3 and all_true(shell == self.shell)
+        if keeps_lengths:  # three lengths are enough, the outer one gave the shell
             old_lengths = {name: old for name, old in old_lengths.items() if canonical(name) != "outer_radius"}
         joint: Joint = object.__new__(Joint)
         joint._define(lengths, old_lengths, **parts)
+        if keeps_lengths:
+            set_fields(joint, given=self.given)
         lost = lost_lengths(joint.given, self.given)
         changed = [(name, getattr(self, name), getattr(joint, name)) for name in lost]
         words = [
