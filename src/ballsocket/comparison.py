@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .contact import Contact, Model
-from .contact.describe import UTILISATION, UTILISATION_NOTE, count_text, number_text, values_of
+from .contact.describe import PRESSURE_RATIO, UTILISATION, UTILISATION_NOTE, count_text, number_text, values_of
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
 from .core.display import html_table, load_plot
@@ -113,7 +113,8 @@ class Comparison(Mapping[str, Contact]):
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
         results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
-        gaps = dict.fromkeys([*(quantity.key for quantity in (*CONTACT.values(), UTILISATION)), UTILISATION_NOTE])
+        numbers = (*CONTACT.values(), UTILISATION, PRESSURE_RATIO)
+        gaps = dict.fromkeys([*(quantity.key for quantity in numbers), UTILISATION_NOTE])
         missing = [
             {"model": name, **gaps, "valid": False, "notes": [why], "deviation": None}
             for name, why in self.missing.items()

@@ -111,13 +111,15 @@ def test_control_characters_in_file_names_are_escaped(tmp_path):
     assert done.stdout.endswith("\na\\x1b[31m.csv\n")
 
 
-def test_a_long_message_is_one_line_with_its_beginning_and_its_end():
+def test_a_long_message_is_one_line_with_its_beginning_and_its_end(capsys):
     assert len(run("press", "hip-28", "x" * 3000).stderr) < 700
-    text = root._one_line("begin " + "x " * 1000 + "end")
-    assert text.startswith("begin x x")
+    for message in ("begin " + "x " * 1000 + "end", "x" * 600):
+        root.print_message(message)
+    text, plain = capsys.readouterr().err.splitlines()
+    assert text.startswith("ballsocket: begin x x")
     assert text.endswith("x end")
-    assert (len(text), text.count(" ... ")) == (300 + 5 + 150, 1)
-    assert root._one_line("x" * 600) == "x" * 600
+    assert (len(text), text.count(" ... ")) == (len("ballsocket: ") + 300 + 5 + 150, 1)
+    assert plain == "ballsocket: " + "x" * 600
 
 
 @pytest.mark.long

@@ -42,8 +42,29 @@ def test_a_shell_of_a_preset_takes_its_liner():
     plain = joint_of({"joint": LENGTHS | LINER_WALL, "liner": LINER})
     shelled = varied(plain, {"shell": {"material": "titanium"}, "joint": {"outer_diameter": 52}})
     assert shelled.joint.backing[0].thickness == 1.35
-    with pytest.raises(ValueError, match="the joint has layers behind its liner already"):
-        varied(shelled, {"shell": {"material": "titanium", "thickness": 2}})
+
+
+def test_options_replace_the_shell_of_a_file_and_hold_what_it_gives():
+    outer = {"head_diameter": 28, "clearance": 0.1, "outer_diameter": 52}
+    file = joint_of({"joint": outer, "liner": LINER, "shell": {"material": "titanium", "thickness": 4}})
+    for shell, lengths, thickness, liner in [
+        ({"thickness": 3}, {}, 3.0, 8.9),
+        ({"material": "CoCr"}, {}, 4.0, 7.9),
+        ({"material": "CoCr"}, {"outer_diameter": 50}, 4.0, 6.9),
+        ({"material": "CoCr"}, {"outer_diameter": 50, "liner_thickness": 5}, 5.9, 5.0),
+    ]:
+        joint = varied(file, {"shell": shell, "joint": lengths}).joint
+        assert (joint.backing[0].thickness, joint.liner_thickness) == pytest.approx((thickness, liner), abs=1e-12)
+        assert joint.backing[0].material.name == (
+            "CoCr" if "material" in shell else file.joint.backing[0].material.name
+        )
+    both = {"joint": outer | {"liner_thickness": 6}, "liner": LINER, "shell": {"material": "titanium"}}
+    assert varied(joint_of(both), {"liner": {"material": "POM"}}).joint.given_lengths == both["joint"]
+    with pytest.raises(ValueError, match="another shell would change another length that the joint gives"):
+        varied(joint_of(both), {"shell": {"thickness": 3}})
+    massive = {"joint": LENGTHS | LINER_WALL, "liner": LINER, "backing": [{"material": "titanium", "thickness": "inf"}]}
+    with pytest.raises(ValueError, match="the layer behind the liner is massive"):
+        varied(joint_of(massive), {"shell": {"material": "CoCr", "thickness": 2}})
 
 
 def read_cup(table, *base):

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import ballsocket as bs
 from ballsocket.cli.root import app
 from ballsocket.hip import WEAR_FACTORS, Activity, Archard, Mix, constrained_share, logarithmic
-from ballsocket.hip.config import read_hip
+from ballsocket.hip.config import read_hip, socket_surface
 from ballsocket.hip.rim import RimDistance, mask_edge_loading
 from ballsocket.hip.wear_laws import read_wear_law
 from ballsocket.reports import hip_plots
@@ -53,6 +53,36 @@ def test_a_file_reads_a_cycle_table_next_to_it_and_selects_springs_and_a_named_j
     assert vessel.max_pressure > 1.01 * named.max_pressure
     head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
     assert read(tmp_path, text=f'{head}joint = "hip-28"\n{tail}').use.joint.ball_radius == 14.0
+
+
+JOINT_FILE = """
+[joint]
+head_diameter = 28
+clearance = 0.1
+liner_thickness = 6
+[liner]
+material = "uhmwpe"
+[cup]
+arc_of_cover = "160 deg"
+interface = "sliding"
+inclination = "40 deg"
+[load]
+force = "3 kN"
+tilt = "30 deg"
+"""
+
+
+def test_a_hip_names_what_it_does_not_use_of_a_joint_file_and_keeps_its_cup(tmp_path):
+    (tmp_path / "joint.toml").write_text(JOINT_FILE, encoding="ascii")
+    head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
+    tail = re.sub("arc_of_cover.*", "", tail)
+    use = read(tmp_path, text=f'{head}joint = "joint.toml"\n{tail}').use
+    assert (use.cup.arc_of_cover, use.cup.inclination) == pytest.approx((radians(160), radians(30)))
+    assert use.notes[0] == "force and tilt of the load in the joint file: not used, because the cycle loads the hip"
+    bonded, real = (replace(use, surface=socket_surface(name)) for name in ("shell", "cup"))
+    notes = [str(model.contact_model.validity) for model in (use, bonded, real)]
+    assert ["the liner slides on its backing" in note for note in notes] == [True, True, False]
+    assert read(tmp_path, text=f'{head}joint = "hip-28"\n{tail}').use.notes == use.notes[1:]
 
 
 def test_a_file_states_laws_creep_and_film(tmp_path):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.contact.verdict import Verdict
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import Activity, Archard, HipSimulation, Mix, PatientVariability, in_vivo, population
 from ballsocket.hip.contact_checks import half_angles
@@ -154,3 +155,11 @@ def test_patients_have_their_validity():
     heaviest = int(cohort.values["body_weight"].argmax())
     patient = scatter.patient({"body_weight": cohort.values["body_weight"][heaviest]})
     assert bands.peak_utilisation[heaviest, 0] == pytest.approx(patient.use.unworn_checks[0].utilisation)
+
+
+def test_the_verdict_includes_the_allowable_pressure():
+    liner = replace(bs.UHMWPE, allowable_pressure=5.0)
+    (check,) = use_of(replace(HIP, liner=liner), constant_load(12, force=2000.0)).unworn_checks
+    assert check.utilisation_bar.verdict(high=1.0) is Verdict.KEPT
+    assert check.summary()["pressure_ratio"] == pytest.approx(check.max_pressure / 5.0)
+    assert check.verdict is Verdict.EXCEEDED

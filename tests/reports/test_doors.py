@@ -1,6 +1,7 @@
 """Every door of a result says the same: terminal, page and data have the same numbers, in both systems of units."""
 
 import re
+from dataclasses import replace
 from functools import cache
 from html import unescape
 from io import StringIO
@@ -238,6 +239,16 @@ def printed(answer, units):
     page = "".join(html for _, html in answer_sections(answer, units).values()) + answer_lede(answer, units)
     rows = re.findall(r"<(?:tr|p|li)>(.*?)</(?:tr|p|li)>", page, re.S)
     return terminal.getvalue().splitlines(), [unescape(re.sub(r"<[^>]+>", " ", row)) for row in rows]
+
+
+def test_the_json_of_a_press_has_every_number_of_its_table():
+    liner = replace(bs.UHMWPE, allowable_pressure=20.0)
+    comparison = bs.compare(bs.joints["hip-28"].replace(liner=liner), force=3000.0, models=["exact", "hess-forsbach"])
+    (table,) = describe_press(comparison).tables
+    for row in records(table):
+        data = next(result for result in comparison.summary()["results"] if result["model"] == row["model"])
+        assert {"utilisation", "pressure_ratio"} < row.keys()
+        assert {name: data[name] for name in row} == row
 
 
 @pytest.mark.parametrize("units", Units)

@@ -172,7 +172,7 @@ class PressedJoint:
             result["friction"] = None if contact is None else friction.torques(contact)
         verdict, reason = design_verdict(self.answer)
         further = {
-            "verdict": {"model": self.answer.leading, "verdict": verdict.word, "reason": reason},
+            "design_verdict": {"model": self.answer.leading, "verdict": verdict.word, "reason": reason},
             "assumptions": list(self.answer.assumptions),
             "preload": {} if wear_depth is None else {"wear_depth_to_loosen": wear_depth},
             "orientation": self.orientation,
@@ -187,7 +187,7 @@ def _strength_summary(contact: Contact | None) -> dict[str, Any]:
         return {}
     strength, bar = assess_strength(contact), map(to_list, error_bar(contact, "utilisation")[1:])
     ends = dict(zip(("utilisation_low", "utilisation_high"), bar, strict=True))
-    return {**ends, "verdict": strength.verdict.word, "verdict_reason": strength.words}
+    return {**ends, "strength_verdict": strength.verdict.word, "strength_reason": strength.words}
 
 
 @app.command()

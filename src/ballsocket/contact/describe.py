@@ -41,11 +41,17 @@ def quantities_of(joint: Joint) -> tuple[Quantity, ...]:
 
 def number_of(contact: Any, quantity: Quantity) -> float:
     """Return a quantity of a single contact in internal units; NaN without a result or a strength."""
-    if quantity is not PRESSURE_RATIO:
-        return float(getattr(contact, quantity.name))
-    materials = [material for material in (contact.joint.liner, contact.joint.ball) if material is not None]
-    allowed = [material.allowable_pressure for material in materials if material.allowable_pressure is not None]
-    return max((float(contact.max_pressure / pressure) for pressure in allowed), default=nan)
+    return float(pressure_ratio(contact) if quantity is PRESSURE_RATIO else getattr(contact, quantity.name))
+
+
+def pressure_ratio(contact: Any) -> Array:
+    """Compute `PRESSURE_RATIO` of a contact; NaN without an allowable pressure."""
+    ratio = nan * contact.max_pressure
+    for material in (contact.joint.liner, contact.joint.ball):
+        if material is not None and material.allowable_pressure is not None:
+            other = contact.max_pressure / material.allowable_pressure
+            ratio = arrays.where(ratio > other, ratio, other)
+    return ratio
 
 
 def values_of(contact: Any, quantity: Quantity, unit: Unit | None = None) -> Array:
@@ -63,6 +69,7 @@ def to_summary(contact: Any) -> dict[str, Any]:
     strength = {
         UTILISATION.key: arrays.to_list(values_of(contact, UTILISATION)),
         UTILISATION_NOTE: contact.utilisation_note or None,
+        PRESSURE_RATIO.key: arrays.to_list(pressure_ratio(contact)),
     }
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **strength, "valid": valid, "notes": list(contact.notes)}

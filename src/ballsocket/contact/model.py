@@ -259,6 +259,24 @@ class ModelWrapper(_Delegation, Model):
         return self.model._law(joint)
 
 
+def bonded_liner(cup: Cup) -> tuple[Range, ...]:
+    """Return the range of validity of a model whose liner is bonded to its backing: empty if it slides in the cup."""
+    why = "the liner slides on its backing, but this model takes it as bonded: use fem, sphere, or in hips the cup"
+    return (NeverValid(why=why),) if cup.interface is Interface.SLIDING else ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class BondedLiner(ModelWrapper):
+    """Model of a bonded liner in a cup, without limits by its rim."""
+
+    cup: Cup
+
+    @property
+    def validity(self) -> tuple[Range, ...]:
+        """Ranges of validity of the wrapped model, plus a bonded liner."""
+        return (*self.model.validity, *bonded_liner(self.cup))
+
+
 @dataclass(frozen=True, kw_only=True)
 class RimLimited(ModelWrapper):
     """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
@@ -281,10 +299,7 @@ class RimLimited(ModelWrapper):
             low=1.0,
             why=_RIM,
         )
-        sliding_liner = NeverValid(
-            why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
-        )
-        return (*self.model.validity, rim_range, *((sliding_liner,) if self.cup.interface is Interface.SLIDING else ()))
+        return (*self.model.validity, rim_range, *bonded_liner(self.cup))
 
     def in_cup(self, cup: Cup, **aim: Any) -> Model:
         """Return the wrapped model for another cup."""

@@ -5,7 +5,7 @@ Annotations are objects here, not text, which msgspec would compile at each star
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import degrees, hypot, inf, pi
+from math import degrees, hypot, inf, isinf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
@@ -17,7 +17,7 @@ from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import AngleDefinition, Cup, Interface, Side
-from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
+from ..problem.dimensions import STORED_LENGTHS, canonical, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
@@ -276,10 +276,11 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     if "support" in content.get("joint", {}):
         changes["support"] = lengths.support
     if tables.shell is not None:
-        if joint.backing:
-            raise ValueError("the joint has layers behind its liner already; change them in its file")
-        shell, remaining = _shell(tables.shell, lengths, changes, joint.given_lengths)
-        changes = {**remaining, "backing": (shell,)}
+        present = joint.backing[0] if joint.backing else None
+        if present is not None and isinf(present.thickness):
+            raise ValueError("the layer behind the liner is massive; change it in the joint's file")
+        shell, remaining = _shell(tables.shell, lengths, changes, joint.given_lengths, present)
+        changes = {**remaining, "backing": (shell, *joint.backing[1:])}
     for part, material in (("liner", tables.liner), ("ball", tables.ball)):
         if material is not None:
             changes[part] = _material(part, material, getattr(joint, part))
@@ -338,20 +339,27 @@ def _radiographic_angles(table: CupTable, angles: Mapping[str, float], base: Cup
 
 
 def _shell(
-    table: ShellTable, lengths: LengthsTable, numbers: Mapping[str, float], current: Mapping[str, Any]
+    table: ShellTable,
+    lengths: LengthsTable,
+    numbers: Mapping[str, float],
+    current: Mapping[str, Any],
+    present: Layer | None = None,
 ) -> tuple[Layer, dict[str, float]]:
     """Create the shell of a joint, and return it with the lengths in mm that remain to define the joint.
 
-    Without a thickness of the shell, an outer dimension and the thickness of the liner determine it.
+    Without a thickness of the shell, an outer dimension and the thickness of the liner determine it, if both are given;
+    else it is that of the `present` shell.
 
     Raises ValueError: a thickness that is missing, or an outer dimension that leaves no shell.
     """
-    material = _material("shell", table)
+    material = _material("shell", table, None if present is None else present.material)
     remaining = dict(numbers)
+    outer = next((key for key in ("outer_diameter", "outer_radius") if key in remaining), "")
     if table.thickness is not None:
         thickness = float(table.thickness)
+    elif present is not None and not (outer and "liner_thickness" in remaining):
+        thickness = float(present.thickness)
     else:
-        outer = next((key for key in ("outer_diameter", "outer_radius") if key in remaining), "")
         share = 2 if outer == "outer_diameter" else 1
         if not outer:
             raise ValueError(
@@ -360,8 +368,9 @@ def _shell(
         if "liner_thickness" not in remaining and not current:
             raise ValueError(f"liner_thickness is missing: {outer} alone does not tell liner and shell apart")
         radius = remaining.pop(outer) / share
+        held = {name: length for name, length in current.items() if canonical(name) != "outer_radius"}
         with as_given(written_in(lengths)):
-            stored = resolve_lengths(remaining, current, 0.0)
+            stored = resolve_lengths(remaining, held, 0.0)
         inner = stored["ball_radius"] + stored["clearance"] + stored["liner_thickness"]
         thickness = round(radius - inner, 12)
         remaining |= {name: stored[name] for name in STORED_LENGTHS} if current else {}

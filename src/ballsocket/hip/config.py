@@ -120,6 +120,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         creep=parse_creep(content, float(joint_file.joint.liner.poisson)),
         seconds_per_cycle=None if seconds is None else float(seconds),
         film_limit=None if limit is None or lubricant is None else FilmLimit(ratio=float(limit), lubricant=lubricant),
+        remarks=unused_load(joint_file),
         **quantities_of(tables.wear, "ring_width"),
     )
     cycles, report_at = _length(tables, cycle.per_year)
@@ -296,12 +297,18 @@ def _length(tables: HipTable, per_year: float | None) -> tuple[float, tuple[floa
     return end * unit, tuple(point * unit for point in listed)
 
 
+def unused_load(file: JointFile) -> tuple[str, ...]:
+    """Return the note that a hip does not use the load of its joint file; empty without one."""
+    names = " and ".join(file.load | file.aim)
+    return (f"{names} of the load in the joint file: not used, because the cycle loads the hip",) if names else ()
+
+
 def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
     """Create joint and cup of a hip file; the cup may have a tilt in place of angles, also with a named joint."""
     table = tables.cup or HipCupTable()
     file = joint_in(msgspec.structs.replace(tables, cup=None), folder)
     if any(getattr(table, key) is not None for key in CupTable.__struct_fields__):
-        file = replace(file, cup=cup_of(table))
+        file = replace(file, cup=cup_of(table, file.cup))
     if table.tilt is None:
         return file
     for name in ("inclination", "anteversion"):

@@ -83,6 +83,7 @@ class ContactCheck:
     # largest von Mises stress over yield stress with its error bar; NaN where no yield stress is known
     utilisation_bar: Bounded
     utilisation_note: str  # reason why the utilisation does not cover the liner; empty where it does
+    pressure_ratio: Bounded | None  # largest over allowable pressure of the liner; None where none is known
     valid: bool  # True inside the validity of the contact model
     notes: tuple[str, ...]  # notes of the contact model
 
@@ -98,9 +99,13 @@ class ContactCheck:
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on the yield stress; undecided where none is known, or outside the validity of the model."""
-        verdict = self.utilisation_bar.verdict(high=1.0)
-        return verdict if self.valid and not self.utilisation_note else max(verdict, Verdict.UNDECIDED)
+        """Verdict on yield stress and allowable pressure; undecided without a yield stress, or outside the validity."""
+        verdicts = [self.utilisation_bar.verdict(high=1.0)]
+        if self.pressure_ratio is not None:
+            verdicts.append(self.pressure_ratio.verdict(high=1.0))
+        if self.utilisation_note or not self.valid:
+            verdicts.append(Verdict.UNDECIDED)
+        return max(verdicts)
 
     def summary(self) -> dict[str, Any]:
         """Return the contact check as a dictionary for JSON."""
@@ -113,6 +118,7 @@ class ContactCheck:
             "utilisation": self.utilisation,
             "utilisation_low": finite_or_none(self.utilisation_bar.low),
             "utilisation_high": finite_or_none(self.utilisation_bar.high),
+            "pressure_ratio": None if self.pressure_ratio is None else self.pressure_ratio.value,
             "verdict": self.verdict.word,
             "utilisation_note": self.utilisation_note or None,
             "valid": self.valid,
@@ -194,6 +200,7 @@ def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, ins
     pressure, von_mises, utilisation = (
         Bounded(*map(float, error_bar(contact, name))) for name in ("max_pressure", "von_mises", "utilisation")
     )
+    allowed = joint.liner.allowable_pressure
     return ContactCheck(
         activity=activity,
         instant=instant,
@@ -203,6 +210,7 @@ def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, ins
         von_mises=von_mises,
         utilisation_bar=utilisation,
         utilisation_note=contact.utilisation_note,
+        pressure_ratio=None if allowed is None else pressure.scaled(1 / float(allowed)),
         valid=bool(contact.valid),
         notes=contact.notes,
     )
@@ -214,7 +222,7 @@ def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
 
 
 def worst_verdict(checks: Iterable[ContactCheck]) -> Verdict:
-    """Return the worst verdict on the yield stress of some checks; undecided without a check."""
+    """Return the worst verdict on the strengths of some checks; undecided without a check."""
     return max((check.verdict for check in checks), default=Verdict.UNDECIDED)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy
 
 from ..contact import Model
+from ..contact.model import BondedLiner
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.display import OneLine, html_list
@@ -60,6 +61,7 @@ class HipSetup(OneLine):
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
     film_limit: FilmLimit | None = None
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
@@ -124,6 +126,7 @@ class HipSetup(OneLine):
         """Sentences on the cycle, the cup and the laws, for reports."""
         law_notes = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
         return (
+            *self.remarks,
             *filter(None, [self.cycle.remark]),
             *self.cycle.notes,
             *self.frame.notes,
@@ -211,7 +214,7 @@ class HipSetup(OneLine):
     def contact_model(self) -> Model:
         """Contact model with the same foundation as the simulation: springs, or full elasticity, with a linear gap."""
         if isinstance(self.surface, Springs):
-            return RadialFoundation(modulus=self.surface.modulus)
+            return BondedLiner(model=RadialFoundation(modulus=self.surface.modulus), cup=self.cup)
         ring_width = min(self.ring_width, MAX_RING_WIDTH)
         return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width, gap=LinearGap)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..contact.verdict import bar_text
+from ..contact.verdict import bar_text, ratio_text
 from ..core.answers import PAGE, Answer, Cell, Column, Row, Table
 from ..core.arrays import Numbers
 from ..core.display import plain_number
@@ -91,7 +91,7 @@ def contact_table(history: History) -> Table:
         Column.of(QUANTITIES["force"]),
         Column.of(QUANTITIES["max_pressure"]),
         Column.of_words("utilisation", "σv/σy"),
-        *(Column.of_words(head) for head in ("yield", "valid")),
+        *(Column.of_words(head) for head in ("strength", "valid")),
     ]
     counts = [plain_number(report.cycles) for report in history.reports]
     ends = ("unworn", counts[-1]) if len(history.use.unworn_checks) > 1 else ()  # of one activity, the line says all
@@ -116,7 +116,12 @@ def contact_line(history: History) -> str:
             _utilisation_text(max(stage, key=lambda check: check.utilisation or 0.0)) for stage in (checks, last)
         )
         after = f"{end} after {plain_number(history.last.cycles)} cycles"
-        strength = f"yield {worst_verdict((*checks, *last)).word}: utilisation σv/σy {unworn} unworn, {after}"
+        ratios = [check.pressure_ratio for check in (*checks, *last) if check.pressure_ratio is not None]
+        largest = max(ratios, key=lambda ratio: ratio.value, default=None)
+        pressure = "" if largest is None else f"; pressure at most {ratio_text(largest)} the allowable pressure"
+        limits = "yield" if largest is None else "yield and pressure"
+        verdict = worst_verdict((*checks, *last)).word
+        strength = f"{limits} {verdict}: utilisation σv/σy {unworn} unworn, {after}{pressure}"
     return f"contact ({history.use.contact_model.name}): {validity}; {strength}"
 
 

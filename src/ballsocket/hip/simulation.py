@@ -217,6 +217,8 @@ class HipSimulation(HipSetup):
         Allowed error of a block of cycles, relative to the largest depth so far. Default 4e-3.
     film_limit : FilmLimit, optional
         Film ratio λ below which the surfaces wear, with the lubricant of that film; wear at any film by default.
+    remarks : tuple of str
+        Sentences on the input, the first notes of all results; none by default.
 
     Raises
     ------

@@ -11,6 +11,7 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Numbers
+from ..core.validity import check_domain
 from ..problem import Joint
 from ..studies.parameters import vary_joint
 from .forward_model import insert_model_numbers, split_joint_and_model_values
@@ -33,6 +34,7 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     Of equal fits it is the one nearest to the middle of the ranges.
 
     Raises ValueError: the model has no result for all data at any point within the ranges.
+    Raises OutsideDomainError: the model has no result for such joints.
     """
     ends = [minimise_misfit(misfit, start) for start in _choose_starting_points(misfit, seed)]
     least_cost, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
@@ -55,6 +57,7 @@ def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
     points = low + fractions * (high - low)
     costs = misfit.costs(points)
     if not numpy.isfinite(costs).any():
+        check_domain(model.domain, misfit.forward.joint, model.name)
         raise ValueError(
             f"{model.name} has no result for all the data anywhere within the ranges: check the measured values, the "
             "ranges and the model"

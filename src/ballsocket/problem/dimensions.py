@@ -128,8 +128,8 @@ def held_lengths(changed: Iterable[str], given: Mapping[str, Array]) -> dict[str
         texts = {name: f"{name} = {value:g} mm" if is_plain_number(value) else name for name, value in given.items()}
         ways = " or ".join(" and ".join(texts[name] for name in names if name not in shared) for names in kept)
         raise ValueError(
-            f"{' and '.join(changed_names)} would change another length that the joint gives: add the one that stays, "
-            f"{ways}"
+            f"{' and '.join(changed_names) or 'another shell'} would change another length that the joint gives: add "
+            f"the one that stays, {ways}"
         )
     if not choices:
         names = ", ".join((*changed_names, *(name for name in given if name not in changed_names)))

@@ -15,7 +15,7 @@ from ..core.display import OneLine, html_list
 from ..core.kinds import MILLIMETRES, Choice
 from ..core.quantities import JOINT
 from ..core.unit_systems import Sentence
-from .dimensions import LENGTHS, STORED_LENGTHS, Lengths, check_given, lost_lengths, resolve_lengths
+from .dimensions import LENGTHS, STORED_LENGTHS, Lengths, canonical, check_given, lost_lengths, resolve_lengths
 from .material import (
     ByValue,
     Layer,
@@ -307,8 +307,14 @@ class Joint(OneLine, ByValue):
         if changes and self.name:
             parts |= {"name": f"{base}{_VARIED}", "source": ""}
         parts |= {name: value for name, value in changes.items() if name not in LENGTHS}
+        old_lengths, shell = self.given_lengths, _shell_thickness(_check_backing(parts["backing"]))
+        keeps_lengths = not lengths and len(old_lengths) > 3 and all_true(shell == self.shell)
+        if keeps_lengths:  # three lengths are enough, the outer one gave the shell
+            old_lengths = {name: old for name, old in old_lengths.items() if canonical(name) != "outer_radius"}
         joint: Joint = object.__new__(Joint)
-        joint._define(lengths, self.given_lengths, **parts)
+        joint._define(lengths, old_lengths, **parts)
+        if keeps_lengths:
+            set_fields(joint, given=self.given)
         lost = lost_lengths(joint.given, self.given)
         changed = [(name, getattr(self, name), getattr(joint, name)) for name in lost]
         words = [

@@ -13,7 +13,7 @@ from ...core.kinds import Kind
 from ...files.joint_file import JointFile
 from ...files.units import parse
 from ...hip import Cycle, HipSimulation, named_cycle
-from ...hip.config import parse_creep, socket_surface
+from ...hip.config import parse_creep, socket_surface, unused_load
 from ...hip.creep_laws import CREEP_LAWS
 from ...hip.cycle_file import read_cycle
 from ...hip.cycle_registry import CYCLES
@@ -200,4 +200,5 @@ def hip_of(file: JointFile, use: Use, upload: UploadedCycle | None = None) -> Hi
         wear=read_wear_law(use.wear_table),
         surface=socket_surface(use.contact),
         creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
+        remarks=unused_load(replace(file, load={})),  # the page always has the size of a load
     )

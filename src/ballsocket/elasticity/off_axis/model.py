@@ -11,6 +11,7 @@ import numpy
 from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
 from ...contact.law import ForceLaw
+from ...contact.model import bonded_liner
 from ...contact.per_joint import JointContacts, solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array, Numbers
@@ -149,7 +150,8 @@ class Sphere(Model):
             low=1.0 + 1e-9,
             why="a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg",
         )
-        return (*gap_validity(self.gap), SMALL_STRAIN, narrow, held)
+        bonded = bonded_liner(self.cup) if isinstance(self.surface, ClosedShell) else ()
+        return (*gap_validity(self.gap), SMALL_STRAIN, narrow, held, *bonded)
 
     @property
     def remarks(self) -> tuple[Range, ...]:
