@@ -2,8 +2,9 @@
 
 import io
 import os
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr
 from functools import reduce
+from io import StringIO
 from math import cos
 from pathlib import Path
 from unittest import mock
@@ -34,6 +35,13 @@ from .limits import check_command, check_run, check_sentence, folder_with, input
 from .words import mistyped, number, odd_text, quantity
 
 
+def printed(message):
+    """Return a message as the command line prints it."""
+    with redirect_stderr(StringIO()) as error:
+        root.print_message(message)
+    return error.getvalue().removeprefix("ballsocket: ").removesuffix("\n")
+
+
 @contextmanager
 def refused_in_a_sentence(files=None):
     """Yield a folder with files; check that errors are those that the command line prints in one sentence."""
@@ -42,11 +50,11 @@ def refused_in_a_sentence(files=None):
             yield folder
             event("read")
         except OSError as error:
-            check_sentence(root._one_line(f"{error.filename}: {error.strerror}"))
+            check_sentence(printed(f"{error.filename}: {error.strerror}"))
         except ValueError as error:
-            check_sentence(root._one_line(str(error)))
+            check_sentence(printed(str(error)))
         except (ArithmeticError, MemoryError) as error:
-            check_sentence(root._one_line(str(error)) or "too large")
+            check_sentence(printed(str(error)) or "too large")
 
 
 PHASES = numpy.linspace(0.0, 1.0, 11)

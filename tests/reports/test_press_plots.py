@@ -321,7 +321,7 @@ def test_a_matrix_without_a_result_in_a_case_and_of_any_number_is_drawn():
     axes = figures.matrix_figure({**RECORD, "matrix": [gone, *ROWS[1:]]}).axes[0]
     assert np.isnan(axes.images[0].get_array().filled(np.nan)).sum() == 1
     wear = figures.matrix_figure({**RECORD, "worst": {WEAR.name: ROWS[-1]}}, WEAR.name)
-    assert wear.axes[1].get_ylabel() == "[mm³/10⁶]"
+    assert wear.axes[1].get_ylabel() == "wear in 10⁶ cycles [mm³]"
     assert NAMES[WEAR.name] is WEAR
 
 

@@ -29,7 +29,11 @@ TORQUE = Quantity(
     "friction_torque", "Mf", "friction torque", Kind.ENERGY, "About an axis across the load, sliding all over, in N mm."
 )
 WEAR = Quantity(
-    "wear_rate", "", "wear of a new bore in a million cycles", Kind.VOLUME, "Volume, from the first cycles of a hip."
+    "wear_rate",
+    "wear in 10⁶ cycles",
+    "wear of a new bore in a million cycles",
+    Kind.VOLUME,
+    "Volume, from the first cycles of a hip.",
 )
 NAMES: Mapping[str, Quantity] = {
     **{name: QUANTITIES[name] for name in (*COMPUTED, "edge_distance")},
