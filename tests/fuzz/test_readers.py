@@ -4,7 +4,6 @@ import io
 import os
 from contextlib import contextmanager, redirect_stderr
 from functools import reduce
-from io import StringIO
 from math import cos
 from pathlib import Path
 from unittest import mock
@@ -37,7 +36,7 @@ from .words import mistyped, number, odd_text, quantity
 
 def printed(message):
     """Return a message as the command line prints it."""
-    with redirect_stderr(StringIO()) as error:
+    with redirect_stderr(io.StringIO()) as error:
         root.print_message(message)
     return error.getvalue().removeprefix("ballsocket: ").removesuffix("\n")
 
