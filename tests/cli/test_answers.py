@@ -3,9 +3,11 @@
 import re
 import shlex
 from inspect import signature
+from typing import get_args
 
 import pytest
 
+from ballsocket.cli.json_answers import FLAGS
 from ballsocket.cli.root import load_commands
 from ballsocket.core.quantities import CONTACT
 
@@ -124,6 +126,25 @@ def test_the_next_step_after_an_invalid_model_gives_a_valid_result():
     better = answer(*words)
     assert better["valid"]
     assert 0 < better["error"]["exact"]["max_pressure"] < 1e-6
+
+
+def test_the_next_step_has_the_joint_wherever_it_stands_in_the_command():
+    words = ("--force=2 kN", "--liner", "pom", "hip-36", "--spread", "clearance=0.10+-0.05 mm")
+    said = answer("sensitivity", *words, "--count", "4", "--intervals", "none", "--second-order")
+    assert said["next"][0]["command"] == "ballsocket press hip-36 --liner pom --force '2 kN' --all"
+
+
+def test_every_requested_model_decides_on_the_validity_of_an_answer():
+    for words in (("--model", "exact", "--model", "hertz"), ("--model=exact", "--model=hertz")):
+        assert not answer("press", "hip-36", "--force", "3 kN", *words)["valid"]
+
+
+def test_options_without_a_value_are_known():
+    tables = (signature(command, eval_str=True).parameters for command in load_commands().values())
+    answering = (part for parameters in tables if "as_json" in parameters for part in parameters.values())
+    switches = {part.name for part in answering if get_args(part.annotation)[:1] == (bool,)}
+    named = {"every": "all", "as_json": "json"}
+    assert {f"--{named.get(name, name)}".replace("_", "-") for name in switches} == FLAGS
 
 
 @pytest.mark.long

@@ -6,7 +6,7 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain, pairwise
+from itertools import chain, islice
 from types import MappingProxyType
 from typing import Any
 
@@ -124,7 +124,8 @@ def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[A
     """Return the results of the requested models, without the exact result that is always added."""
     if "--all" in arguments:
         return list(results)
-    return [result for result in results if result["model"] in arguments] or list(results[:1])
+    names = _selected_options(arguments, "--model")
+    return [result for result in results if result["model"] in names] or list(results[:1])
 
 
 def _after_press(answer: Answer, arguments: Arguments) -> Iterator[Step]:
@@ -273,36 +274,31 @@ def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
 
 
+FLAGS = frozenset(("--all", "--json", "--pull-out", "--second-order", "--strict"))
+"""Options without a value, of the commands that print JSON."""
+
+
+def _split(arguments: Arguments) -> Iterator[tuple[str, str, list[str]]]:
+    """Yield what follows the command: the option or "", its value or the operand, and the words of both."""
+    words = iter(arguments[1:])
+    for word in words:
+        name, equals, value = word.partition("=") if word.startswith("--") else ("", "", word)
+        following = [] if equals or not name or name in FLAGS else list(islice(words, 1))
+        yield name, "".join(following) or value, [word, *following]
+
+
 def _joint_name(arguments: Arguments) -> list[str]:
-    """Return the first argument that is neither the command, nor an option, nor the value of an option."""
-    return [
-        argument
-        for before, argument in pairwise(arguments)
-        if not argument.startswith("-") and (before is arguments[0] or "=" in before)
-    ][:1]
+    """Return the first argument that is neither an option nor the value of one."""
+    return [value for name, value, _ in _split(arguments) if not name][:1]
 
 
 def _without_options(arguments: Arguments, *options: str) -> list[str]:
-    """Return the arguments without some options and their values; `--all` has no value."""
-    remaining, skip = [], 0
-    for argument in arguments:
-        name, _, value = argument.partition("=")
-        if name in options:
-            skip = 0 if value or name == "--all" else 1
-        elif skip:
-            skip -= 1
-        else:
-            remaining.append(argument)
-    return remaining
+    """Return the arguments without some options and their values."""
+    return [arguments[0], *chain(*(words for name, _, words in _split(arguments) if name not in options))]
 
 
 def _selected_options(arguments: Arguments, *options: str) -> list[str]:
-    selected = []
-    for index, argument in enumerate(arguments):
-        name, _, value = argument.partition("=")
-        if name in options:
-            selected += [name, value or "".join(arguments[index + 1 : index + 2])]
-    return selected
+    return list(chain(*((name, value) for name, value, _ in _split(arguments) if name in options)))
 
 
 _NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[Step]]] = MappingProxyType(
