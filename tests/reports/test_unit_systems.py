@@ -42,6 +42,12 @@ def test_the_name_of_a_joint_stays():
     assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(str(joint))
 
 
+def test_sources_of_presets_stay_as_published():
+    text = " ".join(printed("presets", "bone-cement", "--units", "imperial").split())
+    assert "representative of PMMA, 2-2.5 GPa" in text
+    assert "MPa" not in text
+
+
 @pytest.mark.long
 def test_orientations_print_and_draw_in_inches_and_pounds(tmp_path):
     angles = ("--inclination", "40..50", "--anteversion", "10..20", "--step", "10 deg", "--ring-width", "6 deg")
