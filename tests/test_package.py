@@ -145,7 +145,7 @@ def test_every_publication_is_cited():
 
 
 def test_all_summaries_have_one_list_of_columns():
-    names = [*(quantity.key for quantity in CONTACT.values()), "utilisation", "utilisation_note", "pressure_ratio"]
+    names = [*(quantity.key for quantity in CONTACT.values()), "utilisation", "pressure_ratio", "utilisation_note"]
     assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == names
     nothing = bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models={"bonded-layer": bs.BondedLayer()})
     assert list(nothing.summary()["results"][0])[1:-3] == names

@@ -68,8 +68,8 @@ def to_summary(contact: Any) -> dict[str, Any]:
     numbers = {quantity.key: arrays.to_list(values_of(contact, quantity)) for quantity in CONTACT.values()}
     strength = {
         UTILISATION.key: arrays.to_list(values_of(contact, UTILISATION)),
-        UTILISATION_NOTE: contact.utilisation_note or None,
         PRESSURE_RATIO.key: arrays.to_list(pressure_ratio(contact)),
+        UTILISATION_NOTE: contact.utilisation_note or None,
     }
     valid = arrays.to_list(contact.valid)
     return {"model": contact.model.name, **numbers, **strength, "valid": valid, "notes": list(contact.notes)}
