@@ -260,7 +260,7 @@ class Information:
     def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
         """Convert an eigenvector to a product of powers, of which the largest is 1; None if it is not identifiable."""
         unknowns = self.transform.unknowns
-        prior_deviations = [unknown.prior_deviation for unknown in unknowns]
+        prior_deviations = self.transform.deviations
         powers = vector / prior_deviations
         factor_indices = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
         unidentifiable_factors = set(self.unidentifiable) & {unknowns[index].name for index in factor_indices}
@@ -288,8 +288,8 @@ class Information:
     def _product_band(self, exponents: dict[str, float]) -> Product:
         """Compute a product of powers and its 95 % band, which includes those of the unidentifiable unknowns."""
         exponent_vector = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
-        direction = exponent_vector * [unknown.prior_deviation for unknown in self.transform.unknowns]
-        prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
+        direction = exponent_vector * self.transform.deviations
+        prior_information = numpy.diag(self.transform.has_distribution.astype(float))
         covariance = numpy.linalg.pinv(self._identifiable_information + prior_information, rcond=1e-9, hermitian=True)
         half_width = self.quantile * float(direction @ covariance @ direction) ** 0.5
 

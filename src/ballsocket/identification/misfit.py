@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import inf
 from typing import Any
 
@@ -117,21 +117,21 @@ class Misfit:
     uncertainty: Numbers  # (data,)
     widening: float = 1.0  # factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties
     noise_freedom: float = inf  # degrees of freedom of estimated uncertainties; infinite if all are stated
-    value: Numbers = field(init=False)  # (data,), measured values; a saturated value is replaced by its limit
-    saturated: Numbers = field(init=False)  # (data,), mask of the values that are lower bounds
 
-    def __post_init__(self) -> None:
-        data = self.forward.data
-        saturated = numpy.concatenate([measured.saturated for measured in data])
-        limits = numpy.concatenate([numpy.full(len(measured), measured.saturation) for measured in data])
-        values = numpy.concatenate([measured.values for measured in data])
-        object.__setattr__(self, "saturated", saturated)
-        object.__setattr__(self, "value", numpy.where(saturated, limits, values))
+    @cached_property
+    def value(self) -> Numbers:
+        """Measured values (data,); a saturated value is replaced by its limit."""
+        return numpy.concatenate([numpy.minimum(data.values, data.saturation) for data in self.forward.data])
+
+    @cached_property
+    def saturated(self) -> Numbers:
+        """Mask (data,) of the values that are lower bounds."""
+        return numpy.concatenate([data.saturated for data in self.forward.data])
 
     @property
     def freedom(self) -> int:
         """Number of degrees of freedom: values minus unknowns without a stated distribution."""
-        return len(self.value) - sum(not unknown.has_distribution for unknown in self.transform.unknowns)
+        return len(self.value) - int(numpy.sum(~self.transform.has_distribution))
 
     def standardised_residuals(self, results: Numbers) -> Numbers:
         """Compute the residuals (result - value)/uncertainty of model results."""
@@ -152,7 +152,7 @@ class Misfit:
         residual_slopes = numpy.where(
             self.saturated, self.scatter.censored(standardised)[1], self.scatter.slope(standardised)
         ) / (self.widening * self.uncertainty)
-        has_distribution = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
+        has_distribution = self.transform.has_distribution
         prior_slopes = numpy.broadcast_to(
             numpy.eye(theta.shape[-1])[has_distribution],
             (*theta.shape[:-1], has_distribution.sum(), len(has_distribution)),
