@@ -170,8 +170,9 @@ class Information:
         if not unidentifiable:
             return len(self.transform.names)
         directions = numpy.stack([self._band_vector(index) for index in unidentifiable], axis=1)
-        singular_values = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
-        return len(self.transform.names) - max(1, int(numpy.sum(singular_values > _MIN_SINGULAR_VALUE)))
+        directions /= numpy.linalg.norm(directions, axis=0)
+        n_unidentifiable = int(numpy.linalg.matrix_rank(directions, tol=_MIN_SINGULAR_VALUE))
+        return len(self.transform.names) - max(1, n_unidentifiable)
 
     @property
     def condition(self) -> float:
@@ -242,12 +243,8 @@ class Information:
 
         In unidentifiable directions the ranges count as priors.
         """
-        has_prior_information = [
-            unknown.has_distribution or unknown.name in self.unidentifiable for unknown in self.transform.unknowns
-        ]
-        return numpy.linalg.inv(
-            self._identifiable_information + numpy.diag(numpy.array(has_prior_information, dtype=float))
-        )
+        has_prior = self.transform.has_distribution | numpy.isin(self.transform.names, self.unidentifiable)
+        return numpy.linalg.inv(self._identifiable_information + numpy.diag(has_prior.astype(float)))
 
     @cached_property
     def products(self) -> tuple[Product, ...]:
