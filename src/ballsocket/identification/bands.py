@@ -58,8 +58,8 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
         ends_and_sides = zip(ends_99, (-1, 1), strict=True)
         closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends_and_sides)
         intervals.append(Interval(*ends_95, closed))
-    fisher_matrix = misfit.fisher_information(best.theta)
-    return misfit, best, Information(misfit.transform, best.theta, fisher_matrix, tuple(intervals), quantile)
+    slopes, weighted = misfit.weighted_slopes(best.theta)
+    return misfit, best, Information(misfit.transform, best.theta, weighted @ slopes, tuple(intervals), quantile)
 
 
 def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
@@ -70,9 +70,7 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     """
     from scipy.optimize import brentq
 
-    residuals = misfit.standardised_residuals(
-        misfit.forward.results_at(misfit.transform.to_values(best.theta[None]))[0]
-    )
+    residuals = misfit.standardised_residuals(misfit.results_at(best.theta[None])[0])
     residuals = numpy.where(misfit.saturated, numpy.minimum(residuals, 0.0), residuals)
 
     def excess_of_squares(factor: float) -> float:

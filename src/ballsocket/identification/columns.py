@@ -95,9 +95,7 @@ def read_measured(
         needed = (kind, name, name + UNCERTAINTY, kind + UNCERTAINTY, "angle")
         rows, order = _complete_rows(table, {head: columns[head] for head in needed if head in columns}, gaps)
         column = rows.get(name + UNCERTAINTY)
-        load_arguments: dict[str, Any] = {}
-        if kind:
-            load_arguments = {kind: rows[kind], "load_uncertainty": rows.get(kind + UNCERTAINTY, load_uncertainty)}
+        load_values: dict[str, Any] = {kind: rows[kind]} if kind else {}
         noise = parse_uncertainty(_QUANTITIES[name], uncertainty) if column is None else {"uncertainty": column}
         sets.append(
             Measured(
@@ -109,7 +107,8 @@ def read_measured(
                 order=order,
                 name=path.name,
                 remark=table.remark({"with a gap": len(table) - len(order)}),
-                **load_arguments,
+                **load_values,
+                load_uncertainty=rows.get(kind + UNCERTAINTY, load_uncertainty),
                 angle=rows["angle"] if name == "pressure" and "angle" in rows else None,
             )
         )

@@ -51,14 +51,13 @@ class Candidate:
 
     def measured(self, value: float) -> Measured:
         """Return a data set for this candidate, with an assumed measured value."""
-        load: dict[str, Any] = {} if self.force is None else {"force": self.force}
         return Measured(
             quantity=self.quantity,
             values=value,
             uncertainty=self.uncertainty,
+            force=self.force,
             machine=self.machine,
             order=self.order,
-            **load,
         )
 
 
@@ -226,13 +225,11 @@ def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) ->
     cross_covariance = old_covariance @ weighted_slopes
     variance_ratio = float(weighted_slopes @ cross_covariance)
     new_variances = numpy.diagonal(old_covariance) - cross_covariance**2 / (1 + variance_ratio)
-    names = fitted.transform.names
-    narrow_unknowns = [name for index, name in enumerate(names) if new_variances[index] ** 0.5 < MAX_WIDTH_RATIO]
+    names, ratios = fitted.transform.names, numpy.sqrt(new_variances / numpy.diagonal(old_covariance))
+    is_narrow = dict(zip(names, new_variances**0.5 < MAX_WIDTH_RATIO, strict=True))
     return Gain(
         candidate=candidate,
         bits=log(1 + variance_ratio) / log(4),
-        uncertainty_ratio=dict(
-            zip(names, numpy.sqrt(new_variances / numpy.diagonal(old_covariance)).tolist(), strict=True)
-        ),
-        identifies=tuple(name for name in fitted.information.unidentifiable if name in narrow_unknowns),
+        uncertainty_ratio=dict(zip(names, ratios.tolist(), strict=True)),
+        identifies=tuple(name for name in fitted.information.unidentifiable if is_narrow[name]),
     )

@@ -252,28 +252,24 @@ def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder:
     if (table.file is None) == (table.values is None):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
     machine = IDEAL_MACHINE if table.machine is None else machines[known_name("machine", table.machine, machines)]
-    common = {"machine": machine, **quantities_of(table, "saturation")}
+    common: dict[str, Any] = {"machine": machine, **quantities_of(table, "saturation")}
     both = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
     if table.values is None:
         check_names(table.stated(), ("file", *_FILE_KEYS, *both), "in [[data]] with a file")
-        return _read_data_file(table, common, folder)
+        load = str(table.load or "")
+        return read_measured(
+            folder / (table.file or ""),
+            quantities=table.quantities or [],
+            load=load,
+            uncertainty=None if table.uncertainty is None else table.uncertainty.value,
+            load_uncertainty=_parse_load_uncertainty(table, load or "force"),
+            gaps=Gaps.REFUSE if table.gaps is None else Gaps(table.gaps),
+            heads=table.choice(),
+            **common,
+        )
     own = [key for key in table.__struct_fields__ if key not in ("file", *_FILE_KEYS)]
     check_names(table.stated(), own, "in [[data]] with values")
     return (_parse_listed_values(table, table.values, common),)
-
-
-def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -> tuple[Measured, ...]:
-    load = str(table.load or "")
-    return read_measured(
-        folder / (table.file or ""),
-        quantities=table.quantities or [],
-        load=load,
-        uncertainty=None if table.uncertainty is None else table.uncertainty.value,
-        load_uncertainty=_parse_load_uncertainty(table, load or "force"),
-        gaps=Gaps.REFUSE if table.gaps is None else Gaps(table.gaps),
-        heads=table.choice(),
-        **common,
-    )
 
 
 def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:

@@ -167,8 +167,7 @@ class FittedModel:
     @cached_property
     def results(self) -> tuple[Numbers, ...]:
         """Model results for the best-fit values, one array for each data set."""
-        results = self.misfit.forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
-        return self._split_by_data_set(results)
+        return self._split_by_data_set(self.misfit.results_at(self.best.theta[None])[0])
 
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
         """Compute model results at equally spaced loads over the load range of a data set.

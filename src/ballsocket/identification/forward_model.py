@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 
 import numpy
@@ -48,13 +49,10 @@ class ForwardModel:
     joint: Joint  # joint with the numbers that are not unknown
     data: tuple[Measured, ...]
     names: tuple[str, ...]  # names of the unknowns
-    _known_errors: dict[str, float] = field(init=False)
 
-    def __post_init__(self) -> None:
-        known_errors: dict[str, float] = {}
-        for measured in self.data:
-            known_errors |= measured.machine.known_errors()
-        object.__setattr__(self, "_known_errors", known_errors)
+    @cached_property
+    def _known_errors(self) -> dict[str, float]:
+        return {name: size for measured in self.data for name, size in measured.machine.known_errors().items()}
 
     def results_at(self, values: Array, load_perturbation: float = 0.0) -> Array:
         """Compute the model results (points, data) for values of the unknowns (points, unknowns).
@@ -122,22 +120,17 @@ class _JointsAtPoints:
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
         values = self._measured_quantity_values(contact, contact_count, measured, value_range)
-        error: Array = 0.0
         if measured.quantity == "indentation" and measured.machine.name:
-            force = _add_point_axis(contact.force)[:, value_range]
-            zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
-            error = self._sum_machine_errors(measured, force, depends_on_force=True) + zero_error
-        return values + error
+            values = values + self._machine_error(measured, _add_point_axis(contact.force)[:, value_range])
+        return values
 
     def compute_at_read_indentation(self, measured: Measured, load_factor: float) -> Array:
         """Compute the results at indentations that a machine with errors has read."""
-        zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
         force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
-        depth = load_factor * measured.loads - zero_error
-        contact = self.press("indentation", arrays.clip(depth, 0.0, inf))
-        for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 0):
-            force_error = self._sum_machine_errors(measured, force, depends_on_force=True)
-            contact = self.press("indentation", arrays.clip(depth - force_error, 0.0, inf))
+        contact: Contact | None = None
+        for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 1):
+            depth = load_factor * measured.loads - self._machine_error(measured, force)
+            contact = self.press("indentation", arrays.clip(depth, 0.0, inf))
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
                 compliance = sum(  # of the machine, in mm/N
@@ -162,12 +155,11 @@ class _JointsAtPoints:
             values = getattr(contact, measured.quantity)
         return _add_point_axis(values)[:, value_range]
 
-    def _sum_machine_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
-        """Sum the machine errors in mm: either those that depend on the force, or the others."""
+    def _machine_error(self, measured: Measured, force: Array) -> Array:
+        """Compute the error in mm that a machine adds to readings at a force in N."""
         return sum(
             self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
-            if (error.slope is not None) == depends_on_force
         )
 
 

@@ -170,8 +170,9 @@ class Information:
         if not unidentifiable:
             return len(self.transform.names)
         directions = numpy.stack([self._band_vector(index) for index in unidentifiable], axis=1)
-        singular_values = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
-        return len(self.transform.names) - max(1, int(numpy.sum(singular_values > _MIN_SINGULAR_VALUE)))
+        directions /= numpy.linalg.norm(directions, axis=0)
+        n_unidentifiable = int(numpy.linalg.matrix_rank(directions, tol=_MIN_SINGULAR_VALUE))
+        return len(self.transform.names) - max(1, n_unidentifiable)
 
     @property
     def condition(self) -> float:
@@ -242,12 +243,8 @@ class Information:
 
         In unidentifiable directions the ranges count as priors.
         """
-        has_prior_information = [
-            unknown.has_distribution or unknown.name in self.unidentifiable for unknown in self.transform.unknowns
-        ]
-        return numpy.linalg.inv(
-            self._identifiable_information + numpy.diag(numpy.array(has_prior_information, dtype=float))
-        )
+        has_prior = self.transform.has_distribution | numpy.isin(self.transform.names, self.unidentifiable)
+        return numpy.linalg.inv(self._identifiable_information + numpy.diag(has_prior.astype(float)))
 
     @cached_property
     def products(self) -> tuple[Product, ...]:
@@ -260,7 +257,7 @@ class Information:
     def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
         """Convert an eigenvector to a product of powers, of which the largest is 1; None if it is not identifiable."""
         unknowns = self.transform.unknowns
-        prior_deviations = [unknown.prior_deviation for unknown in unknowns]
+        prior_deviations = self.transform.deviations
         powers = vector / prior_deviations
         factor_indices = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
         unidentifiable_factors = set(self.unidentifiable) & {unknowns[index].name for index in factor_indices}
@@ -288,8 +285,8 @@ class Information:
     def _product_band(self, exponents: dict[str, float]) -> Product:
         """Compute a product of powers and its 95 % band, which includes those of the unidentifiable unknowns."""
         exponent_vector = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
-        direction = exponent_vector * [unknown.prior_deviation for unknown in self.transform.unknowns]
-        prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
+        direction = exponent_vector * self.transform.deviations
+        prior_information = numpy.diag(self.transform.has_distribution.astype(float))
         covariance = numpy.linalg.pinv(self._identifiable_information + prior_information, rcond=1e-9, hermitian=True)
         half_width = self.quantile * float(direction @ covariance @ direction) ** 0.5
 

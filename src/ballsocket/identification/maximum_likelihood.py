@@ -125,7 +125,7 @@ def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]
     sets = misfit.forward.data
     ends = numpy.cumsum([len(measured) for measured in sets])
     parts = [slice(end - len(measured), end) for end, measured in zip(ends, sets, strict=True)]
-    prior_information = numpy.diag([float(unknown.has_distribution) for unknown in misfit.transform.unknowns])
+    prior_information = numpy.diag(misfit.transform.has_distribution.astype(float))
     for _ in range(_NOISE_ITERATIONS):
         results, slopes = misfit.slopes(misfit.forward, misfit.transform, best.theta)
         weighted_slopes = slopes / misfit.uncertainty[:, None]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import inf
 from typing import Any
 
@@ -117,21 +117,25 @@ class Misfit:
     uncertainty: Numbers  # (data,)
     widening: float = 1.0  # factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties
     noise_freedom: float = inf  # degrees of freedom of estimated uncertainties; infinite if all are stated
-    value: Numbers = field(init=False)  # (data,), measured values; a saturated value is replaced by its limit
-    saturated: Numbers = field(init=False)  # (data,), mask of the values that are lower bounds
 
-    def __post_init__(self) -> None:
-        data = self.forward.data
-        saturated = numpy.concatenate([measured.saturated for measured in data])
-        limits = numpy.concatenate([numpy.full(len(measured), measured.saturation) for measured in data])
-        values = numpy.concatenate([measured.values for measured in data])
-        object.__setattr__(self, "saturated", saturated)
-        object.__setattr__(self, "value", numpy.where(saturated, limits, values))
+    @cached_property
+    def value(self) -> Numbers:
+        """Measured values (data,); a saturated value is replaced by its limit."""
+        return numpy.concatenate([numpy.minimum(data.values, data.saturation) for data in self.forward.data])
+
+    @cached_property
+    def saturated(self) -> Numbers:
+        """Mask (data,) of the values that are lower bounds."""
+        return numpy.concatenate([data.saturated for data in self.forward.data])
 
     @property
     def freedom(self) -> int:
         """Number of degrees of freedom: values minus unknowns without a stated distribution."""
-        return len(self.value) - sum(not unknown.has_distribution for unknown in self.transform.unknowns)
+        return len(self.value) - int(numpy.sum(~self.transform.has_distribution))
+
+    def results_at(self, theta: Numbers) -> Numbers:
+        """Compute the model results (points, data) at points theta (points, unknowns)."""
+        return self.forward.results_at(self.transform.to_values(theta))
 
     def standardised_residuals(self, results: Numbers) -> Numbers:
         """Compute the residuals (result - value)/uncertainty of model results."""
@@ -152,11 +156,9 @@ class Misfit:
         residual_slopes = numpy.where(
             self.saturated, self.scatter.censored(standardised)[1], self.scatter.slope(standardised)
         ) / (self.widening * self.uncertainty)
-        has_distribution = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
-        prior_slopes = numpy.broadcast_to(
-            numpy.eye(theta.shape[-1])[has_distribution],
-            (*theta.shape[:-1], has_distribution.sum(), len(has_distribution)),
-        )
+        has_distribution = self.transform.has_distribution
+        prior_slopes = numpy.eye(theta.shape[-1])[has_distribution]
+        prior_slopes = numpy.broadcast_to(prior_slopes, (*theta.shape[:-1], *prior_slopes.shape))
         residuals = [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]]
         all_slopes = [residual_slopes[..., None] * slopes, prior_slopes]
         return numpy.concatenate(residuals, axis=-1), numpy.concatenate(all_slopes, axis=-2)
@@ -166,11 +168,10 @@ class Misfit:
 
         The priors are the stated distributions. The cost is infinite without a result; shape (points,).
         """
-        residuals = self.residuals(self.forward.results_at(self.transform.to_values(theta)))
-        sum_of_squares = numpy.sum(residuals**2, axis=1) + numpy.sum(
-            self.transform.prior_residuals(theta) ** 2, axis=-1
+        residuals = numpy.concatenate(
+            [self.residuals(self.results_at(theta)), self.transform.prior_residuals(theta)], axis=1
         )
-        cost = sum_of_squares / 2
+        cost = numpy.sum(residuals**2, axis=1) / 2
         return numpy.where(numpy.isfinite(cost), cost, inf)
 
     def log_posterior(self, theta: Numbers) -> Numbers:
@@ -179,33 +180,21 @@ class Misfit:
         All values in a range are equally likely.
         """
         log_prior_density = log_prior(self.transform, theta)
-        theta_in_range = numpy.clip(theta, self.transform.low, self.transform.high)
-        residuals = self.residuals(self.forward.results_at(self.transform.to_values(theta_in_range)))
+        residuals = self.residuals(self.results_at(numpy.clip(theta, self.transform.low, self.transform.high)))
         log_density = log_prior_density - numpy.sum(residuals**2, axis=1) / 2
         return numpy.where(numpy.isfinite(log_density), log_density, -inf)
 
-    def fisher_information(self, theta: Numbers) -> Numbers:
-        """Compute the Fisher information matrix (unknowns, unknowns) of the data about theta."""
-        results, slopes = self.slopes(self.forward, self.transform, theta)
-        return (slopes * self._information_weights(results)[:, None]).T @ slopes
+    def weighted_slopes(self, theta: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the derivatives J (data, unknowns) of the results at theta, and Jᵀ W with the weights of the values.
 
-    def project_errors(self, theta: Numbers, errors: Numbers) -> Numbers:
-        """Compute the weighted projections Jᵀ W δ of errors δ of the values on the unknowns.
-
-        J are the derivatives, W the weights, and δ the errors (kinds, data).
+        Jᵀ W J is the Fisher information of the data about theta. The weight of a value is its Fisher information about
+        the model result, in 1/unit². For a saturated value it is -d²/dz² of ln P(reading above): h² + h s, with the
+        hazard h and the slope s of -ln of the density.
         """
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        return slopes.T @ (self._information_weights(results) * errors).T
-
-    def _information_weights(self, results: Numbers) -> Numbers:
-        """Compute the weight of each value: its Fisher information about the model result, in 1/unit².
-
-        For a saturated value it is -d²/dz² of ln P(reading above): h² + h s, with the hazard h and the slope s of -ln
-        of the density.
-        """
         z = self.standardised_residuals(results)
         residual, slope = self.scatter.censored(z)
         hazard, density_slope = -residual * slope, self.scatter.misfit(z) * self.scatter.slope(z)
         censored = numpy.maximum(hazard * (hazard + density_slope), 0.0)
         information = numpy.where(self.saturated, censored, self.scatter.information)
-        return information / (self.widening * self.uncertainty) ** 2
+        return slopes, slopes.T * (information / (self.widening * self.uncertainty) ** 2)

@@ -130,10 +130,13 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
 
 def _start_ensemble_sampler(fitted: FittedModel, seed: int) -> Any:
     """Create an ensemble sampler, run its burn-in, and adapt its proposals to the first chains."""
+    from scipy.stats import multivariate_t
+
     random = numpy.random.RandomState(seed)
-    initial_proposal = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
-    start_points = initial_proposal.draw(_N_WALKERS, random)
     transform = fitted.transform
+    unknown_count = len(transform.names)
+    initial_proposal = multivariate_t(fitted.best.theta, fitted.information.covariance, df=_PROPOSAL_FREEDOM)
+    start_points = initial_proposal.rvs(_N_WALKERS, random_state=random).reshape(_N_WALKERS, unknown_count)
     uniform_start = transform.low + (transform.high - transform.low) * random.random_sample(start_points.shape)
     start_points = numpy.where(
         (start_points > transform.low) & (start_points < transform.high), start_points, uniform_start
@@ -141,51 +144,31 @@ def _start_ensemble_sampler(fitted: FittedModel, seed: int) -> Any:
     burn_in_sampler = _make_ensemble_sampler(fitted, initial_proposal, random)
     start_points = burn_in_sampler.run_mcmc(start_points, _BURN_IN, skip_initial_state_check=True).coords
     chain = burn_in_sampler.get_chain(discard=_BURN_IN // 2, flat=True)
-    unknown_count = len(transform.names)
     covariance = numpy.cov(chain.T).reshape(2 * [unknown_count]) + 1e-12 * numpy.eye(unknown_count)
-    adapted_sampler = _make_ensemble_sampler(
-        fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random
-    )
+    adapted_proposal = multivariate_t(chain.mean(axis=0), covariance, df=_PROPOSAL_FREEDOM)
+    adapted_sampler = _make_ensemble_sampler(fitted, adapted_proposal, random)
     state = adapted_sampler.run_mcmc(start_points, _BURN_IN // 2, skip_initial_state_check=True)
     adapted_sampler.reset()
     adapted_sampler.run_mcmc(state, 1, skip_initial_state_check=True)
     return adapted_sampler
 
 
-def _make_ensemble_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
+def _make_ensemble_sampler(fitted: FittedModel, proposal: Any, random: Any) -> Any:
+    """Create a sampler whose proposals are half draws from a distribution, and half moves between walkers."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove
 
-    moves = [(MHMove(proposal), 0.5), (DEMove(), 0.35), (StretchMove(), 0.15)]
-    unknown_count = len(proposal.centre)
-    sampler = EnsembleSampler(_N_WALKERS, unknown_count, fitted.misfit.log_posterior, moves=moves, vectorize=True)
+    def draw(theta: Numbers, random: Any) -> tuple[Numbers, Numbers]:
+        """Propose a new point for each walker; also return the logarithm of the density ratio."""
+        new_theta = proposal.rvs(len(theta), random_state=random).reshape(theta.shape)
+        return new_theta, proposal.logpdf(theta) - proposal.logpdf(new_theta)
+
+    moves = [(MHMove(draw), 0.5), (DEMove(), 0.35), (StretchMove(), 0.15)]
+    sampler = EnsembleSampler(
+        _N_WALKERS, len(fitted.transform.names), fitted.misfit.log_posterior, moves=moves, vectorize=True
+    )
     sampler.random_state = random.get_state()
     return sampler
-
-
-@dataclass(frozen=True, eq=False)
-class _StudentProposal:
-    """Proposal distribution of Markov chains: Student's t about a centre."""
-
-    centre: Numbers
-    root: Numbers
-
-    def draw(self, count: int, random: Any) -> Numbers:
-        """Draw points theta (count, unknowns) from the proposal distribution."""
-        size = len(self.centre)
-        scale = numpy.sqrt(_PROPOSAL_FREEDOM / random.chisquare(_PROPOSAL_FREEDOM, (count, 1)))
-        return self.centre + scale * random.standard_normal((count, size)) @ self.root.T
-
-    def log_density(self, theta: Numbers) -> Numbers:
-        """Compute the logarithm of the proposal density at points theta, up to a constant: (points,)."""
-        standard = numpy.linalg.solve(self.root, (theta - self.centre).T)
-        exponent = -(_PROPOSAL_FREEDOM + len(self.centre)) / 2
-        return exponent * numpy.log1p(numpy.sum(standard**2, axis=0) / _PROPOSAL_FREEDOM)
-
-    def __call__(self, theta: Numbers, random: Any) -> tuple[Numbers, Numbers]:
-        """Propose a new point for each walker; also return the logarithm of the density ratio."""
-        new_theta = self.draw(len(theta), random)
-        return new_theta, self.log_density(theta) - self.log_density(new_theta)
 
 
 def _autocorrelation_time(chains: Numbers) -> float:

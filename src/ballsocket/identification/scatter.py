@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, lgamma, log, pi
+from math import inf, pi, sqrt
 from typing import Protocol
 
 import numpy
@@ -34,10 +34,6 @@ class ScatterModel(Protocol):
     def information(self) -> float:
         """Fisher information of one reading about the true value, in 1/uncertainty²."""
 
-    @property
-    def constant(self) -> float:
-        """Logarithm of the probability density at 0, for an uncertainty of 1."""
-
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw random readings about 0 with an uncertainty of 1."""
 
@@ -50,10 +46,6 @@ class NormalScatter(ScatterModel):
     def information(self) -> float:
         return 1.0
 
-    @property
-    def constant(self) -> float:
-        return -log(2 * pi) / 2
-
     def misfit(self, z: Numbers) -> Numbers:
         return z
 
@@ -64,7 +56,7 @@ class NormalScatter(ScatterModel):
         from scipy.special import log_ndtr
 
         log_probability = log_ndtr(z)
-        return _censored_residual(log_probability, numpy.exp(self.constant - z * z / 2 - log_probability))
+        return _censored_residual(log_probability, numpy.exp(-z * z / 2 - log_probability) / sqrt(2 * pi))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         return random.standard_normal(count)
@@ -99,11 +91,6 @@ class HeavyTailed(ScatterModel):
     def information(self) -> float:
         return (self.degrees + 1) / (self.degrees + 3)
 
-    @property
-    def constant(self) -> float:
-        n = self.degrees
-        return lgamma((n + 1) / 2) - lgamma(n / 2) - log(n * pi) / 2
-
     def misfit(self, z: Numbers) -> Numbers:
         # r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom
         return numpy.sign(z) * numpy.sqrt((self.degrees + 1) * numpy.log1p(z * z / self.degrees))
@@ -115,12 +102,10 @@ class HeavyTailed(ScatterModel):
         return numpy.where(at_centre, ((n + 1) / n) ** 0.5, slope)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        from scipy.special import stdtr
+        from scipy.stats import t
 
-        probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
-        return _censored_residual(
-            numpy.log(probability), numpy.exp(self.constant - self.misfit(z) ** 2 / 2) / probability
-        )
+        probability = numpy.maximum(t.cdf(z, self.degrees), 1e-300)
+        return _censored_residual(numpy.log(probability), t.pdf(z, self.degrees) / probability)
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         return random.standard_t(self.degrees, count)

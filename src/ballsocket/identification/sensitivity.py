@@ -73,7 +73,7 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     errors = numpy.stack(
         [_change_by_machine_error(fitted, machine, error, values, results) for machine, error in neglected_errors]
     )
-    theta_shifts = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
+    theta_shifts = fitted.information.covariance @ fitted.misfit.weighted_slopes(theta)[1] @ errors.T
     shifts = transform.derivatives(theta)[:, None] * theta_shifts
     unidentifiable = [name in fitted.information.unidentifiable for name in transform.names]
     shifts[unidentifiable] = numpy.nan

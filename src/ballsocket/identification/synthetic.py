@@ -87,11 +87,10 @@ def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple
 
     The values include the errors of the loads.
     """
-    widened = fitted.misfit.widening * fitted.misfit.uncertainty
-    uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
     sets = []
-    for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True):
-        readings = results + uncertainty * fitted.misfit.scatter.draw(len(measured), random)
+    for measured, results, uncertainty in zip(fitted.data, fitted.results, fitted.uncertainties, strict=True):
+        deviations = fitted.misfit.scatter.draw(len(measured), random)
+        readings = results + fitted.misfit.widening * uncertainty * deviations
         least = -inf if measured.machine.name else 0.0
         sets.append(replace(measured, values=numpy.clip(readings, least, measured.saturation)))
     return tuple(sets)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, log, sqrt
 from typing import Any
 
@@ -68,14 +69,6 @@ class Unknown:
     def to_scale(self, value: Array) -> Array:
         """Convert a value of the unknown to the search scale: its logarithm, or the value itself."""
         return numpy.log(value) if self.logarithmic else value
-
-    def from_scale(self, scaled: Array) -> Array:
-        """Convert a number on the search scale to a value of the unknown."""
-        return numpy.exp(scaled) if self.logarithmic else scaled
-
-    def derivative(self, scaled: Array) -> Array:
-        """Compute the derivative of the unknown's value with respect to its number on the search scale."""
-        return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
 
 
 def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
@@ -168,6 +161,20 @@ class ParameterTransform:
         """Names of the unknowns."""
         return tuple(unknown.name for unknown in self.unknowns)
 
+    @cached_property
+    def has_distribution(self) -> Numbers:
+        """Mask (unknowns,) of the unknowns whose prior is a distribution, not only a range."""
+        return numpy.array([unknown.has_distribution for unknown in self.unknowns])
+
+    @cached_property
+    def deviations(self) -> Numbers:
+        """Standard deviations (unknowns,) of the priors on the search scale."""
+        return numpy.array([unknown.prior_deviation for unknown in self.unknowns])
+
+    @cached_property
+    def _logarithmic(self) -> Numbers:
+        return numpy.array([unknown.logarithmic for unknown in self.unknowns])
+
     @property
     def low(self) -> Numbers:
         """Lower ends of the search ranges, as scaled parameters theta (unknowns,)."""
@@ -180,35 +187,26 @@ class ParameterTransform:
 
     def to_theta(self, values: Any) -> Numbers:
         """Convert values of the unknowns (..., unknowns) to scaled parameters theta."""
-        columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
-        unknowns_and_columns = zip(self.unknowns, columns, strict=True)
-        return numpy.stack(
-            [unknown.to_scale(column) / unknown.prior_deviation for unknown, column in unknowns_and_columns], axis=-1
-        )
+        scaled = numpy.array(values, dtype=float)
+        scaled[..., self._logarithmic] = numpy.log(scaled[..., self._logarithmic])
+        return scaled / self.deviations
 
     def to_values(self, theta: Numbers) -> Numbers:
         """Convert scaled parameters theta (..., unknowns) to values of the unknowns."""
-        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        return numpy.stack(
-            [unknown.from_scale(column * unknown.prior_deviation) for unknown, column in unknowns_and_columns], axis=-1
-        )
+        values: Numbers = theta * self.deviations
+        values[..., self._logarithmic] = numpy.exp(values[..., self._logarithmic])
+        return values
 
     def derivatives(self, theta: Numbers) -> Numbers:
         """Compute the derivative of each unknown's value with respect to its theta: (..., unknowns)."""
-        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        columns = [
-            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation
-            for unknown, column in unknowns_and_columns
-        ]
-        return numpy.stack(columns, axis=-1)
+        return numpy.where(self._logarithmic, self.to_values(theta), 1.0) * self.deviations
 
     def prior_residuals(self, theta: Numbers) -> Numbers:
         """Compute the deviation of each theta from its prior mean, in standard deviations.
 
         It is 0 for a range.
         """
-        has_distribution = numpy.array([unknown.has_distribution for unknown in self.unknowns])
-        return numpy.where(has_distribution, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
+        return numpy.where(self.has_distribution, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
 
 
 def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
@@ -217,7 +215,6 @@ def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
     All values in a range are equally likely.
     """
     in_range = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
-    has_range = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
-    log_jacobian = numpy.sum(has_range * numpy.log(transform.derivatives(theta)), axis=-1)
+    log_jacobian = numpy.sum(numpy.log(transform.derivatives(theta))[..., ~transform.has_distribution], axis=-1)
     half_squares = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
     return numpy.where(in_range, log_jacobian - half_squares, -inf)
