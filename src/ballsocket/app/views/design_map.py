@@ -20,13 +20,12 @@ from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
-from ..view import Document, Host, View, field_places
-from ..widgets.controls import Changes, Control, chosen, parameter
+from ..view import Document, View, field_places
+from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ..widgets.fields import choice, empty_number, segments
 from ..widgets.limit_rows import limit_text, limits_control, present_value
 from ..widgets.reading import Reading, box_text
-from ..widgets.words import alert, column_of, unit_of_files
+from ..widgets.words import alert, column_of
 from .compare import with_compared
 from .map_study import (
     allowed_points,
@@ -107,8 +106,7 @@ class DesignMap(View):
 </div>
 """
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
+    def begin(self) -> None:
         self.actions |= {
             "map.drag": self._drag,
             "map.pick": self._pick,
@@ -225,12 +223,12 @@ def _point_html(screen: Screen) -> str:
 
 def _rows(results: Any, reading: Reading) -> list[list[Any]]:
     flat, heads = results.to_dataframe().reset_index(), []
-    for name in flat.columns:
-        quantity = BOUNDS.get(name) or QUANTITIES.get(name)
+    for column in flat.columns:
+        name, quantity = column, BOUNDS.get(column) or QUANTITIES.get(column)
         if quantity is not None:
-            unit = unit_of_files(quantity, reading)
-            flat[name] = flat[name] * unit.factor
-        heads.append(name if quantity is None else column_of(quantity, unit))
+            name, factor = column_of(quantity, reading)
+            flat[column] = flat[column] * factor
+        heads.append(name)
     return [heads, *flat.to_numpy(dtype=object).tolist()]
 
 

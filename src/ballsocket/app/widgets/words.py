@@ -125,7 +125,7 @@ def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) ->
         [name, *(float(values_of(contact, *column)) for column in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(column_of(*column) for column in columns), "valid"], *rows]
+    return [[head, *(column_of(quantity, reading)[0] for quantity in CONTACT.values()), "valid"], *rows]
 
 
 def value_text(value: Any) -> str:
@@ -140,11 +140,13 @@ def unit_of_files(quantity: Quantity, reading: Reading) -> Unit:
     return quantity.written if reading.units is Units.SI else reading.unit(quantity)
 
 
-def column_of(quantity: Quantity, unit: Unit) -> str:
-    """Return the heading of a column in a file, which ends in the unit."""
+def column_of(quantity: Quantity, reading: Reading) -> tuple[str, float]:
+    """Return the heading of a column in a file, which ends in the unit, and the factor of its numbers."""
+    unit = unit_of_files(quantity, reading)
     if unit == quantity.written or not unit.text:
-        return quantity.column
-    return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"
+        return quantity.column, unit.factor
+    spelt = _SPELT.get(unit.text, unit.text).replace("/", "_per_").replace(" ", "_")
+    return f"{quantity.name}_{spelt}", unit.factor
 
 
 VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
