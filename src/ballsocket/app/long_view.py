@@ -145,18 +145,15 @@ class LongView(View):
 
     def begin(self) -> None:
         self.works: list[LongWork] = []
-        self.long = LongWork(
-            *(self.page, self.name, self.run_label, self.question_of, self.work, self.show_result),
-            automatic=self.automatic,
-            longest=self.longest,
-            kind=self.result_kind,
-        )
-        self.add(self.long)
+        limits: dict[str, Any] = {"automatic": self.automatic, "longest": self.longest, "kind": self.result_kind}
+        parts = self.name, self.run_label, self.question_of, self.work, self.show_result
+        self.long = self.add(LongWork(self.page, *parts, **limits))
 
-    def add(self, work: LongWork) -> None:
+    def add(self, work: LongWork) -> LongWork:
         """Let the view have some long work with its button."""
         self.works.append(work)
         self.actions[f"{work.name}.run"] = work.click
+        return work
 
     @abstractmethod
     def question_of(self, screen: Screen) -> Hashable:

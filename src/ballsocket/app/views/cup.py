@@ -68,7 +68,7 @@ class CupView(LongView):
 
     def begin(self) -> None:
         super().begin()
-        self.orientations = LongWork(
+        work = LongWork(
             self.page,
             "cup-stood",
             "Compute the map",
@@ -77,7 +77,7 @@ class CupView(LongView):
             self._show_map,
             automatic=True,
         )
-        self.add(self.orientations)
+        self.orientations = self.add(work)
         self.actions |= {"cup.usual": lambda value: self._set_angles(**_TYPICAL), "cup.pick": self._pick}
 
     def controls(self, screen: Screen) -> list[Control]:

@@ -29,7 +29,6 @@ from ..widgets.words import alert, column_of
 from .compare import with_compared
 from .map_study import (
     allowed_points,
-    axis_label,
     best_point,
     catalogue_sizes,
     check_map,
@@ -237,15 +236,14 @@ def map_picture(results: Any, screen: Screen) -> str:
 
     The part that is undecided is faded, and the part that exceeds a limit once more.
     """
-    axes = screen.across.name, screen.up.name
-    label, factor = axis_label(screen.quantity, screen)
+    axes, reading = (screen.across.name, screen.up.name), screen.reading
+    label, x_label, y_label = (reading.label(QUANTITIES[name]) for name in (screen.quantity, *axes))
+    factor, x_factor, y_factor = (reading.unit(QUANTITIES[name]).factor for name in (screen.quantity, *axes))
     values = results[screen.quantity].transpose(*axes[::-1]).values * factor
     if numpy.isnan(values).all():
         raise ValueError(f"{results.attrs['model']} has no result anywhere on this map: choose another model")
-    (x_label, x_factor), (y_label, y_factor) = (axis_label(name, screen) for name in axes)
-    plane = MapPlane(
-        x=results[axes[0]].values * x_factor, y=results[axes[1]].values * y_factor, x_label=x_label, y_label=y_label
-    )
+    x, y = results[axes[0]].values * x_factor, results[axes[1]].values * y_factor
+    plane = MapPlane(x=x, y=y, x_label=x_label, y_label=y_label)
     picked = screen.picked
     x, y = (present_value(screen.file, name) for name in axes)
     margins = relative_margins(results, limits_of(screen), *axes)

@@ -66,7 +66,7 @@ class Gait(LongView):
         super().begin()
         self._upload: UploadedCycle | None = None
         self._cycle = self.page.screen.use.cycle
-        self.film = LongWork(
+        work = LongWork(
             self.page,
             "gait-film",
             "Compute the film",
@@ -76,7 +76,7 @@ class Gait(LongView):
             automatic=True,
             longest=_FILM_SECONDS,
         )
-        self.add(self.film)
+        self.film = self.add(work)
         self.actions |= {"gait.own": self._take_upload, "gait.instant": self._take_instant}
 
     def controls(self, screen: Screen) -> list[Control]:
