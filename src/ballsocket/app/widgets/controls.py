@@ -168,8 +168,8 @@ class Control:
 
 
 def by_name(controls: Iterable[Control], prefix: str = "") -> dict[str, Control]:
-    """Return inputs by their names, which begin with a prefix."""
-    named = (control.but(name=f"{prefix}{control.field['name']}") for control in controls)
+    """Return inputs by their names, before which stands a prefix."""
+    named = (control.but(name=f"{prefix}{control.field['name']}") if prefix else control for control in controls)
     return {control.field["name"]: control for control in named}
 
 

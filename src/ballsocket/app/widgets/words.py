@@ -93,8 +93,10 @@ def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     row = f"<tr class='{kind}'>{head}{cells}<td class='text'>{'yes' if valid else 'no'}</td></tr>"
-    why = f"<tr class='why'><td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td></tr>"
-    return row if valid else row + why
+    if valid:
+        return row
+    why = f"<td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td>"
+    return f"{row}<tr class='why'>{why}</tr>"
 
 
 def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
