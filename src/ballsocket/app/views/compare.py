@@ -48,7 +48,10 @@ class Compare(View):
 """
 
     def begin(self) -> None:
-        self.actions |= {"compare.keep": self._keep, "compare.remove": self._remove}
+        self.actions |= {
+            "compare.keep": lambda value: with_compared(self.page.screen, self.page.screen.file),
+            "compare.remove": self._remove,
+        }
 
     def controls(self, screen: Screen) -> list[Control]:
         files = compared_files(screen)
@@ -61,9 +64,6 @@ class Compare(View):
             ),
             chosen(screen, "base", "Differences from", options).but(value=str(base)),
         ]
-
-    def _keep(self, value: Any) -> Changes:
-        return with_compared(self.page.screen, self.page.screen.file)
 
     def _remove(self, name: Any) -> Changes:
         screen = self.page.screen

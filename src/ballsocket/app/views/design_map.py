@@ -108,7 +108,7 @@ class DesignMap(View):
     def begin(self) -> None:
         self.actions |= {
             "map.drag": self._drag,
-            "map.pick": self._pick,
+            "map.pick": lambda value: self._at(*self._in_study(*read_point(value, 2))),
             "map.best": self._best,
             "map.use": lambda value: {"file": self._picked_file(), "picked": None},
             "map.compare": lambda value: with_compared(self.page.screen, self._picked_file()),
@@ -137,9 +137,6 @@ class DesignMap(View):
         number, *point = read_point(value, 3)
         screen = self.page.screen
         return {"limits": move_limit(mapped(screen), screen, int(number), self._in_study(*point))}
-
-    def _pick(self, value: Any) -> Changes:
-        return self._at(*self._in_study(*read_point(value, 2)))
 
     def _best(self, value: Any) -> Changes:
         best = best_point(mapped(self.page.screen), self.page.screen)
