@@ -21,8 +21,7 @@ from ballsocket.app.session import Page
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, link_of_file, read_link
-from ballsocket.app.widgets.controls import by_name, fields_of
-from ballsocket.app.widgets.fields import in_words_of
+from ballsocket.app.widgets.controls import by_name, fields_of, refusal_of
 from ballsocket.app.widgets.joint_controls import cup_controls, joint_controls
 from ballsocket.app.widgets.reading import box_text, handy_step, number_text
 from ballsocket.core.quantities import QUANTITIES
@@ -343,7 +342,7 @@ def test_a_refusal_of_the_mechanics_has_the_words_of_the_field_too():
     with pytest.raises(ValueError, match="outer_radius = 5.0 is not allowed") as refused:
         typed("outer_radius", "10")
     sentence = rf"Outer diameter 10 mm is not allowed: it must leave a liner.*; {field['text']} mm stays in use"
-    assert re.fullmatch(sentence, in_words_of(field, str(refused.value), "10 mm"))
+    assert re.fullmatch(sentence, refusal_of(field, refused.value, "10 mm")["error"])
 
 
 def test_a_changed_preset_keeps_its_name_but_not_its_source():

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from .widgets.fields import Field
+from .widgets.controls import Field
 
 MAX_REQUEST_LENGTH = 300_000  # characters of one request: an uploaded joint file is shorter
 

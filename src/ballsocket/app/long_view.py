@@ -7,14 +7,17 @@ from abc import abstractmethod
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import results
 from .jobs import Job
 from .running import MAX_SECONDS, Reached, RunFinished, RunRefused, Work
 from .state.screen import Screen
-from .view import Host, View
+from .view import View
 from .widgets.words import alert
+
+if TYPE_CHECKING:
+    from .session import Page
 
 _EARLIER = "<p class='earlier'>These results belong to an earlier design.</p>"
 
@@ -32,7 +35,7 @@ def long_body(view: str, inputs: str, shown: str) -> str:
 class LongWork:
     """Long work of a view with its button, a field of kind `run` that is named "<name>.run"."""
 
-    page: Host
+    page: Page
     name: str  # also of the elements "<name>-trouble" and "<name>-earlier"
     label: str  # words on the button
     question_of: Callable[[Screen], Hashable]  # equal keys of one `kind` have one result on all pages
@@ -140,21 +143,17 @@ class LongView(View):
     longest = MAX_SECONDS
     result_kind = ""
 
-    def __init__(self, page: Host) -> None:
-        self.long = LongWork(
-            *(page, self.name, self.run_label, self.question_of, self.work, self.show_result),
-            automatic=self.automatic,
-            longest=self.longest,
-            kind=self.result_kind,
-        )
-        super().__init__(page)
+    def begin(self) -> None:
         self.works: list[LongWork] = []
-        self.add(self.long)
+        limits: dict[str, Any] = {"automatic": self.automatic, "longest": self.longest, "kind": self.result_kind}
+        parts = self.name, self.run_label, self.question_of, self.work, self.show_result
+        self.long = self.add(LongWork(self.page, *parts, **limits))
 
-    def add(self, work: LongWork) -> None:
+    def add(self, work: LongWork) -> LongWork:
         """Let the view have some long work with its button."""
         self.works.append(work)
         self.actions[f"{work.name}.run"] = work.click
+        return work
 
     @abstractmethod
     def question_of(self, screen: Screen) -> Hashable:

@@ -145,7 +145,6 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
 
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
-    depth, force = force_axes(reading.units)
     (x, y), (depth, force) = FORCE_CURVE, force_axes(reading.units)
     marks = {
         name: (float(values_of(contact, x, depth)), float(values_of(contact, y, force)))

@@ -21,8 +21,7 @@ from .state.designs import read_upload, session_text
 from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_query
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
-from .widgets.controls import Changes, Reader, by_name, chosen, fields_of
-from .widgets.fields import refusal_of, segments
+from .widgets.controls import Changes, Reader, by_name, chosen, fields_of, refusal_of, segments
 from .widgets.joint_controls import joint_controls, joint_words, layer_controls
 from .widgets.words import alert
 
@@ -74,6 +73,7 @@ class Page:
         self.channel.put("#trouble", alert(sentence) if sentence else "")
 
     def ask(self, **changes: Any) -> None:
+        """Change fields of the screen by name."""
         screen = replace(self.screen, **changes)
         if screen == self.screen and screen.link == self.screen.link:  # a default and the same number typed are equal
             return
@@ -93,6 +93,8 @@ class Page:
         self._change(self._read(str(words.get("query"))))
 
     def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
+        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
+
         def due() -> None:
             cancel()
             self.attempt(function)
@@ -211,6 +213,7 @@ class Page:
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
 
     def attempt(self, action: Callable[[], None]) -> None:
+        """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
         try:
             action()
         except Exception as error:  # the page must report every failure

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from html import escape
 from io import StringIO
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..contact import Contact
 from ..core.checks import check_names
@@ -20,13 +20,15 @@ from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
 from ..reports.pages import pdf_of, picture
 from ..reports.press_report import joint_report
-from .channel import Channel
 from .jobs import run_in_thread
 from .running import Report
 from .state.designs import file_stem
 from .state.screen import Screen
 from .widgets.controls import Control, Reader, by_name, fields_of
 from .widgets.words import alert
+
+if TYPE_CHECKING:
+    from .session import Page
 
 STRESS_PAUSE = 0.4  # seconds without a change until the stress of the model itself is computed for the checks
 T = TypeVar("T")
@@ -52,23 +54,6 @@ def field_places(view: str, keys: Iterable[str]) -> str:
     return "".join(f'<div data-field="{view}.{key}"></div>' for key in keys)
 
 
-class Host(Protocol):
-    """Interface of the page for a view."""
-
-    channel: Channel
-    screen: Screen
-    controls: Mapping[str, Control]
-
-    def ask(self, **changes: Any) -> None:
-        """Change fields of the screen by name."""
-
-    def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
-        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
-
-    def attempt(self, action: Callable[[], None]) -> None:
-        """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
-
-
 class View(ABC):
     """View of the screen, made with its page when it is first opened.
 
@@ -80,10 +65,14 @@ class View(ABC):
     title = ""
     body = ""
 
-    def __init__(self, page: Host) -> None:
+    def __init__(self, page: Page) -> None:
         self.page, self.channel = page, page.channel
         self.actions: dict[str, Reader] = {}
         self._cancel: Callable[[], None] = lambda: None
+        self.begin()
+
+    def begin(self) -> None:  # noqa: B027  some views have nothing more
+        """Set up the actions and the work of the view."""
 
     @abstractmethod
     def show(self, screen: Screen) -> None:

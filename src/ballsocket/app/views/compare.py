@@ -20,10 +20,9 @@ from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
 from ..pressing import fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
-from ..view import STRESS_PAUSE, Document, Host, View, field_places
-from ..widgets.controls import Changes, Control, chosen
+from ..view import STRESS_PAUSE, Document, View, field_places
+from ..widgets.controls import Changes, Control, choice, chosen
 from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
-from ..widgets.fields import choice
 from ..widgets.words import number_rows
 
 _CHOOSE = ""
@@ -48,9 +47,11 @@ class Compare(View):
 <div id="compare-charts"></div>
 """
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
-        self.actions |= {"compare.keep": self._keep, "compare.remove": self._remove}
+    def begin(self) -> None:
+        self.actions |= {
+            "compare.keep": lambda value: with_compared(self.page.screen, self.page.screen.file),
+            "compare.remove": self._remove,
+        }
 
     def controls(self, screen: Screen) -> list[Control]:
         files = compared_files(screen)
@@ -63,9 +64,6 @@ class Compare(View):
             ),
             chosen(screen, "base", "Differences from", options).but(value=str(base)),
         ]
-
-    def _keep(self, value: Any) -> Changes:
-        return with_compared(self.page.screen, self.page.screen.file)
 
     def _remove(self, name: Any) -> Changes:
         screen = self.page.screen

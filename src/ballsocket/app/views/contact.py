@@ -28,9 +28,8 @@ from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
 from ..pressing import fine_curves, is_waiting, press_charts, pressed
 from ..running import Work
 from ..state.screen import Screen
-from ..view import STRESS_PAUSE, Document, Host
-from ..widgets.controls import Control, chosen, fields_of
-from ..widgets.fields import segments, several
+from ..view import STRESS_PAUSE, Document
+from ..widgets.controls import Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
 from .contact_drawing import first_view, frame_of, key
 from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
@@ -71,8 +70,8 @@ class Press(LongView):
 <div id="press-table"></div>
 """
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
+    def begin(self) -> None:
+        super().begin()
         self._real: OffAxisContact | None = None
         self._requested: Hashable = None  # bore for which the real cup was requested
         self.actions["press.run"] = self._request_cup

@@ -15,7 +15,7 @@ from ...files.joint_file import JointFile
 from ...reports.section_plots import gap_factor, radii_of
 from ..pictures import svg
 from ..pictures.section import DrawingFrame, ball, layers, painted
-from ..widgets.fields import Field
+from ..widgets.controls import Field
 from ..widgets.reading import number_text
 
 Formatter = Callable[[float], str]

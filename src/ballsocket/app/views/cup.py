@@ -28,12 +28,11 @@ from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..running import Work
 from ..state.screen import STANDINGS, Screen
-from ..view import Document, Host, field_places
-from ..widgets.controls import Changes, Control, by_name, chosen
-from ..widgets.fields import segments
+from ..view import Document, field_places
+from ..widgets.controls import Changes, Control, by_name, chosen, segments
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading
-from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, unit_of_files, value_text
+from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, value_text
 from .real_cup import (
     LEWINNEK,
     OrientationMap,
@@ -67,10 +66,10 @@ class CupView(LongView):
 </figure>
 """
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
-        self.orientations = LongWork(
-            page,
+    def begin(self) -> None:
+        super().begin()
+        work = LongWork(
+            self.page,
             "cup-stood",
             "Compute the map",
             lambda screen: orientation_key(screen.file),
@@ -78,7 +77,7 @@ class CupView(LongView):
             self._show_map,
             automatic=True,
         )
-        self.add(self.orientations)
+        self.orientations = self.add(work)
         self.actions |= {"cup.usual": lambda value: self._set_angles(**_TYPICAL), "cup.pick": self._pick}
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -173,8 +172,8 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
-            unit = unit_of_files(quantity, reading)
-            yield [column_of(quantity, unit), value / quantity.written.factor * unit.factor]
+            heading, factor = column_of(quantity, reading)
+            yield [heading, value / quantity.written.factor * factor]
         elif isinstance(value, float | int | str | bool):
             yield [name, value]
 
@@ -205,7 +204,7 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     bar, verdict = error_bar(contact, EDGE_DISTANCE), rim_verdict(contact)
-    apart = reading.with_known_digits(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
+    apart = reading.with_unit(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
     apart += f" ({_edge_margin_text(contact, reading)})"
     if contact.status.failed:
         verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
@@ -226,7 +225,7 @@ def _verdict(contact: OffAxisContact, reading: Reading) -> str:
 def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:
     """Write the angle from the contact to the rim with the digits that are known."""
     margin, error = float(contact.edge_margin), float(contact.error["edge_margin"])
-    return reading.with_known_digits(CUP["inclination"], margin, error)
+    return reading.with_unit(CUP["inclination"], margin, error)
 
 
 def _hint(contact: OffAxisContact) -> str:

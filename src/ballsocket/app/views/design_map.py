@@ -20,17 +20,15 @@ from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
-from ..view import Document, Host, View, field_places
-from ..widgets.controls import Changes, Control, chosen, parameter
+from ..view import Document, View, field_places
+from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ..widgets.fields import choice, empty_number, segments
 from ..widgets.limit_rows import limit_text, limits_control, present_value
 from ..widgets.reading import Reading, box_text
-from ..widgets.words import alert, column_of, unit_of_files
+from ..widgets.words import alert, column_of
 from .compare import with_compared
 from .map_study import (
     allowed_points,
-    axis_label,
     best_point,
     catalogue_sizes,
     check_map,
@@ -107,11 +105,10 @@ class DesignMap(View):
 </div>
 """
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
+    def begin(self) -> None:
         self.actions |= {
             "map.drag": self._drag,
-            "map.pick": self._pick,
+            "map.pick": lambda value: self._at(*self._in_study(*read_point(value, 2))),
             "map.best": self._best,
             "map.use": lambda value: {"file": self._picked_file(), "picked": None},
             "map.compare": lambda value: with_compared(self.page.screen, self._picked_file()),
@@ -140,9 +137,6 @@ class DesignMap(View):
         number, *point = read_point(value, 3)
         screen = self.page.screen
         return {"limits": move_limit(mapped(screen), screen, int(number), self._in_study(*point))}
-
-    def _pick(self, value: Any) -> Changes:
-        return self._at(*self._in_study(*read_point(value, 2)))
 
     def _best(self, value: Any) -> Changes:
         best = best_point(mapped(self.page.screen), self.page.screen)
@@ -225,12 +219,12 @@ def _point_html(screen: Screen) -> str:
 
 def _rows(results: Any, reading: Reading) -> list[list[Any]]:
     flat, heads = results.to_dataframe().reset_index(), []
-    for name in flat.columns:
-        quantity = BOUNDS.get(name) or QUANTITIES.get(name)
+    for column in flat.columns:
+        name, quantity = column, BOUNDS.get(column) or QUANTITIES.get(column)
         if quantity is not None:
-            unit = unit_of_files(quantity, reading)
-            flat[name] = flat[name] * unit.factor
-        heads.append(name if quantity is None else column_of(quantity, unit))
+            name, factor = column_of(quantity, reading)
+            flat[column] = flat[column] * factor
+        heads.append(name)
     return [heads, *flat.to_numpy(dtype=object).tolist()]
 
 
@@ -239,15 +233,14 @@ def map_picture(results: Any, screen: Screen) -> str:
 
     The part that is undecided is faded, and the part that exceeds a limit once more.
     """
-    axes = screen.across.name, screen.up.name
-    label, factor = axis_label(screen.quantity, screen)
+    axes, reading = (screen.across.name, screen.up.name), screen.reading
+    label, x_label, y_label = (reading.label(QUANTITIES[name]) for name in (screen.quantity, *axes))
+    factor, x_factor, y_factor = (reading.unit(QUANTITIES[name]).factor for name in (screen.quantity, *axes))
     values = results[screen.quantity].transpose(*axes[::-1]).values * factor
     if numpy.isnan(values).all():
         raise ValueError(f"{results.attrs['model']} has no result anywhere on this map: choose another model")
-    (x_label, x_factor), (y_label, y_factor) = (axis_label(name, screen) for name in axes)
-    plane = MapPlane(
-        x=results[axes[0]].values * x_factor, y=results[axes[1]].values * y_factor, x_label=x_label, y_label=y_label
-    )
+    x, y = results[axes[0]].values * x_factor, results[axes[1]].values * y_factor
+    plane = MapPlane(x=x, y=y, x_label=x_label, y_label=y_label)
     picked = screen.picked
     x, y = (present_value(screen.file, name) for name in axes)
     margins = relative_margins(results, limits_of(screen), *axes)

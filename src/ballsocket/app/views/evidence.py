@@ -41,9 +41,8 @@ from ..pressing import pressed
 from ..running import Reached, Report, Work
 from ..state.screen import EvidenceQuestion, Screen, phrases_of
 from ..state.use import Use
-from ..view import Document, Host, field_places
-from ..widgets.controls import Changes, Control, changed, chosen, text
-from ..widgets.fields import segments
+from ..view import Document, field_places
+from ..widgets.controls import Changes, Control, changed, chosen, segments, text
 from ..widgets.limit_rows import limits_control, present_value
 from ..widgets.words import VERDICT_KINDS, alert
 
@@ -62,8 +61,8 @@ class Evidence(LongView):
     title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
     body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
+    def begin(self) -> None:
+        super().begin()
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self.actions |= {"evidence.take": self._take, "evidence.allowable": self._limit_allowable}
 

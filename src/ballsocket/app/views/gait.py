@@ -29,9 +29,8 @@ from ..pressing import rounded_up
 from ..running import Work
 from ..state.screen import Screen
 from ..state.use import FIELDS, UploadedCycle
-from ..view import Document, Host
-from ..widgets.controls import Changes, Control, changed, chosen, cycle_controls
-from ..widgets.fields import segments
+from ..view import Document
+from ..widgets.controls import Changes, Control, changed, chosen, cycle_controls, segments
 from ..widgets.reading import Reading
 from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
 from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
@@ -63,12 +62,12 @@ class Gait(LongView):
     name, title, run_label, automatic = "gait", "Gait", "Compute the cycle", True
     body = long_body("gait", _INPUTS, _SHOWN)
 
-    def __init__(self, page: Host) -> None:
-        super().__init__(page)
+    def begin(self) -> None:
+        super().begin()
         self._upload: UploadedCycle | None = None
-        self._cycle = page.screen.use.cycle
-        self.film = LongWork(
-            page,
+        self._cycle = self.page.screen.use.cycle
+        work = LongWork(
+            self.page,
             "gait-film",
             "Compute the film",
             self.question_of,
@@ -77,7 +76,7 @@ class Gait(LongView):
             automatic=True,
             longest=_FILM_SECONDS,
         )
-        self.add(self.film)
+        self.film = self.add(work)
         self.actions |= {"gait.own": self._take_upload, "gait.instant": self._take_instant}
 
     def controls(self, screen: Screen) -> list[Control]:

@@ -102,12 +102,6 @@ def allowed_points(results: Any, screen: Screen) -> Any:
     return allowed(results, limits_of(screen)).broadcast_like(results.max_pressure)
 
 
-def axis_label(name: str, screen: Screen) -> tuple[str, float]:
-    """Return the label of a quantity in its chosen unit, and the factor from the unit of a study."""
-    unit = screen.reading.unit(QUANTITIES[name])
-    return QUANTITIES[name].label(unit), unit.factor
-
-
 def best_point(results: Any, screen: Screen) -> dict[str, float] | None:
     """Return the parameters of the allowed point with the least value; None without one."""
     fine = allowed_points(results, screen)

@@ -26,8 +26,18 @@ from ..running import Work
 from ..state.screen import Screen
 from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
 from ..view import Document, field_places
-from ..widgets.controls import Changes, Control, amount, changed, chosen, cycle_controls
-from ..widgets.fields import capital, choice, number, segments
+from ..widgets.controls import (
+    Changes,
+    Control,
+    amount,
+    capital,
+    changed,
+    choice,
+    chosen,
+    cycle_controls,
+    number,
+    segments,
+)
 from ..widgets.reading import Reading
 from ..widgets.words import checked, doubt, notes_list, number_text, percent, unit_of_files
 from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key

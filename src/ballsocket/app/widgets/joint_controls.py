@@ -20,8 +20,7 @@ from ...problem.presets import joints, materials
 from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
-from .controls import Control, Number, file_choice, number_of
-from .fields import choice, segments, tick, words
+from .controls import Control, Number, choice, file_choice, number_of, segments, tick, words
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"

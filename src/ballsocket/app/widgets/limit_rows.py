@@ -14,8 +14,7 @@ from ...files.joint_file import JointFile
 from ...studies.limits import Limit
 from ...studies.parameters import nominal_value
 from ...studies.task import EDGE_DISTANCE
-from .controls import Changes, Control
-from .fields import capital, typed_quantity
+from .controls import Changes, Control, capital, typed_quantity
 from .reading import Reading, box_text
 
 _SIGNS = {"<=": "at most", ">=": "at least"}

@@ -48,21 +48,16 @@ class Reading:
         """Return title, symbol and unit for an axis."""
         return quantity.label(self.unit(quantity))
 
-    def with_unit(self, quantity: Quantity, value: float) -> str:
-        """Write a number in internal units with its chosen unit."""
-        unit = self.unit(quantity)
-        return f"{number_text(value * unit.factor, unit.text)}{unit_suffix(unit.text)}"
-
-    def with_known_digits(self, quantity: Quantity, value: float, error: float) -> str:
+    def with_unit(self, quantity: Quantity, value: float, error: float = 0.0) -> str:
         """Write a number in internal units with its chosen unit, without digits below its error.
 
-        Without a contact the error is 0, or NaN where there is no solution: then all digits are written.
+        All digits are written if the error is 0, or NaN where there is no solution.
         """
-        if not 0 < error < inf:
-            return self.with_unit(quantity, value)
         unit = self.unit(quantity)
-        decimals = max(0, ceil(-log10(error * unit.factor)))
-        return f"{number_text(round(value * unit.factor, decimals), unit.text)}{unit_suffix(unit.text)}"
+        number = value * unit.factor
+        if 0 < error < inf:
+            number = round(number, max(0, ceil(-log10(error * unit.factor))))
+        return f"{number_text(number, unit.text)}{unit_suffix(unit.text)}"
 
     def values_of(self, contact: Any, quantity: Quantity) -> Array:
         """Return a quantity of a contact in its chosen unit."""

@@ -93,8 +93,10 @@ def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     row = f"<tr class='{kind}'>{head}{cells}<td class='text'>{'yes' if valid else 'no'}</td></tr>"
-    why = f"<tr class='why'><td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td></tr>"
-    return row if valid else row + why
+    if valid:
+        return row
+    why = f"<td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td>"
+    return f"{row}<tr class='why'>{why}</tr>"
 
 
 def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
@@ -125,7 +127,7 @@ def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) ->
         [name, *(float(values_of(contact, *column)) for column in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(column_of(*column) for column in columns), "valid"], *rows]
+    return [[head, *(column_of(quantity, reading)[0] for quantity in CONTACT.values()), "valid"], *rows]
 
 
 def value_text(value: Any) -> str:
@@ -140,11 +142,13 @@ def unit_of_files(quantity: Quantity, reading: Reading) -> Unit:
     return quantity.written if reading.units is Units.SI else reading.unit(quantity)
 
 
-def column_of(quantity: Quantity, unit: Unit) -> str:
-    """Return the heading of a column in a file, which ends in the unit."""
+def column_of(quantity: Quantity, reading: Reading) -> tuple[str, float]:
+    """Return the heading of a column in a file, which ends in the unit, and the factor of its numbers."""
+    unit = unit_of_files(quantity, reading)
     if unit == quantity.written or not unit.text:
-        return quantity.column
-    return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"
+        return quantity.column, unit.factor
+    spelt = _SPELT.get(unit.text, unit.text).replace("/", "_per_").replace(" ", "_")
+    return f"{quantity.name}_{spelt}", unit.factor
 
 
 VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
