@@ -21,7 +21,7 @@ def test_a_contact_is_summarised_for_json():
     assert list(summary) == [
         *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
         *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "utilisation"),
-        *("utilisation_note", "pressure_ratio", "valid", "notes"),
+        *("pressure_ratio", "utilisation_note", "valid", "notes"),
     ]
     assert summary["half_angle_deg"] == pytest.approx(44.7199, abs=1e-4)
     assert summary["valid"] is True
