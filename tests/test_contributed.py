@@ -164,7 +164,7 @@ assert abs(abs(cycle.rotation_increments[:, 0]).sum() / 4 / 0.4 - 1) < 1e-2
 EXPLORER = """
 from ballsocket.app.state.use import CHOICES, hip_of, use_of, use_pairs
 from ballsocket.app.state.screen import Screen
-from ballsocket.app.views.wear import Wear
+from ballsocket.app.session import Page
 from ballsocket.files.joint_file import JointFile
 assert "pendulum" in CHOICES["cycle"]
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
@@ -172,7 +172,8 @@ assert use_of({name.partition(".")[2]: text for name, text in use_pairs(settings
 screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
 worn = hip_of(screen.file, settings)
 assert (worn.wear.threshold, worn.creep.time, worn.creep.compliance) == (0.25, 60.0, 1e-3)
-hidden = {setting.key: setting.field(screen).get("hidden", False) for setting in Wear.settings}
+fields = [control.field for control in Page("view=wear").view.controls(screen)]
+hidden = {field["name"]: field.get("hidden", False) for field in fields}
 assert (hidden["threshold"], hidden["creep_time"], hidden["circular"]) == (False, False, True)
 """
 ADDED = {
