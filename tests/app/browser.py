@@ -121,7 +121,7 @@ class User:
         return self
 
     def number(self, name):
-        return float(self.page.locator(f"dd[data-name={name}]").get_attribute("data-value"))
+        return float(self.page.locator(f"dd[data-name='{name}']").get_attribute("data-value"))
 
     def shows(self, name, value):
         return wait_until(lambda: self.number(name) == pytest.approx(value, rel=1e-9))
@@ -131,7 +131,7 @@ class User:
         wait_until(lambda: self.page.evaluate(condition))
 
     def nudge(self, slider, key="ArrowRight", times=1):
-        handle = self.page.locator(f"[data-name={slider}] input[type=range]")
+        handle = self.page.locator(f"[data-name='{slider}'] input[type=range]")
         handle.focus()
         for _ in range(times):
             handle.press(key)
@@ -141,7 +141,7 @@ class User:
         self.answered()
 
     def types(self, name, text):
-        box = self.page.locator(f"[data-name={name}] input[type=text]")
+        box = self.page.locator(f"[data-name='{name}'] input[type=text]")
         box.fill(text)
         box.press("Enter")
         return box

@@ -59,7 +59,7 @@ class Hand:
 
     def _press_keys(self):
         name = self._random.choice(_NUMBERS)
-        place = self._random.choice([f"[data-name={name}] input", f"[data-drag={name}][tabindex]"])
+        place = self._random.choice([f"[data-name='{name}'] input", f"[data-drag={name}][tabindex]"])
         handle = self._page.locator(place)
         if not handle.count():
             return f"no {place}"
@@ -71,7 +71,7 @@ class Hand:
 
     def _type(self):
         name = self._random.choice(_NUMBERS)
-        box = self._page.locator(f"[data-name={name}] input[type=text]")
+        box = self._page.locator(f"[data-name='{name}'] input[type=text]")
         text, enter = self._random.choice([*_TYPED[name], *_REFUSED[name]]), self._random.random() < 0.8
         box.fill(text)
         if enter:
@@ -84,13 +84,13 @@ class Hand:
         from playwright.sync_api import TimeoutError as PageTimeout
 
         with suppress(PageTimeout):  # the real cup hides the choice of a model
-            self._page.locator(f"[data-name={name}] select").select_option(value, timeout=300)
+            self._page.locator(f"[data-name='{name}'] select").select_option(value, timeout=300)
         return f"choose {value} as {name}"
 
     def _segment(self):
         name = self._random.choice(list(_SEGMENTS))
         words = self._random.choice(_SEGMENTS[name])
-        self._page.locator(f"[data-name={name}] label", has_text=words).click()
+        self._page.locator(f"[data-name='{name}'] label", has_text=words).click()
         return f"choose {words} as {name}"
 
     def _undo(self):

@@ -114,6 +114,10 @@ def test_no_number_is_shown_while_the_real_cup_is_prepared(monkeypatch, asked):
     edits(page, "tilt", 0)
     assert page.channel.shown_value("=press.run")["hidden"]
     assert "data-name='max_pressure'" in told(page, "press-numbers")
+    page = opened(f"{JOINT}&cup.arc_of_cover=110")
+    assert not page.channel.shown_value("=press.answered_by")["hidden"]
+    edits(page, "press.run", True)  # one model alone from here on
+    assert page.channel.shown_value("=press.answered_by")["hidden"]
 
 
 def test_a_load_that_leaves_the_bore_has_a_sentence_and_no_number(at_once):

@@ -115,9 +115,9 @@ class Press(LongView):
     def _request_cup(self, starts: Any) -> None:
         screen = self.page.screen
         self._requested = bore_of(screen.file) if starts else None
+        self.show_inputs(screen)
         self.long.click(starts)
         if starts and is_prepared(screen.file):
-            self.show_inputs(screen)
             self.show(screen)
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
