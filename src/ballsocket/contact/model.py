@@ -106,7 +106,8 @@ class Model(PressModel):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        all_plain = all(map(arrays.is_plain_number, (*joint.numbers(), value)))
+        types = {*map(type, (*joint.numbers(), value))}
+        all_plain = all(issubclass(number_type, int | float) for number_type in types)
         if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
             try:
                 return self._press_with_floats(joint, kind, float(value))
