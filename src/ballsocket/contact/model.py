@@ -15,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
-from ..problem.cup import UP, Cup, Direction, Interface
+from ..problem.cup import DEFAULT_CUP, UP, Cup, Direction, Interface
 from .assembly import (
     SolverResult,
     as_arrays,
@@ -201,7 +201,7 @@ class Model(PressModel):
             cup, direction = cup.under_load(cup.load_tilt(**aim))
         else:
             direction = UP
-        return self if cup == Cup() and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
+        return self if cup == DEFAULT_CUP and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.
