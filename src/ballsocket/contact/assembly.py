@@ -117,7 +117,8 @@ def make_contact(
         if code in failures:
             status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
     solved = ~is_missing(status)
-    F, d = where(solved | (kind == "force"), F, xp.nan), where(solved | (kind == "indentation"), d, xp.nan)
+    F = F if kind == "force" else where(solved, F, xp.nan)
+    d = d if kind == "indentation" else where(solved, d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
     else:
