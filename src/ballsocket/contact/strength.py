@@ -124,7 +124,8 @@ def free_rim_error(contact: Any) -> Array:
     model, joint = contact.model, contact.joint
     if not model.is_closed_sphere:
         return 0.0
-    cup, direction = getattr(model, "cup", DEFAULT_CUP), getattr(model, "direction", UP)
+    # of `RimLimited`, which knows the load in its cup
+    cup, direction = (model.cup, model.direction) if hasattr(model, "direction") else (DEFAULT_CUP, UP)
     reach = cup.rim - cup.tilt(direction)
     near_rim = rim_errors(joint, (reach - contact.half_angle) * joint.socket_radius)[1] - TABLE_ERROR
     hemisphere = _HEMISPHERE_SAFETY * max_hemisphere_change(contact)
