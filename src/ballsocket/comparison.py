@@ -21,7 +21,7 @@ from .core.sources import Source
 from .core.validity import OutsideDomainError
 from .model_catalogue import catalogue, reference
 from .problem import Joint
-from .problem.cup import Cup
+from .problem.cup import DEFAULT_CUP, Cup
 from .version import __version__
 
 if TYPE_CHECKING:
@@ -112,7 +112,11 @@ class Comparison(Mapping[str, Contact]):
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the comparison for JSON, in N, mm, MPa and degrees."""
-        results = [{**self[name].summary(), "deviation": _as_lists(self.deviation(name))} for name in self]
+        results = []
+        for name, contact in self.contacts.items():
+            deviation = self.deviation(name)
+            lists = None if deviation is None else {key: to_list(value) for key, value in deviation.items()}
+            results.append({**contact.summary(), "deviation": lists})
         numbers = (*CONTACT.values(), UTILISATION, PRESSURE_RATIO)
         gaps = dict.fromkeys([*(quantity.key for quantity in numbers), UTILISATION_NOTE])
         missing = [
@@ -170,10 +174,6 @@ def relative_deviation(value: Array, truth: Array) -> Array:
     return where(truth == value, 0.0, value / where(known, truth, nan) - 1)
 
 
-def _as_lists(deviation: dict[str, Array] | None) -> dict[str, Any] | None:
-    return None if deviation is None else {name: to_list(value) for name, value in deviation.items()}
-
-
 _SHOWN = tuple(CONTACT[name] for name in HEADLINE)
 COLUMN_HEADS = ("model", *(quantity.head(quantity.written) for quantity in _SHOWN), "valid")
 """Heads of the columns of `Comparison.rows`: model, the quantities of `HEADLINE` with units, and valid."""
@@ -229,7 +229,7 @@ def compare(
     contacts, missing = {}, {}
     for name, model in named.items():
         try:
-            placed = model.in_cup(cup or Cup(), **aim) if aim or cup is not None else model
+            placed = model.in_cup(cup or DEFAULT_CUP, **aim) if aim or cup is not None else model
             contacts[name] = placed.press(joint, **keyword)
         except OutsideDomainError as error:
             missing[name] = str(error)

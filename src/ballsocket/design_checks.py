@@ -207,19 +207,17 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     >>> assess_strength(bs.Exact().press(bs.joints["hip-36"], force=2000.0)).verdict.word
     'kept'
     """
-    if contact.status.failed:
-        return _undecided(f"no answer: {contact.status.sentence}")
-    checks = strength_checks(contact)
+    checks = () if contact.status.failed else strength_checks(contact)
     worst = max(checks, key=lambda row: row.verdict, default=None)  # the first one has the highest ratio
     if worst is not None and (worst.verdict is Verdict.EXCEEDED or (contact.valid and contact.joint.liner.strengths)):
         words = f"{worst.verdict.word}: {_ratio_text(worst)} the {worst.limit} of the {worst.part}"
         return StrengthVerdict(verdict=worst.verdict, words=words, check=worst)
-    if not contact.valid:
-        return _undecided(f"result not valid: {'; '.join(contact.notes)}")
-    return _undecided(unchecked_strength_reason(contact.joint))
-
-
-def _undecided(reason: str) -> StrengthVerdict:
+    if contact.status.failed:
+        reason = f"no answer: {contact.status.sentence}"
+    elif not contact.valid:
+        reason = f"result not valid: {'; '.join(contact.notes)}"
+    else:
+        reason = unchecked_strength_reason(contact.joint)
     return StrengthVerdict(verdict=Verdict.UNDECIDED, words=f"undecided: {reason}")
 
 

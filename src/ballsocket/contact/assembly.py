@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from itertools import zip_longest
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy
 
@@ -19,8 +19,7 @@ from ..problem.presets import joints
 from .contact import Contact, Laws, PressModel
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SolverResult:
+class SolverResult(NamedTuple):
     """Result of a solver, before the status of its points is determined."""
 
     laws: Laws  # formulas or solution of the other quantities
@@ -28,7 +27,7 @@ class SolverResult:
     force: Array
     indentation: Array
     # mask of the points with each failure. A point that is not finite needs no mask.
-    failures: Mapping[Status, Array] = field(default_factory=dict)
+    failures: Mapping[Status, Array] = MappingProxyType({})
 
 
 def check_joint(joint: Any) -> None:
@@ -118,7 +117,8 @@ def make_contact(
         if code in failures:
             status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
     solved = ~is_missing(status)
-    F, d = where(solved | (kind == "force"), F, xp.nan), where(solved | (kind == "indentation"), d, xp.nan)
+    F = F if kind == "force" else where(solved, F, xp.nan)
+    d = d if kind == "indentation" else where(solved, d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
     else:

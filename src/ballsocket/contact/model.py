@@ -15,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import check_vectors, reject_unnamed_loads, require
 from ..core.validity import NON_NEGATIVE_CLEARANCE, NeverValid, Range, check_domain
 from ..problem import Joint
-from ..problem.cup import UP, Cup, Direction, Interface
+from ..problem.cup import DEFAULT_CUP, UP, Cup, Direction, Interface
 from .assembly import (
     SolverResult,
     as_arrays,
@@ -106,7 +106,8 @@ class Model(PressModel):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        all_plain = all(map(arrays.is_plain_number, (*joint.numbers(), value)))
+        types = {*map(type, (*joint.numbers(), value))}
+        all_plain = all(issubclass(number_type, int | float) for number_type in types)
         if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
             try:
                 return self._press_with_floats(joint, kind, float(value))
@@ -200,7 +201,7 @@ class Model(PressModel):
             cup, direction = cup.under_load(cup.load_tilt(**aim))
         else:
             direction = UP
-        return self if cup == Cup() and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
+        return self if cup == DEFAULT_CUP and direction == UP else RimLimited(model=self, cup=cup, direction=direction)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
         """Compute the force vector in N on the ball from the displacement of its centre in mm.

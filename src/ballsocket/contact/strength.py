@@ -15,7 +15,7 @@ from ..core.bounded import Bounded
 from ..core.quantities import LINEARITY, STRENGTH
 from ..core.validity import RIGID_BACKING, Range
 from ..problem import Joint, Material, elementwise_maximum
-from ..problem.cup import UP, Cup
+from ..problem.cup import DEFAULT_CUP, UP
 from .closed_sphere import max_hemisphere_change
 from .coordinates import LIMIT
 from .stress_ratio import MAX_THICKNESS_RATIO, POISSON
@@ -124,7 +124,8 @@ def free_rim_error(contact: Any) -> Array:
     model, joint = contact.model, contact.joint
     if not model.is_closed_sphere:
         return 0.0
-    cup, direction = getattr(model, "cup", Cup()), getattr(model, "direction", UP)
+    # of `RimLimited`, which knows the load in its cup
+    cup, direction = (model.cup, model.direction) if hasattr(model, "direction") else (DEFAULT_CUP, UP)
     reach = cup.rim - cup.tilt(direction)
     near_rim = rim_errors(joint, (reach - contact.half_angle) * joint.socket_radius)[1] - TABLE_ERROR
     hemisphere = _HEMISPHERE_SAFETY * max_hemisphere_change(contact)

@@ -16,6 +16,8 @@ from typing import Any
 
 import array_api_compat
 import numpy
+from array_api_compat import device as device
+from array_api_compat import is_jax_array as is_jax_array
 
 Array = Any  # a Python number or an array of any library that follows the array API standard
 Numbers = numpy.ndarray  # a NumPy array, in code that accepts no other library: solvers, studies and files
@@ -150,7 +152,7 @@ def repeat_step(step: Callable[[Any], Any], state: Any, count: int) -> Any:
 
     The state is a tuple, also a named one, whose first item is an array.
     """
-    if array_api_compat.is_jax_array(state[0]):
+    if is_jax_array(state[0]):
         import jax
 
         return jax.lax.fori_loop(0, count, lambda _, current: step(current), state)
@@ -197,11 +199,6 @@ def safe_divisor(x: Array) -> Array:
     return where(x > 0, x, 1.0)
 
 
-def device(x: Array) -> Any:
-    """Return the device (CPU or GPU) that stores the array `x`."""
-    return array_api_compat.device(x)
-
-
 def convert_like(values: numpy.ndarray, like: Array) -> Array:
     """Convert NumPy values to the library, dtype and device of another array."""
     xp = namespace(like)
@@ -242,11 +239,6 @@ def silent_numpy(x: Array) -> AbstractContextManager[Any]:
     return nullcontext() if _is_in_torch_compile(x) else numpy.errstate(all="ignore")
 
 
-def is_jax_array(x: Array) -> bool:
-    """Check if `x` is an array of JAX."""
-    return bool(array_api_compat.is_jax_array(x))
-
-
 def _is_in_torch_compile(x: Array) -> bool:
     """Check if `x` is an array of PyTorch inside `torch.compile`, where its values are unknown."""
     if not array_api_compat.is_torch_array(x):
@@ -269,7 +261,7 @@ def stop_gradient(x: Array) -> Array:
     """Return `x` as a constant for automatic differentiation: its derivative is 0."""
     if array_api_compat.is_torch_array(x):
         return x.detach()
-    if array_api_compat.is_jax_array(x):
+    if is_jax_array(x):
         import jax
 
         return jax.lax.stop_gradient(x)

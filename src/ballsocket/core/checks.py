@@ -166,11 +166,11 @@ def select_load(**loads: Any) -> tuple[str, Any]:
 
     Raises ValueError if there is none, or more than one.
     """
-    set_loads = {name: value for name, value in loads.items() if value is not None}
-    if len(set_loads) != 1:
-        got = ", ".join(set_loads) if set_loads else "none"
+    stated = [(name, value) for name, value in loads.items() if value is not None]
+    if len(stated) != 1:
+        got = ", ".join(name for name, _ in stated) or "none"
         raise ValueError(f"exactly one of {', '.join(loads)} is needed, got {got}")
-    return next(iter(set_loads.items()))
+    return stated[0]
 
 
 def needs(extra: str, *modules: str) -> None:

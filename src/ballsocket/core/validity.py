@@ -40,17 +40,17 @@ class Status(IntEnum):
     @property
     def failed(self) -> bool:
         """True if the calculation failed; its results are then NaN."""
-        return self in _FAILED
+        return self not in _SOLVED
 
 
-_FAILED = frozenset(Status) - {Status.OK, Status.BEYOND_EQUATOR, Status.AT_RIM}
+_SOLVED = (Status.OK, Status.BEYOND_EQUATOR, Status.AT_RIM)
 
 
 def is_missing(status: Array) -> Array:
     """Return a mask of the points whose status means that their results are NaN."""
-    mask = status != status
-    for failure in _FAILED:
-        mask = mask | (status == int(failure))
+    mask = status == status
+    for solved in _SOLVED:
+        mask = mask & (status != int(solved))
     return mask
 
 
@@ -183,6 +183,8 @@ def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     unloaded = _UnloadedContact(joint)
     for limit in domain:
         holds = limit.strictly_holds(unloaded)
+        if holds is True:
+            continue
         if all_true(logical_not(holds)) and 0 not in getattr(holds, "shape", ()):
             raise OutsideDomainError(f"{name} has no answer for {limit.value_text(joint)}: {limit.why}")
         points = points & holds

@@ -16,15 +16,13 @@ from ..core.checks import check_text, nearest, normalise_name, require, shown
 from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
-from ..problem.cup import AngleDefinition, Cup, Interface, Side
+from ..problem.cup import DEFAULT_CUP, AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, canonical, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
-
-DEFAULT_CUP = Cup()  # hemisphere that opens downwards
 
 _MAX_LAYERS = 20  # largest number of layers behind the liner
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, pi
 from typing import ClassVar
 
@@ -93,6 +93,9 @@ class AdhesiveSocket(ClosedForm):
             LinearGapRange(high=MAX_SPRING_REDUCTION, why="springs with adhesion have the linear gap alone"),
             SMALL_STRAIN,
         )
+
+    def for_joint(self, joint: Joint) -> AdhesiveSocket:
+        return replace(self, modulus=self.modulus.for_joint(joint))
 
     def critical_stretch(self, joint: Joint) -> Array:
         """Compute the critical stretch u_c = sqrt(2w/K) in mm."""

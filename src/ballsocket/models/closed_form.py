@@ -111,28 +111,29 @@ class ClosedForm(Model):
         root = increasing_root(log_force, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
+    def for_joint(self, joint: Joint) -> ClosedForm:
+        """Return the model for a joint of NumPy arrays, with what its laws share computed once; by default itself."""
+        return self
+
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        # compilers compute once what laws have in common, and floats are cached
+        model = self.for_joint(joint) if isinstance(load, numpy.ndarray) else self
         if kind == "force":
-            d = self.indentation(joint, load)
-            F = load
-        elif kind == "half_angle":
-            d = where(load > 0, self.indentation_of_half_angle(joint, load), 0.0 * load)
-            F = self.force(joint, d)
+            d, F = model.indentation(joint, load), load
         else:
-            d, F = load, self.force(joint, load)
+            d = load
+            if kind == "half_angle":
+                d = where(load > 0, model.indentation_of_half_angle(joint, load), 0.0 * load)
+            F = model.force(joint, d)
         safe = where(arrays.isfinite(d), d, 0.0)
-        # rounding error of d; |F| alone is too small a scale where F is a difference of large terms (adhesion)
-        scale = abs(F) + safe * self.stiffness(joint, safe)
-        converged = abs(self.force(joint, safe) - F) <= 1e3 * arrays.machine_epsilon(safe) * scale
-        return SolverResult(
-            laws=ClosedFormSolution(model=self, joint=joint, indentation=d),
-            force=F,
-            indentation=d,
-            failures={
-                Status.NOT_CONVERGED: arrays.logical_not(converged),
-                Status.BEYOND_EQUATOR: self.half_angle(joint, safe) > pi / 2 * (1 + 1e-6),
-            },
-        )
+        failures = {Status.BEYOND_EQUATOR: model.half_angle(joint, safe) > pi / 2 * (1 + 1e-6)}
+        if kind == "force":
+            # rounding error of d; |F| alone is too small a scale where F is a difference of large terms (adhesion)
+            scale = abs(F) + safe * model.stiffness(joint, safe)
+            converged = abs(model.force(joint, safe) - F) <= 1e3 * arrays.machine_epsilon(safe) * scale
+            failures[Status.NOT_CONVERGED] = arrays.logical_not(converged)
+        laws = ClosedFormSolution(model=model, joint=joint, indentation=d)
+        return SolverResult(laws=laws, force=F, indentation=d, failures=failures)
 
     def _law(self, joint: Joint) -> ForceLaw:
         return ClosedLaw(model=self, joint=joint)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 
 from ..contact.law import ForceLaw, finite_or_nan
@@ -95,6 +95,9 @@ class RadialFoundation(ClosedForm):
     def parameters(self) -> tuple[Array, ...]:
         """Constants of the foundation modulus."""
         return self.modulus.constants
+
+    def for_joint(self, joint: Joint) -> RadialFoundation:
+        return replace(self, modulus=self.modulus.for_joint(joint))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
         return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)

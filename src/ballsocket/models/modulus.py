@@ -76,6 +76,10 @@ class Modulus:
             return _scalar_modulus(self.formula, R2, L, E, nu)
         return self.formula(R2, L, E, nu, *self.constants)
 
+    def for_joint(self, joint: Joint) -> Modulus:
+        """Return the constant foundation modulus of a joint, computed once for all laws of a contact."""
+        return Modulus(name=self.name, title=self.title, formula=constant_formula, constants=(self.evaluate(joint),))
+
     def __repr__(self) -> str:
         return self.name.replace("-", "_")
 

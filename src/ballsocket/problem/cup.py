@@ -337,6 +337,10 @@ class Cup:
         return (self.rim - self.tilt(direction) - half_angle) * radius
 
 
+DEFAULT_CUP = Cup()
+"""Hemisphere that opens downwards."""
+
+
 def _definition(value: AngleDefinition | str) -> AngleDefinition:
     try:
         return AngleDefinition(value)

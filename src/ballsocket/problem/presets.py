@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from types import MappingProxyType
 from typing import Any
@@ -54,35 +53,24 @@ POM = Material(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class LongTermModulus:
-    """Modulus of a preset material under a load that is held for a long time."""
-
-    young: float  # creep modulus in MPa
-    hours: float  # duration of the load in hours
-    source: str
-
-
-LONG_TERM_MODULI = {
-    "POM": LongTermModulus(
-        young=1300.0, hours=1000.0, source="Ticona 2008, Hostaform C 9021 data sheet, tensile creep modulus (ISO 899-1)"
-    )
+_LONG_TERM_MODULI = {
+    "POM": (1300.0, 1000.0, "Ticona 2008, Hostaform C 9021 data sheet, tensile creep modulus (ISO 899-1)"),
 }
-"""Long-term moduli by the name of the preset material; its `young` is the modulus of a short load."""
+"""Creep modulus in MPa, hours under load and source, by the name of the preset; its `young` is for a short load."""
 
 
 def long_term_note(material: Material) -> str:
     """Describe the long-term modulus of a preset material in a sentence; empty without data, or for another modulus."""
-    modulus = LONG_TERM_MODULI.get(material.name)
     preset = next((preset for preset in materials.values() if preset.name == material.name), None)
-    if modulus is None or preset is None or float(material.young) != preset.young:
+    if material.name not in _LONG_TERM_MODULI or preset is None or float(material.young) != preset.young:
         return ""
+    young, hours, source = _LONG_TERM_MODULI[material.name]
     return Sentence(
-        f"{{}}: E {{}} is the modulus of a short load; after {modulus.hours:g} hours under load it is {{}} ({{}})",
+        f"{{}}: E {{}} is the modulus of a short load; after {hours:g} hours under load it is {{}} ({{}})",
         material.name,
         Amount(float(preset.young), MEGAPASCALS),
-        Amount(modulus.young, MEGAPASCALS),
-        modulus.source,
+        Amount(young, MEGAPASCALS),
+        source,
     )
 
 
