@@ -11,12 +11,12 @@ import scipy.fft
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.mesh import socket_shape
-from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch, GapField, initial_displacement
+from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch, GapField
 from ..elasticity.off_axis.compliance import Compliance, make_compliance
 from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.equilibrium import solve_force
 from ..elasticity.off_axis.grid import Grid, even_grid
-from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
+from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup, initial_displacement
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
