@@ -29,7 +29,7 @@ from .patient_series import (
 )
 from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
-from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, CohortResult
+from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_COLUMNS, CohortResult
 
 N_HELD_OUT = 64  # number of patients that are simulated to estimate the error of a series: the first of the cohort
 
@@ -198,7 +198,7 @@ class CohortSeries:
             low, high = box.ranges[name]
             if ((run.values[name] < low) | (run.values[name] > high)).mean() > _MAX_CUT:
                 return None
-        columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
+        columns = [RESULT_COLUMNS[name] for name in INFLUENCED_RESULTS]
 
         def evaluate(samples: Numbers) -> Numbers:
             return series.results(dict(zip(names, samples, strict=True)), counts)[0].table[:, 0, columns].T
