@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import known_name
 from ..core.executors.processes import Engine
+from ..core.storage.folders import ArrayPieceStore
 from ..core.storage.pieces import PieceRun
 from ..studies.axes import SampleAxis
 from ..studies.variance_indices import sobol_indices
@@ -21,7 +22,6 @@ from .cohort import CohortRun, CohortStore, ProgressCallback
 from .patient_series import (
     MEMBERS_PER_PIECE,
     FamilyRun,
-    FamilyStore,
     NoSeriesError,
     PatientSeries,
     fit_series,
@@ -182,7 +182,9 @@ class CohortSeries:
         """Simulate the members of a family for a degree that `pieces` does not have; return all of them."""
         numbers = range(members_of(self.family.box, degree) // MEMBERS_PER_PIECE)
         missing = [number for number in numbers if number not in pieces]
-        store = None if self.store is None else FamilyStore(folder=self.store.folder, identity=self.store.identity)
+        store = None
+        if self.store is not None:
+            store = ArrayPieceStore(folder=self.store.folder, identity=self.store.identity, prefix="series")
         run = PieceRun(self.family, missing, store)
         pieces |= run.stored
         for number, piece in run.compute_missing(self.engine):

@@ -10,7 +10,6 @@ from math import ceil, log
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.storage.folders import ArrayPieceStore
 from ..core.storage.pieces import check_worker_code, fingerprint
 from .chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
 from .contact_checks import check_rows
@@ -66,20 +65,6 @@ class FamilyRun:
             n_numbers = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
             unworn = numpy.full(len(UNWORN_NUMBERS) + contacts, numpy.nan)
             return unworn, numpy.full((self.n_nodes, n_numbers), numpy.nan)
-
-
-@dataclass(frozen=True, kw_only=True)
-class FamilyStore(ArrayPieceStore):
-    """Folder of stored simulations of a family, one file for each piece; see `ArrayPieceStore`."""
-
-    prefix: str = "series"
-
-    def to_arrays(self, result: dict[str, Numbers]) -> dict[str, Numbers]:
-        return result
-
-    def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:
-        """Return the arrays of a piece; None if the file has other arrays."""
-        return arrays if set(arrays) == {"unworn", "worn"} else None
 
 
 def members_of(box: Box, degree: int) -> int:
