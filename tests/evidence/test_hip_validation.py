@@ -9,7 +9,7 @@ import pytest
 from ballsocket.evidence import hip_wear
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, make_hip, patients, ratios, simulators
 from ballsocket.hip.simulator_cycles import iso_14242_1
-from ballsocket.hip.variability import RESULT_UNITS
+from ballsocket.hip.variability import RESULT_COLUMNS, RESULT_UNITS
 
 from ..extent import some
 from ..places import ROOT
@@ -74,7 +74,7 @@ def simulated(monkeypatch):
         ranks = np.arange(101.0)
         for name, slope in (("volume", 2.0), ("penetration", 3.0)):
             growth = np.array([1.0, 3.0, 7.0, 19.0][: len(counts)])
-            table[:, :, list(RESULT_UNITS).index(name)] = slope * ranks[:, None] * growth
+            table[:, :, RESULT_COLUMNS[name]] = slope * ranks[:, None] * growth
         return None, SimpleNamespace(cohort=SimpleNamespace(table=table))
 
     monkeypatch.setattr(hip_wear, "population", population)

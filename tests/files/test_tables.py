@@ -7,7 +7,9 @@ import pytest
 
 from ballsocket.files import columns
 from ballsocket.files.columns import HeadChoice, read_columns
-from ballsocket.hip.cycle_file import parse_cycle
+from ballsocket.files.tables import read_table
+from ballsocket.hip.cycle_file import cycle_of
+from ballsocket.hip.schema import CycleTables
 from ballsocket.identification.file import read_identify
 
 from ..cli.command import run
@@ -180,7 +182,8 @@ def test_all_files_that_name_a_table_have_the_keys_columns_and_skip(tmp_path):
     keys = 'columns = {Schritt = "%s"}\nskip = "T"\n'
     rows = ["0;300;20", "0,5;900;20", "1;1,5e3;20", "1,5;900;20", "2;300;20"]
     write(tmp_path, "\n".join(["Test 1", "Schritt;Last;T", "s;N;°C", *rows]), "cp1252", "walk.csv")
-    cycle = parse_cycle(tomllib.loads('[cycle]\nfile = "walk.csv"\ninstants = 8\n' + keys % "time"), tmp_path)
+    content = tomllib.loads('[cycle]\nfile = "walk.csv"\ninstants = 8\n' + keys % "time")
+    cycle = cycle_of(read_table(content, CycleTables), tmp_path)
     assert (cycle.duration, cycle.largest_force) == (2.0, 1500.0)
     assert cycle.remark == "walk.csv: 5 rows read, left out 1 line above the heads"
     write(tmp_path, "\n".join(["Test 1", "Last;Schritt;T", "N;um;°C", "300;10;1", "1250,5;;1", "2000;40;1"]), "utf-16")

@@ -17,7 +17,7 @@ from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, 
 from ballsocket.hip.cohort_series import CohortSeries
 from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
 from ballsocket.hip.similarity import Similarity, find_obstacle
-from ballsocket.hip.variability import RESULT_UNITS, result_table
+from ballsocket.hip.variability import RESULT_COLUMNS, result_table
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
@@ -82,7 +82,7 @@ def test_a_series_agrees_with_simulations_of_held_out_patients(few_held_out):
     held_out = replace(run, values={name: values[FEW:30] for name, values in run.values.items()})
     simulated, table = held_out.simulate(), bands.cohort.table[FEW:30]
     for name, largest in (("volume", 5e-4), ("depth", 1e-2), ("penetration", 5e-3), ("max_pressure", 5e-3)):
-        column = list(RESULT_UNITS).index(name)
+        column = RESULT_COLUMNS[name]
         errors = abs(table[:, :, column] / simulated.table[:, :, column] - 1)
         assert np.quantile(errors, 0.95) < largest, name
         assert 0 < bands.accuracy.relative[name] <= bands.accuracy.largest[name]
@@ -273,13 +273,13 @@ def relative_difference(use, values, coefficient=K, **distributions):
     arrays = {name: np.array([value]) for name, value in values.items()}
     numbers = {name: float(column[0]) for name, column in similarity.numbers(arrays).items()}
     exposures = [float(similarity.log_exposure(arrays)[0]) + log(count) for count in MANY]
-    member = similarity.simulate(numbers, exposures)
+    _, numbers_worn = similarity.simulate(numbers, exposures)
     reports = patients.patient(values).simulate(MANY)
     units = similarity.units(np.array([values["clearance"]]))
-    worn = np.exp(member.worn[:, : len(similarity.results)])
+    worn = np.exp(numbers_worn[:, : len(similarity.results)])
     scaled = worn * np.array([float(units[name][0]) for name in similarity.results])
-    columns = [list(RESULT_UNITS).index(name) for name in similarity.results]
-    assert_equal_contacts(similarity, values["clearance"], member.worn[:, len(similarity.results) :], reports)
+    columns = [RESULT_COLUMNS[name] for name in similarity.results]
+    assert_equal_contacts(similarity, values["clearance"], numbers_worn[:, len(similarity.results) :], reports)
     return abs(scaled / result_table(reports)[:, columns] - 1).max()
 
 

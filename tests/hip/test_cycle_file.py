@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.files.tables import read_table
 from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
+from ballsocket.hip.cycle_file import TableOptions, cycle_of, read_cycle
 from ballsocket.hip.kinematics import rotation_matrices
+from ballsocket.hip.schema import CycleTables
 
 from ..cli.command import run
 from .hips import COUNTS, CYCLE, QUICK, hip, refuses, write_edited_file
@@ -318,7 +320,11 @@ ACTIVITIES = ACTIVITY.format("walking", "1e6") + ACTIVITY.format("stairs-up", "5
 
 
 def parsed(folder=None, **cycle):
-    return parse_cycle({"cycle": cycle}, folder)
+    return cycle_in({"cycle": cycle}, folder)
+
+
+def cycle_in(content, folder=None):
+    return cycle_of(read_table(content, CycleTables), folder)
 
 
 def test_activities_in_a_hip_file(tmp_path):
@@ -342,9 +348,9 @@ def test_a_cycle_has_instants_a_rotation_order_and_a_body_weight():
     cycle = parsed(name="iso-14242-1", instants=24, rotation_order="rotation, adduction, flexion")
     assert (cycle.n_steps, cycle.order) == (24, "zyx")
     content = {"body_weight": "800 N", "cycle": {"name": "walking"}}
-    assert parse_cycle(content, None).largest_force == pytest.approx(1976.0, rel=1e-6)
+    assert cycle_in(content).largest_force == pytest.approx(1976.0, rel=1e-6)
     content["cycle"]["body_weight"] = "0.9 kN"
-    assert parse_cycle(content, None).largest_force == pytest.approx(2223.0, rel=1e-6)
+    assert cycle_in(content).largest_force == pytest.approx(2223.0, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["iso-14242-1", "walking"])

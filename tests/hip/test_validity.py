@@ -154,7 +154,7 @@ def test_patients_have_their_validity():
     assert summary["peak_utilisation"]["low"] < 0.5 < 1 < summary["peak_utilisation"]["high"]
     heaviest = int(cohort.values["body_weight"].argmax())
     patient = scatter.patient({"body_weight": cohort.values["body_weight"][heaviest]})
-    assert bands.peak_utilisation[heaviest, 0] == pytest.approx(patient.use.unworn_checks[0].utilisation)
+    assert bands.cohort.peak_utilisation[heaviest, 0] == pytest.approx(patient.use.unworn_checks[0].utilisation)
 
 
 def test_the_verdict_includes_the_allowable_pressure():

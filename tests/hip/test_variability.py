@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Activity, CrossShear, Mix, PatientVariability, iso_14242_1, iso_14242_4, logarithmic, rocking
-from ballsocket.hip.variability import RESULT_UNITS, Patient, contact_table, result_table
+from ballsocket.hip.variability import RESULT_COLUMNS, RESULT_UNITS, Patient, contact_table, result_table
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from .hips import QUICK, K, hip, refuses
@@ -117,7 +117,7 @@ def test_results_are_those_of_the_reports():
     assert ((contact[:, 0] > 0) & (contact[:, 0] < 1)).all()
     assert (contact[:, 1] == 1).all()
     unloaded = replace(reports[0], edge_distance=np.array([]))
-    assert result_table([unloaded])[0, list(RESULT_UNITS).index("edge_distance")] == inf
+    assert result_table([unloaded])[0, RESULT_COLUMNS["edge_distance"]] == inf
 
 
 def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):

@@ -86,7 +86,7 @@ def identify(
 
 def _has_measured_wear(file: Path) -> bool:
     """Check if a file is a hip file: it has a cycle, activities, or data of worn volumes or penetrations."""
-    from ..hip.wear_fit import WEAR_QUANTITIES
+    from ..hip.measured_wear import WEAR_QUANTITIES
 
     content = read_toml(file, "measurement", lambda content: content)
     tables = content.get("data")

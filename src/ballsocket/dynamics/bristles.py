@@ -30,11 +30,11 @@ class Bristles(CoulombCoefficients):
         z' = v - σ0 q(v) z/(h μ(q)),    f = -N (σ0 z + σ1 z' + σ2 v),
 
     for the slip across the load and the spin about it, which share the limit μ. q is the effective slip speed of
-    `Friction`, and h v/q its slope. Sliding
-    bristles have the resultants of the patch, within 1 % of the force and 7 % of the drilling moment. Rolling about a
-    pole that does not slip has no loss in this model. Sticking bristles are springs of stiffness N σ0. The damping σ1
-    falls with the slip just enough that they generate no energy. After the ball leaves the socket the deflections decay
-    with the time constant `release`. With σ1 = σ2 = 0 and one coefficient it is Dahl's model.
+    `Friction`, and h v/q its slope. Sliding bristles have the resultants of the patch, within 1 % of the force and 7 %
+    of the drilling moment. Rolling about a pole that does not slip has no loss in this model. Sticking bristles are
+    springs of stiffness N σ0. The damping σ1 falls with the slip just enough that they generate no energy. After the
+    ball leaves the socket the deflections decay with the time constant `release`. With σ1 = σ2 = 0 and one coefficient
+    it is Dahl's model.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy
 
@@ -148,16 +148,21 @@ def _integrate_contact_state(
 ) -> tuple[Numbers, dict[str, Any]]:
     """Integrate the motion with bristles or adhesion by LSODA; return the states and further fields of the motion."""
     integrator = StatefulIntegrator(element=element, mass=mass, inertia=inertia, pull=pull_function(pull))
-    trajectory = integrator.integrate(initial, h * numpy.arange(count + 1), h)
-    end_reason = ""
-    if trajectory.failure is not None:
-        notes = "; ".join(trajectory.failure.notes) or "the integration failed"
-        end_reason = f"after {h * (len(trajectory.states) - 1):g} s: {notes}"
-    return trajectory.states, {
-        "dissipated_energy": trajectory.dissipated,
-        "work": trajectory.work,
-        "deflection": trajectory.deflection,
-        "attached": trajectory.attached,
+    state, end_reason = numpy.zeros(_STATE_SIZE), ""
+    state[:9] = initial
+    states, attachments = [state], [integrator.is_touching(state)]
+    try:
+        for next_state, attached in integrator.iterate_states(state, h * numpy.arange(count + 1), h):
+            states.append(next_state)
+            attachments.append(attached)
+    except _NoLoad as error:
+        end_reason = f"after {h * (len(states) - 1):g} s: {str(error) or 'the integration failed'}"
+    results = numpy.array(states)
+    return results[:, :9], {
+        "dissipated_energy": results[:, 13],
+        "work": results[:, 14],
+        "deflection": results[:, 9:13],
+        "attached": numpy.array(attachments),
         "end_reason": end_reason,
     }
 
@@ -189,23 +194,11 @@ _STATE_SIZE = 15
 """Number of unknowns: position, velocity, spin, four deflections, dissipated energy, and the work of the pull."""
 
 
-class StatefulTrajectory(NamedTuple):
-    """Computed states of a ball. `failure` is the load that ended the motion early, or None."""
-
-    states: Numbers
-    deflection: Numbers
-    attached: Numbers
-    dissipated: Numbers
-    work: Numbers
-    failure: Load | None
-
-
 class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no caller sees it
-    """Error at a state of the ball that has no load."""
+    """Error at a state of the ball that has no load; its message has the notes of the load, or is empty."""
 
     def __init__(self, load: Load) -> None:
         super().__init__("; ".join(load.notes))
-        self.load = load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -217,32 +210,14 @@ class StatefulIntegrator:
     inertia: float  # in t mm²
     pull: Callable[[float], Vector]
 
-    def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """Integrate the motion from an initial state at the first time, with steps of at most `step` seconds."""
-        state = numpy.zeros(_STATE_SIZE)
-        state[:9] = initial
-        states, attachments, failure = [state], [self._is_touching(state)], None
-        try:
-            for next_state, attached in self._iterate_states(state, times, step):
-                states.append(next_state)
-                attachments.append(attached)
-        except _NoLoad as error:
-            failure = error.load
-        state_array = numpy.array(states)
-        return StatefulTrajectory(
-            state_array[:, :9],
-            state_array[:, 9:13],
-            numpy.array(attachments),
-            state_array[:, 13],
-            state_array[:, 14],
-            failure,
-        )
+    def iterate_states(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
+        """Yield the state, and True for an attached ball, at each time after the first, that of `state`.
 
-    def _iterate_states(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
-        """Yield the state at each time after the first; restart the solver at attachment or separation."""
+        The steps have at most `step` seconds. The solver restarts at attachment or separation.
+        """
         from scipy.integrate import LSODA
 
-        time, attached, switch_time = float(times[0]), self._is_touching(state), 0.0
+        time, attached, switch_time = float(times[0]), self.is_touching(state), 0.0
         options = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
         while time < times[-1]:
             solver = LSODA(self._equations_of_motion(attached), time, state, float(times[-1]), **options)
@@ -281,7 +256,8 @@ class StatefulIntegrator:
         s = state.tolist()
         return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
 
-    def _is_touching(self, state: Numbers) -> bool:
+    def is_touching(self, state: Numbers) -> bool:
+        """Check if the ball touches the socket at a state of the integrator."""
         return bool(self._indentation_at(state) >= 0.0)
 
     def _indentation_at(self, state: Numbers) -> float:

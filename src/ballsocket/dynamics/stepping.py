@@ -1,13 +1,27 @@
 """Time steps of a ball in its socket: second order, conserving energy and angular momentum to rounding.
 
-A step of h seconds from r0 to r1 = r0 + h a, with the velocity a and the spin b at its midpoint, solves
+A ball of mass m and moment of inertia I has its centre at r from that of the socket, the velocity v and the spin w. The
+unknowns of a step of h seconds are velocity a and spin b at its midpoint. With values 0 at its start and 1 at its end
 
-    2 m (a - v0)/h = F(a, b) + pull,   2 I (b - w0)/h = M(a, b).
+    r1 = r0 + h a,   v1 = 2 a - v0,   w1 = 2 b - w0,   (1)
+    2 m (a - v0)/h = F(a, b) + pull,   2 I (b - w0)/h = M(a, b).   (2)
 
-The elastic force is the discrete gradient of Gonzalez (1996, doi 10.1007/BF02440162) in the invariants of the contact:
-the distance e = |r| of the centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly
-the decrease of the energy. It has no moment about the socket centre, or in a cup about the dome axis. Damping, friction
-and spin are evaluated at the midpoint of the step, and their dissipation is never negative.
+The force F has an elastic part G, the discrete gradient of Gonzalez (1996, doi 10.1007/BF02440162) of the energy U in
+the invariants of the contact: the distance e = |r| of the centres and, in a cup, r·dome. With the gradient U' at the
+mean of the invariants, and the part s of the velocity a along r or, in a cup, in the plane of r and the dome axis,
+
+    G = -U' - ((U1 - U0)/h - U'·a) s/s².   (3)
+
+Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy. It has no moment about the
+socket centre, or in a cup about the dome axis. Damping, friction and spin are evaluated at the midpoint of the step,
+and their dissipation is never negative.
+
+An iteration holds the stiffness k, the damping c and the rate of friction constant. Along the unit vector n to the ball
+the residuals R and R_w of (2), left side minus right side, then change the unknowns by
+
+    (2 m/h + c + h k/2) Δa·n = -R·n,   (2 I/h + drill) Δb·n = -R_w·n,   (4)
+
+and across n friction couples a with b x n by the matrix (A, C; C, B) in each direction.   (5)
 """
 
 from __future__ import annotations
@@ -50,8 +64,7 @@ def advance_one_step(  # type: ignore[no-untyped-def]
 ) -> StepResult:
     """Advance the state of a ball by one time step of h seconds.
 
-    `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
-    spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
+    `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N.
     """
     mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
     initial = ball_centre_at(ball.x, ball.y, ball.z, constants.clearance)
@@ -134,7 +147,7 @@ class MeanContact(NamedTuple):
 
 
 class StepResidual(NamedTuple):
-    """Residuals of force (N) and moment (N mm) in the balance of a time step, with its mean contact."""
+    """Residuals of force (N) and moment (N mm) in the balance (2) of a time step, with its mean contact."""
 
     x: float
     y: float
@@ -149,7 +162,7 @@ class StepResidual(NamedTuple):
 
 
 def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
-    """Compute the state of the ball after a time step from its velocity and spin at the midpoint."""
+    """Compute the state (1) of the ball after a time step from its velocity and spin at the midpoint."""
     ax, ay, az, bx, by, bz = midpoint
     return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
@@ -215,9 +228,9 @@ def step_residual(  # type: ignore[no-untyped-def]
     pull: Vector,
     h: float,
 ) -> StepResidual:
-    """Compute the residual force and moment of the equations of motion at a trial midpoint of a time step.
+    """Compute the residual force and moment of the balance (2) at a trial midpoint of a time step.
 
-    It is the inertia minus the discrete gradient of the energy, damping, friction and pull.
+    The force of the reaction has the elastic force -U' of the mean contact; the corrections replace it by (3).
     """
     ax, ay, az, bx, by, bz = midpoint
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
@@ -232,8 +245,7 @@ def step_residual(  # type: ignore[no-untyped-def]
         mean_power = mean_power - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
         tangential_speed = ax * mean.ux + ay * mean.uy + az * mean.uz
         square = square + tangential_speed * tangential_speed
-    # mean gradient plus (ΔU/h - mean power) a/a² along the path: its work is the change of the energy exactly. The
-    # weight lets the correction vanish for short paths, whose ΔU is rounding.
+    # second term of (3), with the mean power U'·a and the square s²; it vanishes for short paths, whose ΔU is rounding
     path_length, depth = h * sqrt(square), abs(centre.indentation)
     cubed_path = path_length * path_length * path_length
     quotient_weight = cubed_path / safe_divisor(cubed_path + _MIN_PATH_RATIO * depth * depth * depth)
@@ -265,10 +277,7 @@ def step_residual(  # type: ignore[no-untyped-def]
 def newton_correction(
     residual: StepResidual, midpoint: Midpoint, constants: Constants, mass_rate: float, inertia_rate: float, h: float
 ) -> tuple[Midpoint, float]:
-    """Solve the linearised equations of a time step for a new midpoint; return it and its change in mm/s.
-
-    The stiffness, the rate of friction and the damping of the film are constant in this solution.
-    """
+    """Solve the linearised equations (4) and (5) for a new midpoint; return it and its change in mm/s."""
     centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
@@ -287,12 +296,12 @@ def newton_correction(
         rotation = rotation + lever * lever * film_damping.across + film_damping.turning / (R1 * R1)
         drill = drill + film_damping.drilling
     tangential_stiffness = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
-    # along the load: (2 m/h + damping + h k/2) Δa_n = -residual; about it: (2 I/h + drill) Δb_n = -residual
+    # along and about the load (4)
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
     dn = -outward / (mass_rate + damping_rate + 0.5 * h * abs(contact.stiffness))
     dw = -turning / (inertia_rate + drill)
-    # friction couples the velocity across the load with u = ω x n
+    # across the load (5), with u = R_w x n
     A, B, C = mass_rate + push + tangential_stiffness, inertia_rate + rotation * R1 * R1, mixed * R1
     inverse_determinant = 1.0 / (A * B - C * C)
     tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz

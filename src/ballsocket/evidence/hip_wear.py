@@ -16,7 +16,7 @@ from ..hip.cycle_registry import named_cycle
 from ..hip.microseparation import MEASURED_SEPARATIONS
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
-from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability
+from ..hip.variability import DEFAULT_LEVEL, RESULT_COLUMNS, PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
 from ..hip.wear_uncertainty import population
@@ -189,7 +189,7 @@ def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
             "clearance": _CLEARANCE,
         }
         table = _results(hip, distributions, [1e6, 3e6], count)
-        volume = table[:, :, list(RESULT_UNITS).index("volume")]
+        volume = table[:, :, RESULT_COLUMNS["volume"]]
         yield _band(name, (volume[:, 1] - volume[:, 0]) / 2)
 
 
@@ -212,14 +212,14 @@ def patients(count: int = PATIENTS) -> Iterator[Predicted]:
             "cycles_per_year": LogNormal(median=STEPS, factor=1.5),
         }
         table = _results(hip, distributions, [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
-        penetration = table[:, :, list(RESULT_UNITS).index("penetration")]
+        penetration = table[:, :, RESULT_COLUMNS["penetration"]]
         rate = dict.fromkeys(names, (penetration[:, 3] - penetration[:, 0]) / 9.75)
         rate |= {names[0]: penetration[:, 0]}
         rate |= {name: (penetration[:, 2] - penetration[:, 1]) / 4 for name in names if name.startswith("mccalden")}
         for name, values in rate.items():
             yield _band(name, values)
         if k == LINKED:
-            yield _band("lachiewicz-volume", table[:, 2, list(RESULT_UNITS).index("volume")] / 5)
+            yield _band("lachiewicz-volume", table[:, 2, RESULT_COLUMNS["volume"]] / 5)
 
 
 def _results(hip: HipSimulation, distributions: Mapping[str, Distribution], counts: list[float], count: int) -> Numbers:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .film_limit import FilmLimit
     from .history import History
     from .in_vivo_cycles import in_vivo
+    from .measured_wear import MeasuredWear
     from .mix import Activity, Mix
     from .simulation import HipSimulation
     from .simulator_cycles import (
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
         two_axis,
     )
     from .variability import PatientVariability
-    from .wear_fit import MeasuredWear, WearFit, fit_wear_coefficient
+    from .wear_fit import WearFit, fit_wear_coefficient
     from .wear_laws import WEAR_FACTORS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
     from .wear_uncertainty import population, uncertainty
 
@@ -84,11 +85,12 @@ _NAMES_BY_MODULE = {
     "film_limit": "FilmLimit",
     "history": "History",
     "in_vivo_cycles": "in_vivo",
+    "measured_wear": "MeasuredWear",
     "mix": "Activity Mix",
     "simulation": "HipSimulation",
     "simulator_cycles": "constant_load flexion iso_14242_1 iso_14242_1_key_points iso_14242_4 rocking two_axis",
     "variability": "PatientVariability",
-    "wear_fit": "MeasuredWear WearFit fit_wear_coefficient",
+    "wear_fit": "WearFit fit_wear_coefficient",
     "wear_laws": "WEAR_FACTORS Archard ContactAreaWear CrossShear CustomWearLaw FrictionEnergyWear",
     "wear_uncertainty": "population uncertainty",
 }

@@ -112,7 +112,7 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
             rotation_increments=numpy.einsum("tji,tj->ti", rotations_in_cup, setup.frame.rotation_increments),
             directions=directions[:, ball_cells],
         ),
-        areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,
+        areas=setup.ball_areas[ball_cells],
         socket_areas=setup.foundation.areas[cells],
         socket_cells=cells,
         socket_size=len(setup.foundation.areas),

@@ -20,6 +20,7 @@ from .series_accuracy import SeriesAccuracy
 from .variability import (
     DEFAULT_LEVEL,
     INFLUENCED_RESULTS,
+    RESULT_COLUMNS,
     RESULT_UNITS,
     CohortResult,
     PatientVariability,
@@ -137,7 +138,7 @@ class Bands:
         if self.n_failed == self.n_patients:
             return numpy.full(len(self.counts), numpy.nan)
         if (name, fraction) not in self._quantiles:
-            values = self.cohort.table[:, :, list(RESULT_UNITS).index(name)]
+            values = self.cohort.table[:, :, RESULT_COLUMNS[name]]
             self._quantiles[name, fraction] = quantile_of_known(values, fraction)
         return self._quantiles[name, fraction]
 
@@ -202,7 +203,7 @@ class Bands:
             reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
             failed = f"{self.n_failed} of {count} {noun} have no result, most often: {reasons.most_common(1)[0][0]}"
             yield f"{failed}; the bands are for the others"
-        depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
+        depth = self.cohort.table[:, -1, RESULT_COLUMNS["depth"]]
         if n_worn_through := int((depth > variability.use.joint.liner_thickness).sum()):
             yield f"{n_worn_through} of {count} {noun} wear their liner through"
         if n_invalid := int((self.cohort.valid[:, -1] == 0).sum()):
@@ -215,11 +216,6 @@ class Bands:
         stage = f"nominal {self.noun.removesuffix('s')}, in the first cycle"
         checks = self.variability.coarse_simulation.unworn_checks
         return (*list_check_notes([(stage, checks)]), *self.variability.use.notes)
-
-    @cached_property
-    def peak_utilisation(self) -> Numbers:
-        """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
-        return self.cohort.peak_utilisation
 
     def _mean_of_known(self, values: Numbers) -> float:
         known = values[self.cohort.refused == ""]
@@ -237,14 +233,15 @@ class Bands:
 
     def utilisation_quantile(self, fraction: float) -> Numbers:
         """Compute a quantile of the patients' largest ratio of von Mises to yield stress at each report."""
-        known_utilisations = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
+        utilisations = self.cohort.peak_utilisation
+        known_utilisations = utilisations[~numpy.isnan(utilisations).any(axis=1)]
         if not len(known_utilisations):
             return numpy.full(len(self.counts), numpy.nan)
         return numpy.quantile(known_utilisations, fraction, axis=0)
 
     def edge_loading(self, report: int) -> float:
         """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
-        return self._mean_of_known(self.cohort.table[:, report, list(RESULT_UNITS).index("edge_distance")] <= 0)
+        return self._mean_of_known(self.cohort.table[:, report, RESULT_COLUMNS["edge_distance"]] <= 0)
 
     def edge_loaded_fraction(self, report: int) -> float:
         """Compute the fraction of patients with edge loading at a report; see `RimDistance.edge_loaded`.

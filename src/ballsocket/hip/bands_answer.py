@@ -14,7 +14,6 @@ from ..core.arrays import Numbers
 from ..core.kinds import MILLIONS, PERCENT
 from ..core.quantities import WEAR
 from ..core.unit_systems import Amount, Sentence
-from ..studies.sensitivity_answer import IndexEntry, share_table
 from .bands import Bands
 from .variability import INFLUENCED_RESULTS
 
@@ -86,6 +85,8 @@ def _contact_line(bands: Bands) -> str:
 
 def _influence_table(bands: Bands) -> Table:
     """List the first and total Sobol indices of each result with their intervals, the largest total first."""
+    from ..studies.sensitivity_answer import IndexEntry, share_table  # slow to import
+
     indices, names = bands.indices or {}, list(bands.variability.distributions)
     shares = indices.items()
     entries = [

@@ -13,6 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import known_name
 from ..core.executors.processes import Engine
+from ..core.storage.folders import ArrayPieceStore
 from ..core.storage.pieces import PieceRun
 from ..studies.axes import SampleAxis
 from ..studies.variance_indices import sobol_indices
@@ -21,7 +22,6 @@ from .cohort import CohortRun, CohortStore, ProgressCallback
 from .patient_series import (
     MEMBERS_PER_PIECE,
     FamilyRun,
-    FamilyStore,
     NoSeriesError,
     PatientSeries,
     fit_series,
@@ -29,7 +29,7 @@ from .patient_series import (
 )
 from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
-from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, CohortResult
+from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_COLUMNS, CohortResult
 
 N_HELD_OUT = 64  # number of patients that are simulated to estimate the error of a series: the first of the cohort
 
@@ -182,7 +182,9 @@ class CohortSeries:
         """Simulate the members of a family for a degree that `pieces` does not have; return all of them."""
         numbers = range(members_of(self.family.box, degree) // MEMBERS_PER_PIECE)
         missing = [number for number in numbers if number not in pieces]
-        store = None if self.store is None else FamilyStore(folder=self.store.folder, identity=self.store.identity)
+        store = None
+        if self.store is not None:
+            store = ArrayPieceStore(folder=self.store.folder, identity=self.store.identity, prefix="series")
         run = PieceRun(self.family, missing, store)
         pieces |= run.stored
         for number, piece in run.compute_missing(self.engine):
@@ -198,7 +200,7 @@ class CohortSeries:
             low, high = box.ranges[name]
             if ((run.values[name] < low) | (run.values[name] > high)).mean() > _MAX_CUT:
                 return None
-        columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
+        columns = [RESULT_COLUMNS[name] for name in INFLUENCED_RESULTS]
 
         def evaluate(samples: Numbers) -> Numbers:
             return series.results(dict(zip(names, samples, strict=True)), counts)[0].table[:, 0, columns].T

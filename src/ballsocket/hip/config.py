@@ -30,15 +30,14 @@ from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
 from .film_limit import FilmLimit
 from .law_fields import select_law_class
+from .measured_wear import MILLION, RATES, MeasuredWear
 from .schema import FilmTable, HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles
 from .station_file import read_stations
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
-from .wear_fit import RATES, MeasuredWear
 from .wear_law import COEFFICIENT, coefficient_field, wear_factor
 from .wear_laws import MATERIAL, WEAR_LAWS, read_ball_law, read_wear_law
 
-_MILLION = 1e6
 _DEFAULT_CYCLES = 5e6
 _DEFAULT_N_REPORTS = 10
 
@@ -251,7 +250,7 @@ def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float
         return total
     if per_year is None:
         raise ValueError(f"{name} = {shown(value)} is per year: state cycles_per_year at the top of the file")
-    return total * _MILLION / per_year
+    return total * MILLION / per_year
 
 
 def parse_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:

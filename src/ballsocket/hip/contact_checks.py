@@ -18,7 +18,6 @@ from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
 from ..core.display import finite_or_none
 from ..core.validity import RIGID_BACKING, Status
-from ..elasticity.exact.exact_curve import exact_stress_ratio
 from ..elasticity.off_axis.grid import Grid
 from ..problem import Joint
 
@@ -56,6 +55,8 @@ class GridContact(Contact):
         joint = self.joint
         if joint.backing_ratio <= RIGID_BACKING.high:
             return super()._compute_von_mises()
+        from ..elasticity.exact.exact_curve import exact_stress_ratio  # slow to import
+
         mean_joint = replace(joint, clearance=float(numpy.mean(joint.clearance)))
         return exact_stress_ratio(mean_joint, self.half_angle) * self.max_pressure
 

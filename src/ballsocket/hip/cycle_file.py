@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from typing import Any
 
 import numpy
 
@@ -14,7 +13,6 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
 from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
-from ..files.tables import read_table as read_schema
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
 from .cycle_registry import CYCLES, named_cycle
@@ -223,11 +221,6 @@ def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> 
 
 _COMMON_KEYS = ("instants", "rotation_order", "times_body_weight")
 _TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion", "columns", "skip")
-
-
-def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
-    """Create the cycle of a hip file; see `cycle_of`."""
-    return cycle_of(read_schema(content, CycleTables), folder)
 
 
 def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:

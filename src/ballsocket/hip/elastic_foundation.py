@@ -11,12 +11,12 @@ import scipy.fft
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.mesh import socket_shape
-from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch, GapField, initial_displacement
+from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch, GapField
 from ..elasticity.off_axis.compliance import Compliance, make_compliance
 from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.equilibrium import solve_force
 from ..elasticity.off_axis.grid import Grid, even_grid
-from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
+from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup, initial_displacement
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
@@ -29,26 +29,17 @@ _MAX_LEVELS = 12  # largest number of load levels of one direction
 _PARALLEL_TOLERANCE = 1e-9  # relative tolerance for loads of one direction, and for loads of one magnitude
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LoadInterpolation:
-    """Interpolation of results between a few solved loads ("levels") to all loads."""
+def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> tuple[Numbers, Numbers]:
+    """Choose a few loads (levels, 3) in N to solve for, and weights (loads, levels) of their results in all loads.
 
-    loads: Numbers  # (levels, 3), forces in N
-    # (loads, levels), weight of each level in each load. They add up to 1, and they interpolate the loads
-    # themselves exactly.
-    weights: Numbers
-
-
-def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInterpolation:
-    """Choose the loads (levels) to solve for, and the interpolation from them to all loads (loads, 3) in N.
-
-    The levels are closer to each other at small loads, where the contacts change most. Few loads, and loads of several
-    directions, are all solved.
+    The weights of a load add up to 1, and they interpolate the loads (loads, 3) themselves exactly. The levels are
+    closer to each other at small loads, where the contacts change most. Few loads, and loads of several directions, are
+    all solved.
     """
     magnitudes, count = numpy.linalg.norm(loads, axis=1), len(loads)
     lateral = abs(numpy.cross(loads, loads[0])).max() if count > max_levels else 0.0
     if count <= max_levels or lateral > _PARALLEL_TOLERANCE * magnitudes.max() ** 2:
-        return LoadInterpolation(loads=loads, weights=numpy.eye(count))
+        return loads, numpy.eye(count)
     levels = numpy.linspace(magnitudes.min() ** 0.5, magnitudes.max() ** 0.5, max_levels) ** 2
     levels[0], levels[-1] = magnitudes.min(), magnitudes.max()
     if levels[-1] - levels[0] <= _PARALLEL_TOLERANCE * levels[-1]:
@@ -58,36 +49,25 @@ def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInte
         fraction = (magnitudes - levels[lower]) / (levels[lower + 1] - levels[lower])
         weights, indices = numpy.zeros((count, max_levels)), numpy.arange(count)
         weights[indices, lower], weights[indices, lower + 1] = 1 - fraction, fraction
-    return LoadInterpolation(loads=levels[:, None] * loads[0] / magnitudes[0], weights=weights)
+    return levels[:, None] * loads[0] / magnitudes[0], weights
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class GridSmoothing:
-    """Smoothing filter [1 2 1]/4 along the meridians and around the axis; it preserves the integral over the surface.
+def smooth_fields(grid: Grid, fields: Numbers) -> Numbers:
+    """Smooth fields (..., rings, meridians) by [1 2 1]/4 along the meridians and around the axis, with their integral.
 
     An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
     shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is as
     wide as the rings.
     """
-
-    grid: Grid
-
-    @cached_property
-    def _harmonic_factors(self) -> Numbers:
-        """Filter factors of the circumferential harmonics on each ring: (rings, harmonics)."""
-        # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
-        half_circle = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
-        m = numpy.arange(self.grid.max_harmonic + 1)
-        return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
-
-    def __call__(self, fields: Numbers) -> Numbers:
-        """Smooth fields (..., rings, meridians) on the grid."""
-        waves = scipy.fft.rfft(fields) * self._harmonic_factors
-        filtered = scipy.fft.irfft(waves, n=self.grid.meridians)
-        areas, no_flux = self.grid.areas, numpy.zeros_like(filtered[..., :1, :])
-        flux = numpy.minimum(areas[1:], areas[:-1]) / 4 * numpy.diff(filtered, axis=-2)  # between neighbouring rings
-        flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
-        return filtered + numpy.diff(flux, axis=-2) / areas
+    # the harmonic m times cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
+    half_circle = numpy.maximum(grid.meridians / 2 * numpy.sin(grid.polar), 1.0)[:, None]
+    m = numpy.arange(grid.max_harmonic + 1)
+    factors = numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
+    filtered = scipy.fft.irfft(scipy.fft.rfft(fields) * factors, n=grid.meridians)
+    areas, no_flux = grid.areas, numpy.zeros_like(filtered[..., :1, :])
+    flux = numpy.minimum(areas[1:], areas[:-1]) / 4 * numpy.diff(filtered, axis=-2)  # between neighbouring rings
+    flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
+    return filtered + numpy.diff(flux, axis=-2) / areas
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,12 +83,8 @@ class ElasticFoundation(SocketFoundation):
     def grid(self) -> Grid:
         return self.compliance.grid
 
-    @cached_property
-    def _smoothing_filter(self) -> GridSmoothing:
-        return GridSmoothing(grid=self.grid)
-
     def smooth(self, depth: Numbers) -> Numbers:
-        return self._smoothing_filter(depth.reshape(self.grid.rings, -1)).ravel()
+        return smooth_fields(self.grid, depth.reshape(self.grid.rings, -1)).ravel()
 
     @cached_property
     def max_stiffness(self) -> float:
@@ -117,7 +93,7 @@ class ElasticFoundation(SocketFoundation):
         stiffness = 0.0
         for _ in range(_POWER_ITERATIONS):
             field = field / numpy.linalg.norm(field)
-            field = self._smoothing_filter(self.compliance.stiffness(field))
+            field = smooth_fields(self.grid, self.compliance.stiffness(field))
             stiffness = float(numpy.linalg.norm(field))
         return stiffness
 
@@ -152,8 +128,8 @@ class ElasticFoundation(SocketFoundation):
         For a fixed load direction, a few load levels are solved, and linear interpolation gives the others. It
         balances every load exactly.
         """
-        levels = interpolate_loads(loads, len(loads) if lateral_stiffness.any() else _MAX_LEVELS)
-        shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
+        levels, weights = interpolate_loads(loads, len(loads) if lateral_stiffness.any() else _MAX_LEVELS)
+        shape = (len(levels), self.grid.rings, self.grid.meridians)
         gap = GapField(
             grid=self.grid,
             clearance=self.clearance,
@@ -162,10 +138,10 @@ class ElasticFoundation(SocketFoundation):
             kind=LinearGap,
         )
         bore_contact = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
-        solved = self._solve_load_levels(bore_contact, levels.loads, depth, start)
+        solved = self._solve_load_levels(bore_contact, levels, depth, start)
         return CycleEquilibrium(
-            displacement=levels.weights @ solved.displacement,
-            pressure=levels.weights @ solved.pressure.reshape(shape[0], -1),
+            displacement=weights @ solved.displacement,
+            pressure=weights @ solved.pressure.reshape(shape[0], -1),
             converged=bool(solved.converged.all()),
             levels=(solved.displacement, solved.pressure),
         )

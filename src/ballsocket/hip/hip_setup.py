@@ -28,7 +28,6 @@ from .contact_checks import ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame
 from .cycle import Cycle
-from .elastic_foundation import elastic_foundation
 from .film import METHODS as FILM_METHODS
 from .film import Film, film
 from .film_limit import CYCLES as FILM_CYCLES
@@ -146,6 +145,8 @@ class HipSetup(OneLine):
         """Foundation of the socket: independent radial springs, or coupled elastic cells."""
         joint = self.joint
         if not isinstance(self.surface, Springs):
+            from .elastic_foundation import elastic_foundation  # slow to import
+
             return elastic_foundation(self.surface, joint, self._unoriented_cup, self.ring_width)
         return spring_foundation(
             self.grid,

@@ -285,7 +285,7 @@ class History(OneLine):
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
-        first, separation, limit = self.use.first, self.use.frame.separation, self.use.film_limit
+        first, worst, separation, limit = self.use.first, self.worst, self.use.frame.separation, self.use.film_limit
         film = None if self.film is None else self.film.summary()
         if film and self.lubricant is not None:
             film["hamrock_dowson"] = self.use.film(self.lubricant, method="hamrock-dowson").summary()
@@ -297,7 +297,7 @@ class History(OneLine):
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
                 "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
-                "edge": _closest_approach_summary(self.worst),
+                "edge": None if worst is None else worst.summary(),
                 "microseparation": None if separation is None else separation.summary(self.use.cycle),
                 "peaks": {
                     "force_N": first.max_force,
@@ -339,7 +339,7 @@ class History(OneLine):
             **record,
             "penetration_vector": [float(part) for part in report.displacement],
             "radiographic_vector": [float(part) for part in self.radiographic_displacement(report)],
-            "edge": _closest_approach_summary(edge),
+            "edge": None if edge is None else edge.summary(),
             "contact": [check.summary() for check in checks],
         }
 
@@ -375,7 +375,3 @@ _WORN_TO_RIM = (
     "edge loading, since under the same loads the unworn contact ends {} before the rim; the pressure in the "
     "outermost ring is at most {}"
 )
-
-
-def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
-    return None if worst is None else worst.summary()

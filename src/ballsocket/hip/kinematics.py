@@ -97,30 +97,6 @@ def cross_shear(xx: Numbers, yy: Numbers, xy: Numbers) -> Numbers:
     return numpy.clip(numpy.divide(smaller, trace, out=numpy.zeros_like(trace), where=trace > 0), 0.0, 0.5)
 
 
-def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers:
-    """Compute the cross-shear ratio of a track on a plane from its displacement steps.
-
-    Parameters
-    ----------
-    steps : array (..., n, 2)
-        Displacements along the track, in its tangent plane.
-    weights : array (..., n)
-        Weight of each step, such as the contact pressure.
-
-    Examples
-    --------
-    A rectangle of 3 by 1 mm has b/(a + b):
-
-    >>> sides = numpy.array([[3.0, 0.0], [0.0, 1.0], [-3.0, 0.0], [0.0, -1.0]])
-    >>> float(track_cross_shear(sides))
-    0.25
-    """
-    length = numpy.linalg.norm(steps, axis=-1)
-    weight_per_length = weights * numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
-    x, y = steps[..., 0], steps[..., 1]
-    return cross_shear(*((weight_per_length * product).sum(axis=-1) for product in (x * x, y * y, x * y)))
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceSliding:
     """Sliding of the ball's surface over points of the socket during a cycle."""
@@ -144,11 +120,6 @@ class SurfaceSliding:
         )
         vars(selected)["distances"] = self.distances[:, points]  # cached: not computed again
         return selected
-
-    def velocities(self, seconds: Numbers) -> Numbers:
-        """Compute sliding velocities (steps, points, 3) in mm/s from the durations of the steps in s."""
-        angular_velocities = self.rotation_increments / seconds[:, None]
-        return self.radius * numpy.cross(angular_velocities[:, None], self.directions.T[None])
 
     @cached_property
     def _rotated_sliding_components(self) -> tuple[Numbers, Numbers]:

@@ -10,13 +10,12 @@ from math import ceil, log
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.storage.folders import ArrayPieceStore
 from ..core.storage.pieces import check_worker_code, fingerprint
 from .chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
 from .contact_checks import check_rows
 from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
 from .simulation import MAX_WORN_LINERS
-from .variability import RESULT_UNITS, CohortResult
+from .variability import RESULT_COLUMNS, RESULT_UNITS, CohortResult
 
 MEMBERS_PER_PIECE = 8  # simulations of one piece of work: about half a second
 
@@ -61,26 +60,11 @@ class FamilyRun:
         """Simulate one member; return its numbers of the unworn and of the worn bore."""
         contacts = _CONTACT_FIELDS * len(self.similarity.setup.frame.activities)
         try:
-            member = self.similarity.simulate(numbers, chebyshev_points(*self.log_exposures, self.n_nodes).tolist())
+            return self.similarity.simulate(numbers, chebyshev_points(*self.log_exposures, self.n_nodes).tolist())
         except ValueError:
             n_numbers = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
             unworn = numpy.full(len(UNWORN_NUMBERS) + contacts, numpy.nan)
             return unworn, numpy.full((self.n_nodes, n_numbers), numpy.nan)
-        return member.unworn, member.worn
-
-
-@dataclass(frozen=True, kw_only=True)
-class FamilyStore(ArrayPieceStore):
-    """Folder of stored simulations of a family, one file for each piece; see `ArrayPieceStore`."""
-
-    prefix: str = "series"
-
-    def to_arrays(self, result: dict[str, Numbers]) -> dict[str, Numbers]:
-        return result
-
-    def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:
-        """Return the arrays of a piece; None if the file has other arrays."""
-        return arrays if set(arrays) == {"unworn", "worn"} else None
 
 
 def members_of(box: Box, degree: int) -> int:
@@ -151,7 +135,7 @@ class PatientSeries:
             results = {name: numpy.exp(stage[:, column]) for column, name in enumerate(names)}
             results["edge_distance"] = numpy.maximum(stage[:, len(names)], 0.0)
             for name, ratios in results.items():
-                table[:, report, list(RESULT_UNITS).index(name)] = ratios * units[name]
+                table[:, report, RESULT_COLUMNS[name]] = ratios * units[name]
         return table
 
     def _contacts(self, unworn: Numbers, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:

@@ -38,8 +38,8 @@ from .cycle_registry import CYCLES
 from .cycle_tables import DEFAULT_CLOSURE
 from .kinematics import parse_rotation_order
 from .law_fields import Law
+from .measured_wear import RATES, WEAR_QUANTITIES
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES
-from .wear_fit import RATES, WEAR_QUANTITIES
 from .wear_laws import BALL_COEFFICIENT, WEAR_FACTORS, WEAR_LAWS
 
 

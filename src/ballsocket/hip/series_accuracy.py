@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 
-from .variability import RESULT_UNITS, CohortResult
+from .variability import RESULT_COLUMNS, RESULT_UNITS, CohortResult
 
 TOLERANCES: Mapping[str, float] = {
     "volume": 1e-3,
@@ -114,7 +114,7 @@ def estimate_accuracy(
         for column, name in enumerate(RESULT_UNITS)
         if name in names
     }
-    edge = list(RESULT_UNITS).index("edge_distance")
+    edge = RESULT_COLUMNS["edge_distance"]
     differences = abs(result.contact - expected.contact)
     known = differences[:, :, 0][numpy.isfinite(differences[:, :, 0])]
     return SeriesAccuracy(

@@ -1,9 +1,18 @@
 """Similarity of patients on radial springs: the dimensionless numbers that determine their wear.
 
-Springs press with p = K max(e·n - c - h, 0): modulus K, displacement e of the ball, normal n of the bore, clearance c,
-worn depth h. Divided by c, lengths have no scale. A law of degree m in the pressure wears dh/dN = k p^m f(sliding).
-Then h/c depends on F/(K c R2²), on the orientation of the cup, and on the exposure k K^m c^(m-1) N. R2 is the radius of
-the bore, N the number of cycles. A creeping liner adds the time of a unit of exposure, and K times its compliance.
+Springs of the modulus K press with p on the ball, whose centre moves by e in a bore with the radius R2, the normals n
+and the clearance c. In N cycles a law of degree m in the pressure, with the coefficient k, wears the depth h:
+
+    p = K max(e·n - c - h, 0),   ∫ p n dA = F,   (1)
+    dh/dN = k p^m f(sliding).   (2)
+
+With lengths over c and pressures over K c, equations (1) and (2) have no other parameters than the orientation of the
+cup, the force and the exposure
+
+    F/(K c R2²),   X = k K^m c^(m-1) N.   (3)
+
+Patients who share them have the same h/c. A creeping liner adds the time of a unit of exposure, and K times its
+compliance, which depends on c.
 """
 
 from __future__ import annotations
@@ -57,18 +66,6 @@ def find_obstacle(variability: PatientVariability, counts: Sequence[float]) -> s
         "nothing is pressed": not len(use.frame.loaded),
     }
     return next((clause for clause, holds in obstacles.items() if holds), "")
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FamilyMember:
-    """Dimensionless results of one simulation of a family."""
-
-    # (numbers,), `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the worst
-    # contact of each activity
-    unworn: Numbers
-    # (exposures, numbers), logarithms of `Similarity.results` over their units, `RIM_NUMBERS`, then the same
-    # three numbers of each activity
-    worn: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,7 +134,7 @@ class Similarity:
         return values[name] / self.variability.nominal_value(name)
 
     def exposure_per_cycle(self, values: Mapping[str, Numbers]) -> Numbers:
-        """Compute the exposure per cycle, k K^m c^(m-1) with k over its median: (patients,)."""
+        """Compute the exposure (3) per cycle, with k over its median: (patients,)."""
         clearance, degree = self.clearances(values), self.degree
         ratio = values["coefficient"] / self._median("coefficient") if "coefficient" in values else 1.0
         return ratio * self.modulus(clearance) ** degree * clearance ** (degree - 1)
@@ -148,7 +145,7 @@ class Similarity:
             return numpy.log(self.exposure_per_cycle(values) * self._ratios(values, "cycles_per_year"))
 
     def numbers(self, values: Mapping[str, Numbers]) -> dict[str, Numbers]:
-        """Compute the numbers of patients by name: each (patients,), NaN where a value is not allowed."""
+        """Compute the numbers of patients besides the exposure by name: (patients,), NaN where not allowed."""
         clearance, forces = self.clearances(values), self._ratios(values, "body_weight")
         force_unit = self.modulus(clearance) * clearance * self.socket_radius(clearance) ** 2
         stated = self.setup.seconds_per_cycle is not None
@@ -181,8 +178,17 @@ class Similarity:
         pressure = self.modulus(clearance) * clearance
         return {"volume": clearance * radius**2, **lengths, "max_pressure": pressure, "edge_distance": radius}
 
-    def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> FamilyMember:
-        """Simulate the family member with given numbers up to each of several logarithms of exposures."""
+    def simulate(self, numbers: Mapping[str, float], log_exposures: Sequence[float]) -> tuple[Numbers, Numbers]:
+        """Simulate the family member with given numbers up to each of several logarithms of exposures.
+
+        Returns
+        -------
+        array (numbers,)
+            Of the unworn bore: `UNWORN_NUMBERS`, then ln indentation/c, half angle in rad and ln pressure/(K c) of the
+            worst contact of each activity.
+        array (exposures, numbers)
+            Logarithms of `results` over their units, `RIM_NUMBERS`, then the same three numbers of each activity.
+        """
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)
         clearance, worn, converged = float(use.joint.clearance), [], True
@@ -197,7 +203,7 @@ class Similarity:
             wear_rate = numpy.log(use.first.depth / 1e6 / per_cycle / clearance)
         rim = self._rim_numbers(use, numpy.zeros_like(integrator.depth), use.unworn.displacement, None)[0]
         contacts = self._contact_numbers(use, use.unworn_worst_contacts)
-        return FamilyMember(unworn=numpy.array([wear_rate, rim, *contacts]), worn=numpy.array(worn))
+        return numpy.array([wear_rate, rim, *contacts]), numpy.array(worn)
 
     def make_member(self, numbers: Mapping[str, float]) -> tuple[HipSimulation, float]:
         """Return the simulation of a family member with given numbers, and its exposure per cycle."""

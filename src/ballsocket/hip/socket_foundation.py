@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy
 
 from ..core.arrays import Numbers
-from ..elasticity.off_axis.bore_contact import initial_displacement
 from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.grid import Grid
+from ..elasticity.off_axis.surfaces import initial_displacement
 from .spring_equilibrium import SpringContact, load_blocks, spring_solver
 
 NO_LATERAL_SPRING = numpy.zeros((3, 3))  # stiffness matrix (N/mm) for a ball without a lateral spring

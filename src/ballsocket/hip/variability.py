@@ -57,6 +57,8 @@ RESULT_UNITS: Mapping[str, str] = {
 }
 """Results of each patient with their units; see `Report`."""
 
+RESULT_COLUMNS = {name: column for column, name in enumerate(RESULT_UNITS)}  # of a table of results
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PatientVariability:

@@ -1,8 +1,8 @@
-"""Wear coefficient from measured volumes, depths, penetrations or rates, of a wear test or of patients."""
+"""Wear coefficient from measured wear, with its band."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, inf, isfinite, log, nan
@@ -12,24 +12,14 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import known_name, require, shown
-from ..core.display import finite_or_none, plain_number
+from ..core.display import finite_or_none
 from .history import History, NumericalError
 from .law_fields import law_summary
+from .measured_wear import MILLION, MeasuredWear
 from .simulation import HipSimulation, check_total_wear, run_to_report_points
-from .specimens import mean_of_specimens
 from .wear_integrator import WearIntegrator
 from .wear_law import coefficient_field, with_coefficient
 
-WEAR_QUANTITIES: Mapping[str, str] = MappingProxyType(
-    {"volume": "mm³", "depth": "mm", "penetration": "mm", "radiographic_penetration": "mm"}
-)
-"""Measured quantities with units: worn volume, deepest wear, displacement of the ball, and that in a radiograph."""
-
-RATES = ("initial", "steady", "mean")
-"""Kinds of rates: of the new bore, between two cycle counts, and from the new bore to a cycle count."""
-
-_MILLION = 1e6
 _NODES = numpy.linspace(-0.5, 0.5, 5)  # ln(coefficient) of the runs minus that of the centre
 _DEGREE = 3  # degree of the polynomial of ln(result) over ln(coefficient) through the nodes
 _MAX_SHIFT = 0.3  # largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted
@@ -41,183 +31,6 @@ _FEW_CYCLES = 1e4  # number of cycles below which no wear is measured
 _MIN_NOTED_WIDENING = 1.05
 _ROUNDING = 1e-9  # width of a band, relative to the coefficient, that is rounding alone
 _PREDICTED, _LEAST = 10, 1e-6  # steps of a prediction; share of the coefficient that stands for a band's end at 0
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MeasuredWear:
-    """Measured wear: totals at cycle counts, or a rate per million cycles.
-
-    Parameters
-    ----------
-    quantity : str
-        One of `WEAR_QUANTITIES`.
-    values : number or array
-        Totals in mm³ or mm, or rates in mm³ or mm per million cycles.
-    cycles : number or array, optional
-        Cycle count of each total.
-    rate : str, optional
-        Kind of a rate: "initial" of the new bore, "steady" from `begin` to `end`, "mean" from 0 to `end`.
-    begin, end : float, optional
-        Cycle counts of a rate.
-    uncertainty : number or array, optional
-        Standard uncertainty (k = 1) in the unit of the values. Without any, it is estimated from the scatter.
-    relative_uncertainty : float, optional
-        Standard uncertainty as a share of each true value, for which the fit has its fitted values: a reading that is
-        low by chance has no larger weight.
-    station : str or sequence of str, optional
-        Station (specimen) of all values, or of each. Readings of one station at several cycle counts are cumulative
-        and no independent values. Without it a data set is one specimen, and further values at the same cycle counts
-        are further specimens, in the order of the values.
-    density : float, optional
-        Density in mg/mm³ by which a measured mass is the volume of the values; it is printed as the mass.
-    name : str
-        Name in messages.
-    remark : str
-        Sentence on lines of its file that are left out; empty without any.
-
-    Raises
-    ------
-    ValueError
-        A quantity or rate that is not known, missing cycles, or a number that is not allowed.
-
-    Examples
-    --------
-    >>> MeasuredWear(quantity="volume", values=38.0, rate="steady", begin=5e6, end=1e7).description
-    'volume rate, steady from 5 to 10 million cycles'
-    """
-
-    quantity: str
-    values: Any
-    cycles: Any = None
-    rate: str | None = None
-    begin: float | None = None
-    end: float | None = None
-    uncertainty: Any = None
-    relative_uncertainty: float | None = None
-    station: str | Sequence[str] | None = None
-    density: float | None = None
-    name: str = ""
-    remark: str = ""
-
-    def __post_init__(self) -> None:
-        known_name("quantity", self.quantity, WEAR_QUANTITIES)
-        values = _positive_array(self.quantity, self.values, "a measured wear is positive and finite")
-        object.__setattr__(self, "values", values)
-        if self.rate is None:
-            self._check_totals(values)
-        else:
-            self._check_rate(known_name("rate", self.rate, RATES))
-        if self.uncertainty is not None:
-            sigma = _positive_array("uncertainty", self.uncertainty, "a standard uncertainty is positive and finite")
-            if sigma.size not in (1, values.size):
-                raise ValueError(f"uncertainty must have 1 or {values.size} numbers, got {sigma.size}")
-            object.__setattr__(self, "uncertainty", numpy.broadcast_to(sigma, values.shape))
-        if (share := self.relative_uncertainty) is not None:
-            require("relative_uncertainty", share, 0 < share < inf, "a share of each value is positive and finite")
-            if self.uncertainty is not None:
-                raise ValueError("uncertainty and relative_uncertainty exclude each other: state one of them")
-        if self.station is not None:
-            names = (self.station,) * values.size if isinstance(self.station, str) else tuple(self.station)
-            if len(names) != values.size:
-                raise ValueError(f"station has {len(names)} names for {values.size} values: one name, or one for each")
-            object.__setattr__(self, "station", names)
-
-    def _check_totals(self, values: Numbers) -> None:
-        if self.begin is not None or self.end is not None:
-            raise ValueError(f"from and to belong to a rate of {self.quantity}: state rate, or cycles for totals")
-        if self.cycles is None:
-            raise ValueError(
-                f"{self.quantity} needs the cycles of its values, or else the kind of its rate: {', '.join(RATES)}"
-            )
-        cycles = _positive_array("cycles", self.cycles, "a number of cycles is positive and finite")
-        if cycles.size != values.size:
-            raise ValueError(f"{self.quantity} has {values.size} values and {cycles.size} cycles: one for each value")
-        object.__setattr__(self, "cycles", cycles)
-
-    def _check_rate(self, rate: str) -> None:
-        quantity, begin = self.quantity, self.begin or 0.0
-        if self.cycles is not None:
-            raise ValueError(f"a rate of {quantity} takes from and to, not cycles")
-        if rate == "initial":
-            if quantity not in ("volume", "depth"):
-                raise ValueError(f"an initial rate of {quantity} is not defined: use volume, or a steady rate")
-            if self.begin is not None or self.end is not None:
-                raise ValueError("an initial rate is that of the new bore: remove from and to")
-            return
-        if self.end is None or (rate == "steady" and self.begin is None):
-            needed = "from and to" if rate == "steady" else "to"
-            raise ValueError(f"a {rate} rate of {quantity} needs {needed}: numbers of cycles, such as to = 5e6")
-        if rate == "mean" and self.begin:
-            raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
-        rule = f"it is above the {plain_number(begin)} cycles of from, and finite"
-        require("to", self.end, 0 <= begin < self.end < inf, rule)
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    @property
-    def specimen_numbers(self) -> list[int]:
-        """Number of the specimen of each value in a data set without stations, from 0: its repetition of a count."""
-        counts = [0.0] * len(self) if self.rate is not None else self.cycles.tolist()
-        return [counts[:index].count(count) for index, count in enumerate(counts)]
-
-    def standard_uncertainty(self, fitted: Numbers) -> Numbers:
-        """Compute the standard uncertainty of each value from its fitted value, which it is itself if unknown."""
-        if self.uncertainty is not None:
-            return numpy.asarray(self.uncertainty)
-        return fitted if self.relative_uncertainty is None else self.relative_uncertainty * fitted
-
-    @property
-    def unit(self) -> str:
-        """Unit of the values: mm³ or mm, for a rate per million cycles (Mc)."""
-        return WEAR_QUANTITIES[self.quantity] + ("" if self.rate is None else "/Mc")
-
-    @property
-    def measured_quantity(self) -> str:
-        """Measured quantity in words: the mass, if a density is stated."""
-        return self.quantity.replace("_", " ") if self.density is None else "mass"
-
-    @property
-    def description(self) -> str:
-        """Quantity, kind of rate and cycle counts in words."""
-        quantity = self.measured_quantity
-        if self.rate is None:
-            return f"{quantity} after {', '.join(f'{count / _MILLION:g}' for count in self.cycles)} million cycles"
-        if self.rate == "initial":
-            return f"{quantity} rate, initial, of the new bore"
-        begin, end = ((count or 0.0) / _MILLION for count in (self.begin, self.end))
-        return f"{quantity} rate, {self.rate} from {begin:g} to {end:g} million cycles"
-
-    @property
-    def counts(self) -> list[float]:
-        """Cycle counts at which the simulation is needed; empty for an initial rate."""
-        if self.rate is None:
-            return [float(count) for count in self.cycles]
-        return [float(count) for count in (self.begin, self.end) if count]
-
-    def predict(self, totals: Callable[[float], float], initial: float) -> Numbers:
-        """Compute the values of this data set from totals by cycle count, and the initial rate per million cycles."""
-        if self.rate is None:
-            return numpy.array([totals(count) for count in self.counts])
-        if self.rate == "initial":
-            return numpy.full(len(self), initial)
-        begin, end = float(self.begin or 0.0), float(self.end or 0.0)
-        start = totals(begin) if begin else 0.0
-        return numpy.full(len(self), _MILLION * (totals(end) - start) / (end - begin))
-
-    def other_readings(self) -> Iterator[MeasuredWear]:
-        """Yield this rate as those of other kinds: of the new bore, of the second million, from 5 to 10 million."""
-        if self.quantity in ("volume", "depth"):
-            yield replace(self, rate="initial", begin=None, end=None)
-        for begin, end in ((1e6, 2e6), (5e6, 1e7)):
-            yield replace(self, rate="steady", begin=begin, end=end)
-
-
-def _positive_array(name: str, numbers: Any, rule: str) -> Numbers:
-    """Convert a number or a sequence to an array; ValueError for numbers that are not positive and finite."""
-    array = numpy.atleast_1d(numpy.asarray(numbers, dtype=float))
-    require(name, array, (array > 0) & (array < inf), rule)
-    return array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -284,7 +97,7 @@ class WearFit:
         cycles : float
             Number of cycles of the prediction, where it goes further than the data.
         """
-        counts = sorted({count for measured in self.data for count in measured.counts}) or [_MILLION]
+        counts = sorted({count for measured in self.data for count in measured.counts}) or [MILLION]
         counts += [count for count in numpy.linspace(0, cycles, _PREDICTED + 1).tolist() if count > counts[-1]]
         best = self.coefficient
         ends = (end if isfinite(end) else best for end in (max(self.low, _LEAST * best), self.high))
@@ -487,7 +300,7 @@ class _WearModel:
 
     def _run(self, coefficient: float, counts: Sequence[float]) -> History:
         simulation = replace(self.simulation, wear=with_coefficient(self.simulation.wear, coefficient))
-        check_total_wear(simulation, counts[-1] if counts else _MILLION)
+        check_total_wear(simulation, counts[-1] if counts else MILLION)
         integrator = WearIntegrator(setup=simulation)
         reports = run_to_report_points(integrator, counts, lambda cycles: None, None)
         return History(use=simulation, reports=reports, error=NumericalError(blocks=0, volume=0, depth=0), steps=0)
@@ -632,3 +445,43 @@ def _readings(model: _WearModel, nodes: _Nodes) -> dict[str, float]:
         readings[reading.description] = exp(brentq(excess, *ends))
         start += len(reading)
     return readings
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpecimenMean:
+    """Mean over specimens that differ from each other."""
+
+    mean: float
+    # standard uncertainty of the mean, for Student's quantile with one degree of freedom less than specimens
+    standard_error: float
+    scatter: float  # standard deviation between specimens, without the errors of their readings
+
+
+def mean_of_specimens(values: Numbers, variances: Numbers, min_ratio: float) -> SpecimenMean:
+    """Compute the mean over specimens whose values have different variances by their readings; two or more.
+
+    The variance between specimens is by Paule & Mandel 1982 (doi:10.6028/jres.087.022), the standard error by Hartung &
+    Knapp 2001 (doi:10.1002/sim.791). For equal variances they are mean and standard error of the values themselves.
+    `min_ratio` is the least ratio of the observed scatter to the scatter that the variances explain: 1 for stated
+    errors, below which chance is no reason for a narrower band; 0 for errors that are estimated from the same readings.
+    """
+    from scipy.optimize import brentq
+
+    freedom = len(values) - 1
+
+    def ratio(between: float) -> float:
+        """Compute the ratio of observed to explained scatter for a variance between specimens."""
+        weights = 1 / (variances + between)
+        return float(weights @ (values - weights @ values / weights.sum()) ** 2) / freedom
+
+    squares = float(((values - values.mean()) ** 2).sum())
+    negligible = 1e-12 * squares + 1e-30 * float((values**2).max()) + 1e-300  # at least the rounding of the mean
+    between, observed = negligible, ratio(negligible)
+    if observed > 1:
+        between, observed = float(brentq(lambda v: ratio(v) - 1, negligible, 2 * squares, xtol=negligible)), 1.0
+    weights = 1 / (variances + between)
+    return SpecimenMean(
+        mean=float(weights @ values / weights.sum()),
+        standard_error=float((max(observed, min_ratio) / weights.sum()) ** 0.5),
+        scatter=0.0 if between == negligible else between**0.5,
+    )

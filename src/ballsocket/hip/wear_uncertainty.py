@@ -19,7 +19,7 @@ from .variability import (
     DEFAULT_COUNT,
     DEFAULT_LEVEL,
     INFLUENCED_RESULTS,
-    RESULT_UNITS,
+    RESULT_COLUMNS,
     CohortResult,
     Patient,
     PatientVariability,
@@ -28,7 +28,7 @@ from .variability import (
 )
 from .wear_law import COEFFICIENT
 
-_CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
+_CONVERTED_COLUMNS = [RESULT_COLUMNS[name] for name in CONVERTED]
 _NODES = 12  # number of runs of the nominal patient over the range of the coefficient
 _SERIAL = Serial()
 
@@ -79,7 +79,7 @@ def uncertainty(
         run = CohortRun(variability=variability, counts=counts, values=values)
         results.append(run.simulate(engine, None, lambda finished: progress(n_finished + finished)))
         sampled_sets.append(values)
-        last_results = results[-1].table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
+        last_results = results[-1].table[:, -1, [RESULT_COLUMNS[name] for name in INFLUENCED_RESULTS]]
         return last_results.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
 
     distributions = list(variability.distributions.values())
@@ -166,7 +166,7 @@ def population(
 
 
 def _quick_run_errors(variability: PatientVariability, reports: Sequence[Report]) -> dict[str, float]:
-    columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
+    columns = [RESULT_COLUMNS[name] for name in INFLUENCED_RESULTS]
     coarse_reports = variability.patient({}).simulate([report.cycles for report in reports])
     coarse, full = result_table(coarse_reports)[:, columns], result_table(reports)[:, columns]
     ratios = numpy.divide(coarse, full, out=numpy.ones_like(coarse), where=full > 0)

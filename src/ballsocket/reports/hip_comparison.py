@@ -13,12 +13,14 @@ from ..core.answers import named_records
 from ..core.storage.atomic_files import write_csv
 from ..hip.history import History
 from ..hip.history_answer import HipRun
-from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
+from ..hip.measured_wear import WEAR_QUANTITIES
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from ..hip.wear_fit import WearFit
 
 _COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PINK, SKY)
 _PANELS = {"volume": "worn volume [mm³]", "penetration": "penetration [mm]"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..core.checks import check_names, shown
 from ..core.kinds import Kind
@@ -13,8 +13,10 @@ from ..files.schema import QUANTITY_SCHEMA
 from ..files.units import as_given, parse
 from ..problem.presets import named_material
 from .distributions import Correlation, Distribution, LogNormal, Normal, Rectangular, tolerance
-from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
+
+if TYPE_CHECKING:
+    from .limits import Limit
 
 _MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could take seconds
 
@@ -96,6 +98,8 @@ def parse_limit(text: str) -> Limit:
 
     Raises ValueError: another form, or an unknown name.
     """
+    from .limits import LIMITED_NAMES, Limit  # slow to import
+
     form = f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'"
     name, sign, end = _parts(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text, form)
     if "=" in (sign, sign[:1]):

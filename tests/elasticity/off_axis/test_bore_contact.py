@@ -10,13 +10,14 @@ from scipy.optimize import nnls
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis import bore_contact, equilibrium
-from ballsocket.elasticity.off_axis.bore_contact import BoreContact, initial_displacement, make_bore_arrays
+from ballsocket.elasticity.off_axis.bore_contact import BoreContact, make_bore_arrays
 from ballsocket.elasticity.off_axis.compliance import cached_compliance, make_compliance
 from ballsocket.elasticity.off_axis.coupled_search import TANGENT_ITERATIONS, solve_sensitivity
 from ballsocket.elasticity.off_axis.equilibrium import solve_force
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid
 from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lanes, solve_tangents
 from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure, solve_pressure_change
+from ballsocket.elasticity.off_axis.surfaces import initial_displacement
 
 from ...extent import some
 from ...joints import HIP

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.bore_contact import initial_displacement
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
 from ballsocket.elasticity.off_axis.contact_patch import ContactPatch
 from ballsocket.elasticity.off_axis.directions import (
@@ -20,6 +19,7 @@ from ballsocket.elasticity.off_axis.directions import (
     unit_vectors,
 )
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid, graded_grid, rim_grid
+from ballsocket.elasticity.off_axis.surfaces import initial_displacement
 
 from .shapes import gap_of, measures_of
 

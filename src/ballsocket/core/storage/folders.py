@@ -183,22 +183,26 @@ class RemoteFolder(ResultFolder):
 
 @dataclass(frozen=True, kw_only=True)
 class ArrayPieceStore(PieceStore):
-    """Base class of stores with one npz file for each piece, which carries the identity of its run."""
+    """Store of arrays by name with one npz file for each piece, which carries the identity of its run.
+
+    Derived classes convert other results to arrays and back.
+    """
 
     folder: ResultFolder  # local or remote folder
     identity: str  # digest of the run
     prefix: str  # beginning of the file names
 
-    @abstractmethod
     def to_arrays(self, result: Any) -> Mapping[str, Any]:
         """Return the arrays of a result by name."""
+        arrays: Mapping[str, Any] = result
+        return arrays
 
-    @abstractmethod
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> Any:
         """Return the result of a piece from its arrays; None if it belongs to another run.
 
         Raises ValueError, TypeError, KeyError: an array is missing or has another shape.
         """
+        return arrays
 
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
         """Load the stored results of some pieces; omit missing and damaged files."""

@@ -1,15 +1,21 @@
 """Kernel of the contact equation, and its integrals over [-ε, ε] for half angles on a grid.
 
-In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x). ρ_n measures how far mode
-n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
+In Abel space (see `abel`) the ball and the socket act through the kernel of the distance x = t - s of two angles,
 
-    k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),
+    k(x) = Σ ρ_n cos((n + ½) x),   ρ_n = c_n (n + ½)/C - 1,   (1)
+
+with the compliance c_n of both bodies for the Legendre polynomial of degree n, and the limit C of c_n (n + ½), where
+they act like a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j at high degrees, the sum is split into
+
+    k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),   (2)
 
 closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6, see `grid`, and a remainder whose r_n decrease like n^-7 or
-faster.
+faster. The integrals over a contact of half angle ε,
 
-The integrals ½ ∫ k(t - s) f(s) ds of even f and of odd f are matrices (loads, points + 1, points): from f at the points
-to the integral at the points and at t = ε. They are linear in a_1 .. a_6 and in the remainder r_n.
+    ½ ∫ k(t - s) f(s) ds,   s from -ε to ε,   (3)
+
+of even f and of odd f are matrices (loads, points + 1, points): from f at the points to the integral at the points and
+at t = ε. They are linear in a_1 .. a_6 and in the remainders r_n.
 """
 
 from __future__ import annotations
@@ -26,7 +32,7 @@ from .grid import ORDER, QuadratureGrid, distance_coefficients, logarithm_coeffi
 from .modes import ElasticBall, Socket
 
 Operators = tuple[Numbers, Numbers]
-"""Operators of even functions and of odd ones."""
+"""Matrices of the integral (3) of even functions and of odd ones."""
 
 _BLOCK = 16_384  # waves in one block, which fits into the cache
 _PANEL_STEP = 8
@@ -42,7 +48,7 @@ class Intervals:
     grid: QuadratureGrid
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
+        """Compute the operators of the closed forms in (2), from the coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = edge * grid.distance
         square *= square
@@ -210,7 +216,7 @@ class Kernel:
         return self.socket.asymptote + (0.0 if self.ball is None else self.ball.asymptote)
 
     def excess(self, degrees: Numbers) -> Numbers:
-        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of the modal compliance of both bodies together."""
+        """Compute the excess ρ_n (1) of the modal compliance of both bodies together."""
         return self._mix(lambda body: body.excess(degrees))
 
     @cached_property
@@ -227,14 +233,14 @@ class Kernel:
 
     @cached_property
     def remainder(self) -> Numbers:
-        """Remainders r_n of ρ_n after the closed forms, from n = 0 to the last one above the tolerance."""
+        """Remainders r_n (2) after the closed forms, from n = 0 to the last one above the tolerance."""
         a = self.expansion
         tail = (abs(a[ORDER]) / (ORDER * self.tolerance)) ** (1 / ORDER)
         q = numpy.arange(max(ceil(tail), self.socket.backing_degree(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
     def operators(self, intervals: Intervals) -> Operators:
-        """Compute the integral operators ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even and for odd functions f."""
+        """Compute the operators of the integral (3) for even and for odd functions f."""
         operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)
         return operators

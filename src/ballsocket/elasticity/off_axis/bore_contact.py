@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
-from ...models.kinematics import linear_indentation
 from ...problem.gaps import CircularGap, LinearGap
 from .compliance import Compliance, UniformOperator
 from .coupled_search import BoreArrays
@@ -60,18 +58,6 @@ class GapField:
         """Compute the ball's radius in mm, and the squared half chord of each cell's ray in the ball in mm²."""
         ball = self.socket_radius - self.clearance
         return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along
-
-
-def initial_displacement(bore: Any, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
-    """Estimate displacements (n, 3) in mm along the loads, from springs in a full sphere at the largest wear depth.
-
-    `bore` has a clearance and a socket_radius in mm. The modulus of the foundation is that of the bore under uniform
-    pressure, in MPa/mm. `depth` is that of the worn bore below its sphere, in mm. The loads have magnitudes (n,) in N
-    and unit vectors (n, 3).
-    """
-    clearance = max(bore.clearance, 0.0)
-    indentation = linear_indentation(bore.socket_radius, clearance, modulus, force)
-    return axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
 
 
 _PATH_POINTS = 4  # number of contacts on the way of a ball, at which the work of the load is integrated

@@ -16,7 +16,6 @@ from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.records import cached_array
 from ...core.validity import RIGID_BACKING, Status
-from ..exact.exact_curve import exact_stress_ratio
 from .directions import TILT_TOLERANCE, check_direction, polar_angle
 
 if TYPE_CHECKING:
@@ -44,6 +43,8 @@ class OffAxisContact(SolvedContact):
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
         ratio = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         if not joint.backing_ratio <= RIGID_BACKING.high:
+            from ..exact.exact_curve import exact_stress_ratio  # slow to import
+
             ratio = exact_stress_ratio(joint, state.half_angle)
         return numpy.asarray(ratio * state.max_pressure)
 

@@ -346,7 +346,7 @@ def _press_loads(
 
 
 def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance: Array, depth: Array) -> Array:
-    """Estimate displacements (3, loads) in mm along the loads, as `bore_contact.initial_displacement`."""
+    """Estimate displacements (3, loads) in mm along the loads, as `surfaces.initial_displacement`."""
     import jax.numpy as xp
 
     modulus = bore.areas @ bore.stiffness[0].sum(axis=1) / bore.areas.sum()  # under a uniform displacement

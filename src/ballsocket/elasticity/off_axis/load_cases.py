@@ -12,13 +12,13 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.executors.processes import check_memory, count_text
 from ...models.kinematics import versine_of
-from .bore_contact import BoreContact, initial_displacement
+from .bore_contact import BoreContact
 from .contact_states import ContactStates, ContactSummaries, LoadSolver, summarise
 from .directions import TILT_TOLERANCE, polar_angle, unit_vectors
 from .equilibrium import solve_force
 from .lane_solver import coarser_lanes
 from .rim_curve import cached_rim_points, force_curve, indentation_curve
-from .surfaces import EdgeRelation
+from .surfaces import EdgeRelation, initial_displacement
 
 _MAX_FREE_DISPLACEMENT = 0.5
 """Displacement without contact, as a fraction of the bore's radius, beyond which a ball has left its bore.

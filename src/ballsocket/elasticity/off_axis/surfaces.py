@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
 
 from ...core.arrays import Numbers
+from ...models.kinematics import linear_indentation
 from ...models.modulus import Modulus, as_modulus, hess_forsbach
 from ...problem import Joint
 from ...problem.cup import Cup
@@ -138,3 +139,15 @@ class Springs(Surface):
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
         return spring_edges(float(self.modulus(joint)), grid)
+
+
+def initial_displacement(bore: Any, modulus: float, depth: Numbers, force: Numbers, axes: Numbers) -> Numbers:
+    """Estimate displacements (n, 3) in mm along the loads, from springs in a full sphere at the largest wear depth.
+
+    `bore` has a clearance and a socket_radius in mm. The modulus of the foundation is that of the bore under uniform
+    pressure, in MPa/mm. `depth` is that of the worn bore below its sphere, in mm. The loads have magnitudes (n,) in N
+    and unit vectors (n, 3).
+    """
+    clearance = max(bore.clearance, 0.0)
+    indentation = linear_indentation(bore.socket_radius, clearance, modulus, force)
+    return axes * (clearance + indentation + float(depth.max(initial=0.0)))[:, None]
