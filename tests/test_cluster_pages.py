@@ -13,6 +13,7 @@ from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.file import read_study
 
 from .places import ROOT
+from .processes import PATIENCE
 
 HOW_TO = ROOT / "docs" / "how-to"
 
@@ -57,7 +58,7 @@ def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program,
     (tmp_path / "run_study.py").write_text(text, encoding="utf-8")
     variables = {**os.environ, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
     words, pipes = [sys.executable, "run_study.py"], {"capture_output": True, "text": True}
-    done = subprocess.run(words, cwd=tmp_path, env=variables, timeout=600, **pipes)
+    done = subprocess.run(words, cwd=tmp_path, env=variables, timeout=PATIENCE, **pipes)
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
     submitted = (tmp_path / "submitted.sh").read_text(encoding="utf-8")

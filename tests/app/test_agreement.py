@@ -16,7 +16,7 @@ from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
 from ..processes import wait_until
-from .browser import User, opened_profile, opened_proxy
+from .browser import AT_REST, User, opened_profile, opened_proxy
 
 pytestmark = pytest.mark.long
 _NUMBERS = ("load", "clearance", "ball_radius", "liner_thickness")
@@ -236,7 +236,7 @@ def test_messages_of_older_screens_change_nothing(browser, address):
         assert len(older) > 2
         for line, text in reversed(older):
             line.send(text)
-        user.page.wait_for_timeout(300)
+        user.page.evaluate(AT_REST)
         assert user.page.evaluate(_SHOWN, list(_NUMBERS)) == before
         assert_agreement(user, ["replay"])
 

@@ -2,11 +2,11 @@
 
 import asyncio
 import gzip
+import itertools
 import json
 import os
 import socket
 import struct
-import time
 from contextlib import ExitStack, closing, contextmanager, suppress
 from functools import partial, wraps
 from http.client import HTTPConnection
@@ -24,7 +24,7 @@ from ballsocket.app.jobs import PageThread, run_in_thread
 from ballsocket.app.server import HostNames
 from ballsocket.app.state.screen import VIEWS
 
-from ..processes import PATIENCE
+from ..processes import PATIENCE, wait_until
 from .browser import User, explorer_process, opened_profile
 
 _HANDSHAKE = (
@@ -297,21 +297,35 @@ def megabytes(process="self"):
 @needs_proc
 def test_a_client_that_never_reads_does_not_grow_the_server():
     """Answers of the edits are many times the memory that the server may gain, and another user goes on."""
+    sent = []
+
+    def edit(wire, number):
+        wire.ask(number, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
 
     def edit_often():
         with suppress(OSError):  # the connection ends
-            for number in range(3000):
-                deaf.ask(number + 2, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
+            for number in range(2, 3002):
+                edit(deaf, number)
+                sent.append(number)
+
+    def edit_with_answers(numbers):
+        for number in numbers:
+            edit(user, number)
+            user.answer(number)
+
+    def takes_no_more():
+        """Whether none of the edits was taken while another user had ten answers."""
+        before, first = len(sent), next(tens)
+        edit_with_answers(range(first, first + 10))
+        return before == len(sent) > 0
 
     with explorer_process() as (address, process), opened_wire(address) as user, opened_wire(address) as deaf:
-        for number in range(2, 102):  # caches fill first
-            user.ask(number, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
-            user.answer(number)
-        before = megabytes(process.pid)
+        edit_with_answers(range(2, 102))  # caches fill first
+        before, tens = megabytes(process.pid), itertools.count(102, 10)
         sender = Thread(target=edit_often)
         sender.start()
-        time.sleep(3)
-        assert moves_load(user, 102)
+        wait_until(takes_no_more)
+        assert moves_load(user, next(tens))
         assert megabytes(process.pid) - before < 15
         deaf.shut()
         sender.join()

@@ -36,7 +36,7 @@ from ballsocket.models.plane_layer import PlaneLayer
 from ballsocket.problem.cup import Cup
 
 from ..extent import some
-from ..processes import wait_until
+from ..processes import PATIENCE, wait_until
 from .asking import does, edits, saved
 
 HIP = bs.joints["hip-28"]
@@ -172,7 +172,7 @@ def test_a_client_that_only_looks_makes_nothing_work(served, monkeypatch):
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
     address = f"http://127.0.0.1:{served.port}/?{link(190)}"
     for method in ("HEAD", "GET"):
-        request = HTTPRequest(address, method=method, request_timeout=100)
+        request = HTTPRequest(address, method=method, request_timeout=PATIENCE)
         served.io_loop.run_sync(lambda request=request: AsyncHTTPClient().fetch(request, raise_error=False))
     assert [*served.pages, *shown, *seen] == []
 

@@ -16,12 +16,12 @@ from ballsocket.export.compiler import compiler
 
 from ..cli.command import printed, run
 from ..places import EXAMPLES, ROOT
+from ..processes import PATIENCE
 from .library import needs_compiler, skip_without
 
 PAGE = (ROOT / "docs" / "how-to" / "export.md").read_text(encoding="utf-8")
 PROGRAMS = dict(re.findall(r"```\{code-block\} python\n# (\w+)(.*?)```", PAGE, re.DOTALL))
 PACKAGES = {"FMU": "fmpy", "MuJoCo": "mujoco", "Drake": "pydrake", "Exudyn": "exudyn", "OpenSim": "opensim"}
-SECONDS = 600
 
 
 @needs_compiler
@@ -39,7 +39,7 @@ def test_a_program_of_the_page_runs_in_its_host(host, tmp_path):
     program.write_text(f"# {host}{PROGRAMS[host]}", encoding="utf-8")
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     finished = subprocess.run(
-        [sys.executable, program.name], cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS
+        [sys.executable, program.name], cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE
     )
     assert finished.returncode == 0, finished.stderr
 
@@ -52,7 +52,7 @@ def test_the_program_in_c_of_the_page_compiles_without_a_warning_and_runs(tmp_pa
     (folder / "program.c").write_text(program, encoding="utf-8")
     strict = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic-errors")
     subprocess.run([*compiler(), *strict, "program.c", "hip.c", "-o", "program", "-lm"], cwd=folder, check=True)
-    finished = subprocess.run([str(folder / "program")], capture_output=True, text=True, check=True, timeout=SECONDS)
+    finished = subprocess.run([str(folder / "program")], capture_output=True, text=True, check=True, timeout=PATIENCE)
     assert re.fullmatch(r"F -\d+\.\d N, pmax \d+\.\d\d MPa\n", finished.stdout)
 
 

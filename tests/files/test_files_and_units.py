@@ -8,8 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import ballsocket as bs
 from ballsocket.core.kinds import Kind
@@ -129,15 +127,6 @@ def test_a_file_that_never_ends_is_refused(read):
 
 def test_a_source_may_have_tabs_and_line_ends():
     assert parse_joint(f"source = 'Hall,\tJ.\\nTribology'\n{HIP}".encode(), "hip").joint.source
-
-
-@given(st.text(max_size=40))
-def test_no_text_breaks_the_parser(text):
-    try:
-        value = parse("it", text, "length")
-    except ValueError as error:
-        value = str(error)
-    assert isinstance(value, float) or value.startswith("it = ")
 
 
 def test_examples_are_read_with_the_stated_numbers():
