@@ -145,9 +145,18 @@ class LongView(View):
 
     def begin(self) -> None:
         self.works: list[LongWork] = []
-        limits: dict[str, Any] = {"automatic": self.automatic, "longest": self.longest, "kind": self.result_kind}
-        parts = self.name, self.run_label, self.question_of, self.work, self.show_result
-        self.long = self.add(LongWork(self.page, *parts, **limits))
+        work = LongWork(
+            self.page,
+            self.name,
+            self.run_label,
+            self.question_of,
+            self.work,
+            self.show_result,
+            automatic=self.automatic,
+            longest=self.longest,
+            kind=self.result_kind,
+        )
+        self.long = self.add(work)
 
     def add(self, work: LongWork) -> LongWork:
         """Let the view have some long work with its button."""

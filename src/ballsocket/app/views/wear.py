@@ -65,10 +65,17 @@ def _beside(screen: Screen) -> Control:
 def _coefficient(screen: Screen) -> Control:
     """Return the wear coefficient, hidden for a law without one."""
     part = screen.use.coefficient_field
+
+    def refuse(value: Any) -> Changes:
+        raise ValueError(f"the law {screen.use.law!r} has no coefficient")
+
     if part is None:
-        return amount(screen, "use.coefficient", "Coefficient", (0.0, 1.0), 0.01).but(hidden=True)
+        return Control(number("coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), refuse).but(hidden=True)
     return _law_control(
-        *("coefficient", part, screen.use.coefficient, "Coefficient"),
+        "coefficient",
+        part,
+        screen.use.coefficient,
+        "Coefficient",
         lambda value: changed(screen, "use.coefficient", value),
     )
 
@@ -77,7 +84,7 @@ def _law_number(screen: Screen, key: str) -> Control:
     """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
     part, use = LAW_INPUTS[key], screen.use
     control = _law_control(
-        *(key, part, use.law_number(key), capital(part.meaning)), lambda value: {"use": use.with_law_number(key, value)}
+        key, part, use.law_number(key), capital(part.meaning), lambda value: {"use": use.with_law_number(key, value)}
     )
     return control.but(hidden=key not in use.used_inputs)
 

@@ -23,16 +23,15 @@ from ..state.screen import Screen
 from ..state.use import CHOICES
 from .reading import Reading, box_text, handy_step, unit_suffix
 
-_NEARLY_ZERO = 0.01  # share of the largest number below which the smallest is stated as zero
-Changes = dict[str, Any]  # values of the screen by name
-Reader = Callable[[Any], Changes | None]  # raises ValueError for a value that is not allowed; None changes nothing
-_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
-_COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
-
-_MAX_SHOWN = 60  # characters of typed text in a message
-
 Field = dict[str, Any]  # one input: its name, kind, label, value, and what its kind needs
 Options = Iterable[Sequence[str]]  # values of a choice, each with its label unless that is the value
+Changes = dict[str, Any]  # values of the screen by name
+Reader = Callable[[Any], Changes | None]  # raises ValueError for a value that is not allowed; None changes nothing
+
+_NEARLY_ZERO = 0.01  # share of the largest number below which the smallest is stated as zero
+_MAX_SHOWN = 60  # characters of typed text in a message
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
+_COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
 
 
