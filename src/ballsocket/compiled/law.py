@@ -20,6 +20,7 @@ from numba.extending import (
 )
 
 from ..contact import law as formulas
+from ..contact import octave_curve
 from ..contact.law import CurveLaw, ForceLaw
 from ..models.closed_form import ClosedLaw
 from ..models.foundation import FoundationLaw
@@ -84,8 +85,7 @@ def compiled_law(law: ForceLaw) -> CompiledLaw:
     curve = law.model.curve(law.joint) if isinstance(law, ClosedLaw) else law
     if not isinstance(curve, CurveLaw):
         raise TypeError(f"law must be one that model.law(joint) returned, got {law!r}")
-    ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_curve_function(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_curve_function(), numbers=curve.curve.numbers)
 
 
 @cache
@@ -110,7 +110,15 @@ def _foundation_function(motion: Kinematics) -> Any:
 @cache
 def _curve_function() -> Any:
     """Return the compiled force law of a curve."""
-    return njit(error_model="numpy")(formulas.force_and_tangent)
+    derivatives_at = jit_formula(octave_curve.derivatives_at)
+
+    @njit(error_model="numpy")
+    def force_and_tangent(indentation, *numbers):  # type: ignore[no-untyped-def]
+        """Evaluate the numbers of a curve at an indentation in mm: force in N and stiffness in N/mm."""
+        force, stiffness, _ = derivatives_at(indentation, *numbers)
+        return force, stiffness
+
+    return force_and_tangent
 
 
 class _LawType(types.Type):
