@@ -5,14 +5,15 @@ It serves many loads on one joint, force laws and force elements.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy
 
-from ..core.arrays import Array, Numbers, is_plain_number
+from ..core.arrays import Numbers, is_plain_number
 from ..core.lazy import cached_property
 from ..core.validity import is_missing
 from ..problem import Joint
@@ -31,39 +32,29 @@ QUANTITIES = {
 """Quantities of a curve by its load."""
 
 
-class InterpolatedModel(Hashable, Protocol):
-    """Part of a `Model` that its curves depend on."""
-
-    @property
-    def parameters(self) -> tuple[Array, ...]: ...
-    def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult: ...
-    def _solve_curve_points(self, joint: Joint, kind: str, load: Array) -> SolverResult: ...
+class NoCurveError(TypeError):
+    """A joint has no curve of its contacts over a load."""
 
 
 @lru_cache(maxsize=256)
-def joint_curve(model: InterpolatedModel, joint: Joint, kind: str) -> OctaveCurve:
+def joint_curve(model: Any, joint: Joint, kind: str) -> OctaveCurve:
     """Return the curve of a joint of floats over the indentation or the force, from a cache.
 
     It begins at an indentation of a millionth of the clearance, and ends where the loads end or at an indentation of
     one socket radius.
+
+    Raises NoCurveError: no range of loads with a result.
     """
     low = 1e-6 * (joint.clearance or joint.socket_radius)
     ends = numpy.array([low, _deepest_indentation(model, joint, low)])
     if kind == "force":
         ends = _press(model, joint, "indentation", ends)[0]
+    if not 0.0 < ends[0] < ends[1] < math.inf:
+        raise NoCurveError(f"no curve: no load from an indentation of {low:.3g} mm on has a result")
     return fit_octave_curve(lambda loads: _press(model, joint, kind, loads), *ends.tolist())
 
 
-@lru_cache(maxsize=256)
-def accurate_curve(model: InterpolatedModel, joint: Joint, kind: str) -> tuple[OctaveCurve, tuple[str, ...]]:
-    """Return the curve of the accurate quantities of a joint, and their names; no names if the load is inaccurate."""
-    curve = joint_curve(model, joint, kind)
-    accurate = numpy.flatnonzero(curve.error <= MAX_ERROR).tolist()
-    names = tuple(QUANTITIES[kind][index] for index in accurate)
-    return curve.select(accurate), names if 0 in accurate else ()
-
-
-def _press(model: InterpolatedModel, joint: Joint, kind: str, loads: Numbers) -> Numbers:
+def _press(model: Any, joint: Joint, kind: str, loads: Numbers) -> Numbers:
     """Solve the contacts of a joint: the quantities of its curve (quantities, n), NaN without a result."""
     _, array_joint, load = as_arrays(joint, loads)
     with numpy.errstate(all="ignore"):
@@ -75,7 +66,7 @@ def _press(model: InterpolatedModel, joint: Joint, kind: str, loads: Numbers) ->
     return values
 
 
-def _deepest_indentation(model: InterpolatedModel, joint: Joint, low: float) -> float:
+def _deepest_indentation(model: Any, joint: Joint, low: float) -> float:
     """Find the indentation in mm up to which there are forces, less 1e-6 of it; at most the socket radius."""
 
     def is_solved(depths: Numbers) -> Numbers:
@@ -133,7 +124,7 @@ class CurveSolution:
 
 
 def solve_by_curve(
-    model: InterpolatedModel,
+    model: Any,
     joint: Joint,
     kind: str,
     load: Any,
@@ -152,15 +143,21 @@ def solve_by_curve(
     )
     if not is_suitable:
         return None
-    curve, names = accurate_curve(model, joint.without_strengths().with_floats(), kind)
+    try:
+        curve = joint_curve(model, joint.without_strengths().with_floats(), kind)
+    except NoCurveError:
+        return None
+    accurate = numpy.flatnonzero(curve.error <= MAX_ERROR).tolist()
     loads = numpy.ascontiguousarray(load).reshape(-1)
     has_zeros = loads.min() == 0.0
     lowest = loads[loads > 0.0].min(initial=curve.high) if has_zeros else loads.min()
-    if not names or lowest < curve.low or loads.max() > curve.high:
+    if 0 not in accurate or lowest < curve.low or loads.max() > curve.high:
         return None
+    curve = curve.select(accurate)
     values = evaluate(curve, numpy.maximum(loads, curve.low) if has_zeros else loads)
     if has_zeros:
         values[:, loads == 0.0] = 0.0
+    names = [QUANTITIES[kind][index] for index in accurate]
     by_name = dict(zip(names, values.reshape(len(values), *load.shape), strict=True)) | {kind: load}
     solution = CurveSolution(
         solve=lambda: model._solve(as_arrays(joint, load)[1], kind, load),

@@ -184,6 +184,7 @@ def derivatives_of_array(x: Array, curve: OctaveCurve) -> tuple[Array, Array, Ar
     return tuple(where(is_solved, part, math.nan) for part in (value, slope, bend))
 
 
+@numpy.errstate(all="ignore")  # quantities without a value have an infinite error
 def fit_octave_curve(quantities: Callable[[Numbers], Numbers], low: float, high: float) -> OctaveCurve:
     """Fit a curve to computed quantities, with more pieces until their error is small.
 
@@ -211,8 +212,7 @@ def fit_octave_curve(quantities: Callable[[Numbers], Numbers], low: float, high:
             coefficients=numpy.ascontiguousarray(scaled.transpose(0, 2, 1)),
             error=numpy.full(len(values), numpy.inf),
         )
-        with numpy.errstate(all="ignore"):
-            error = numpy.max(abs(curve(between) / checked - 1), axis=1)
+        error = numpy.max(abs(curve(between) / checked - 1), axis=1)
         if numpy.all(error <= _TOLERANCE):
             break
     return replace(curve, error=error)
