@@ -1,5 +1,7 @@
 """Curves of joints: many loads on one joint, compared with presses of few, and the piecewise polynomials themselves."""
 
+import copy
+import pickle
 from math import exp, isnan, nan
 
 import numpy as np
@@ -80,6 +82,13 @@ def test_first_touch_and_loads_outside_the_curve_are_those_of_single_presses(mod
             assert many.status[index] == alone.status[0]
             for name in QUANTITIES:
                 np.testing.assert_allclose(getattr(many, name)[index], getattr(alone, name)[0], rtol=1e-9)
+
+
+def test_contacts_of_a_curve_are_pickled():
+    contact = bs.Tabulated().press(HIP, force=np.linspace(100.0, 3000.0, FEW + 1))
+    for same in (pickle.loads(pickle.dumps(contact)), copy.deepcopy(contact)):
+        np.testing.assert_array_equal(same.half_angle, contact.half_angle)
+        np.testing.assert_array_equal(same.energy, contact.energy)
 
 
 def test_no_curve_is_built_for_few_loads_or_for_arrays_of_joints():

@@ -26,7 +26,7 @@ from ..models.closed_form import ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..models.kinematics import Kinematics
 from . import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
-from .overloads import jit_formula
+from .overloads import inline_formula, jit_formula
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,12 +110,12 @@ def _foundation_function(motion: Kinematics) -> Any:
 @cache
 def _curve_function() -> Any:
     """Return the compiled force law of a curve."""
-    derivatives_at = jit_formula(octave_curve.derivatives_at)
+    derivatives_at = inline_formula(octave_curve.derivatives_at)
 
-    @njit(error_model="numpy")
-    def force_and_tangent(indentation, *numbers):  # type: ignore[no-untyped-def]
+    @njit(error_model="numpy", fastmath={"contract"})
+    def force_and_tangent(indentation, low, high, first, density, origins, rows):  # type: ignore[no-untyped-def]
         """Evaluate the numbers of a curve at an indentation in mm: force in N and stiffness in N/mm."""
-        force, stiffness, _ = derivatives_at(indentation, *numbers)
+        force, stiffness, _ = derivatives_at(indentation, low, high, first, density, origins, rows)
         return force, stiffness
 
     return force_and_tangent

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy
@@ -160,7 +160,7 @@ def solve_by_curve(
     names = [QUANTITIES[kind][index] for index in accurate]
     by_name = dict(zip(names, values.reshape(len(values), *load.shape), strict=True)) | {kind: load}
     solution = CurveSolution(
-        solve=lambda: model._solve(as_arrays(joint, load)[1], kind, load),
+        solve=partial(model._solve, as_arrays(joint, load)[1], kind, load),
         interpolation_error=float(curve.error.max()),
     )
     vars(solution).update(by_name)
