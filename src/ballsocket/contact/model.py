@@ -273,12 +273,6 @@ class ModelWrapper(_Delegation, Model):
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.model._solve(joint, kind, load)
 
-    def _solve_by_curve(self, joint: Joint, kind: str, load: Array) -> SolverResult | None:
-        return self.model._solve_by_curve(joint, kind, load)
-
-    def _solve_curve_points(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        return self.model._solve_curve_points(joint, kind, load)
-
     def _law(self, joint: Joint) -> ForceLaw:
         return self.model._law(joint)
 

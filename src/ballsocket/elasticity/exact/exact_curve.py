@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy
 
-from ...contact import Contact, Model, ModelWrapper
+from ...contact import Contact, ModelWrapper
 from ...contact.assembly import SolverResult
 from ...contact.per_joint import JointContacts
 from ...core.arrays import Array
@@ -74,8 +74,6 @@ class ExactCurve(ModelWrapper):
         if self.model.gap is CircularGap:
             raise ValueError("ExactCurve needs gap=LinearGap, got a circular gap: use Exact")
         object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
-
-    _solve_by_curve = Model._solve_by_curve
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.model._solve_curve_points(joint, kind, load)

@@ -28,7 +28,6 @@ from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_cur
 from .inverse import solve_state
 
 _BLOCK = 4000  # contacts in one block, which fits into the cache; powers of two collide in the cache
-_BLOCK_OF_ONE_JOINT = 2 * _BLOCK
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,7 +212,7 @@ def _compute_in_blocks(file: str, joint: Joint, load: Array, compute_quantities:
         values = _map_blocks_in_jax(file, joint, [*flat, loads], compute_quantities)
         return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in values)
     all_curves = JointCurves(file, joint.with_numbers(flat))
-    size = (_BLOCK_OF_ONE_JOINT if is_single_joint else _BLOCK) * (1 if xp is numpy else 64)
+    size = _BLOCK * (1 if xp is numpy else 64)
     results = []
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
