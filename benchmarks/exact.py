@@ -14,8 +14,7 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.exact.exact_curve import chebyshev_curve_of
-from ballsocket.elasticity.exact.model import curve_of
+from ballsocket.elasticity.exact.model import chebyshev_curve_of, curve_of
 
 from .calculix_rival import Calculix, Mesh
 from .report import Pair, Row, compare

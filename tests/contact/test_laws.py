@@ -1,13 +1,13 @@
-"""Force laws of all models, compared with presses, and as piecewise polynomials for forces known exactly."""
+"""Force laws of all models, compared with presses, and their ends."""
 
 from functools import cache
-from math import e, exp, inf, isnan, nan, radians
+from math import inf, isnan, nan, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact.law import CurveLaw, fit_curve_law
+from ballsocket.contact.law import CurveLaw
 
 from ..extent import either
 from ..joints import HIP
@@ -20,14 +20,14 @@ LAWS = [
     for name, joint in {"hip": HIP, "wide": WIDE}.items()
     for key, model in bs.catalogue.items()
 ]
-POINTS = either(quick=60, long=200)
+POINTS = either(quick=60, long=190)
 
 
 @cache
 def law_and_end(model, joint):
     """The law, and the deepest indentation that it speaks of: for formulas without an end the socket's radius."""
     law = model.law(joint)
-    return law, min(getattr(law, "deepest", inf), joint.socket_radius)
+    return law, law.curve.high if isinstance(law, CurveLaw) else joint.socket_radius
 
 
 @pytest.mark.parametrize(("model", "joint"), LAWS)
@@ -36,7 +36,9 @@ def test_a_law_has_force_and_stiffness_of_a_press_up_to_its_end(model, joint):
     d = np.append(0.0, np.geomspace(1e-6 * joint.clearance, deepest, POINTS))
     said = np.array([law(float(depth)) for depth in d])
     contact = model.press(joint, indentation=d)
-    np.testing.assert_allclose(said[:, 0], contact.force, rtol=1e-9)
+    # the law of the exact solution goes through its interpolated contacts, to a tenth of its tolerance
+    tolerance = 1e-7 if isinstance(model, bs.Exact) else 1e-9
+    np.testing.assert_allclose(said[:, 0], contact.force, rtol=tolerance)
     np.testing.assert_allclose(said[1:, 1], contact.stiffness[1:], rtol=1e-7)
     assert all(type(number) is float for number in law(0.05))
 
@@ -65,9 +67,10 @@ def test_tangent_stiffness_is_the_slope_of_the_force(model):
 
 
 @pytest.mark.parametrize("name", ["exact", "tabulated", "refined", "plane-layer"])
-def test_a_curve_is_a_power_below_a_millionth_of_the_clearance(name):
+def test_a_curve_is_a_power_of_the_indentation_below_its_low_end(name):
     model = bs.catalogue[name]
-    (law, _), d = law_and_end(model, HIP), 1e-6 * HIP.clearance
+    law, _ = law_and_end(model, HIP)
+    d = law.curve.low
     assert law(d / 10)[0] == pytest.approx(law(d)[0] * 0.1 ** (d * law(d)[1] / law(d)[0]), rel=1e-9)
     assert law(d / 10)[0] == pytest.approx(model.press(HIP, indentation=d / 10).force, rel=5e-3)
 
@@ -99,42 +102,3 @@ def test_indentations_that_overflow_are_nan():
 def test_a_cup_does_not_change_the_law_of_a_model_without_a_rim(model):
     cup = bs.Cup(arc_of_cover=radians(120.0))
     assert model.in_cup(cup).law(HIP)(0.05) == model.law(HIP)(0.05)
-
-
-@pytest.mark.parametrize("n", [1.0, 1.5, 2.0])
-@pytest.mark.parametrize("rate", [0.0, 1.0])
-def test_a_power_law_and_a_smooth_law_are_reproduced(n, rate):
-    """F = 7 dⁿ exp(rate d): a power of d alone also below the fitted range."""
-    law = fit_curve_law(lambda d: 7.0 * d**n * np.exp(rate * d), 1e-6, 2.0)
-    assert (law.shallowest, law.deepest) == (1e-6, 2.0)
-    for d in [*np.geomspace(1e-6, 2.0, 57).tolist(), *[1e-9] * (rate == 0.0)]:
-        force, stiffness = law(d)
-        assert force == pytest.approx(7.0 * d**n * exp(rate * d), rel=1e-10)
-        assert stiffness == pytest.approx((n / d + rate) * 7.0 * d**n * exp(rate * d), rel=1e-8)
-
-
-def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():
-    law = fit_curve_law(lambda d: np.where(d < 0.5, d, np.nan), 1e-4, 2.0)
-    assert law.deepest == pytest.approx(0.5, rel=3e-6)
-    assert law.deepest < 0.5 * (1 - 0.9e-6)  # presses so near to the end may fail
-    assert law(0.0) == law(-1.0) == (0.0, 0.0)
-    assert all(map(isnan, law(0.5)))
-    assert all(map(isnan, law(nan)))
-
-
-def test_a_force_that_is_not_positive_has_no_law():
-    with pytest.raises(TypeError, match="no force law: the load at an indentation of 0.001 mm must be above 0 N"):
-        fit_curve_law(lambda d: 0.0 * d, 1e-3, 1.0)
-
-
-def test_pieces_are_polynomials_of_a_coordinate_from_minus_one_to_one():
-    """ln F = 2 + x on the first piece and 4 - x² on the second, with ln d from 0 to 2."""
-    pieces = np.array([[0, 1, 2], [-1, 0, 4.0]])
-    law = CurveLaw(shallowest=1.0, deepest=e**2, first=0.0, density=1.0, pieces=pieces)
-    assert law(1.0) == pytest.approx((e, 2 * e))
-    force, stiffness = law(exp(1.75))
-    assert force == pytest.approx(exp(4 - 0.25))
-    assert stiffness == pytest.approx(-2 * 0.5 * 2 * force / exp(1.75))
-    force, stiffness = law(0.5)  # a power of d below the first piece
-    assert force == pytest.approx(e * 0.5**2)
-    assert stiffness == pytest.approx(2 * force / 0.5)

@@ -11,7 +11,6 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction
-from ballsocket.dynamics.potential import CurvePotential, energy_curve
 
 from ..extent import either
 from ..joints import HIP
@@ -289,18 +288,6 @@ def test_potential_of_a_number_equals_that_of_an_array_at_all_depths(model):
     depths = np.array([1e-9, 1e-7, 2e-7, 1e-5, 3e-3, 0.05, 1.0, 6.0])
     columns = np.array([potential(depth) for depth in depths.tolist()]).T
     np.testing.assert_allclose(columns, potential(depths), rtol=1e-11)
-
-
-def test_curve_of_the_energy_integrates_a_power_law_from_its_first_indentation():
-    """For F = d^1.5 the energy is d^2.5/2.5 and the stiffness 1.5 d^0.5, also below the curve."""
-    curve = CurvePotential(curve=energy_curve(lambda d: (d**1.5, 1.5 * d**0.5), 1e-3, 1.0))
-    for depth in (1e-5, 0.9e-3, 1e-3, 1.1e-3, 0.02, 0.7, 1.0):
-        assert curve(depth) == pytest.approx((depth**2.5 / 2.5, depth**1.5, 1.5 * depth**0.5), rel=1e-8)
-        arrays = [float(part[0]) for part in curve(np.array([depth]))]
-        assert arrays == pytest.approx((depth**2.5 / 2.5, depth**1.5, 1.5 * depth**0.5), rel=1e-8)
-    assert curve(0.0) == curve(-0.1) == (0.0, 0.0, 0.0)
-    assert np.isnan([curve(1.0001), curve(nan)]).all()
-    assert np.isnan(curve(np.array([1.0001, nan]))).all()
 
 
 def test_jax_derivatives_of_the_energy_equal_force_and_tangent():

@@ -20,12 +20,13 @@ from numba.extending import (
 )
 
 from ..contact import law as formulas
+from ..contact import octave_curve
 from ..contact.law import CurveLaw, ForceLaw
 from ..models.closed_form import ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..models.kinematics import Kinematics
 from . import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
-from .overloads import jit_formula
+from .overloads import inline_formula, jit_formula
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,8 +85,7 @@ def compiled_law(law: ForceLaw) -> CompiledLaw:
     curve = law.model.curve(law.joint) if isinstance(law, ClosedLaw) else law
     if not isinstance(curve, CurveLaw):
         raise TypeError(f"law must be one that model.law(joint) returned, got {law!r}")
-    ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_curve_function(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_curve_function(), numbers=curve.curve.numbers)
 
 
 @cache
@@ -110,7 +110,15 @@ def _foundation_function(motion: Kinematics) -> Any:
 @cache
 def _curve_function() -> Any:
     """Return the compiled force law of a curve."""
-    return njit(error_model="numpy")(formulas.force_and_tangent)
+    derivatives_at = inline_formula(octave_curve.derivatives_at)
+
+    @njit(error_model="numpy", fastmath={"contract"})
+    def force_and_tangent(indentation, low, high, first, density, origins, rows):  # type: ignore[no-untyped-def]
+        """Evaluate the numbers of a curve at an indentation in mm: force in N and stiffness in N/mm."""
+        force, stiffness, _ = derivatives_at(indentation, low, high, first, density, origins, rows)
+        return force, stiffness
+
+    return force_and_tangent
 
 
 class _LawType(types.Type):

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy
 
-from ..contact import Contact, ModelWrapper
+from ..contact import Contact, Model, ModelWrapper
 from ..contact.assembly import SolverResult, as_arrays, broadcast_load, check_joint, select_and_check_load
+from ..contact.joint_curve import solve_by_curve
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import reject_unnamed_loads, shown
@@ -19,6 +20,7 @@ from ..models.foundation import RadialFoundation
 from ..models.modulus import FunctionModulus
 from ..problem import Joint
 from . import kernels
+from .curve_kernel import evaluate_curve
 from .law import CompiledLaw, compiled_law
 from .table_kernel import solve_tabulated
 
@@ -27,14 +29,15 @@ from .table_kernel import solve_tabulated
 class Compiled(ModelWrapper):
     """Wrapped model that solves NumPy float64 arrays of loads in compiled loops.
 
-    Compiled loops apply to forces, and to indentations of models that need an iteration.
+    Compiled loops apply to forces, and to indentations of models that need an iteration: many loads on one joint are
+    read from its curve, and `Tabulated` also solves arrays of joints.
 
     The wrapped model solves everything else (half angles, other array libraries, dtypes, plain numbers). Compiled
     programs can call `law(joint)`.
 
     Parameters
     ----------
-    model : RadialFoundation or Tabulated
+    model : RadialFoundation, Tabulated, Refined or ExactCurve
         Wrapped model, for instance `HessForsbach()`.
 
     Examples
@@ -47,13 +50,13 @@ class Compiled(ModelWrapper):
     array([ 5.921, 11.27 ])
     """
 
-    model: RadialFoundation | Tabulated
+    model: Model
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, RadialFoundation | Tabulated):
+        if not (isinstance(self.model, RadialFoundation) or getattr(self.model, "has_curve", False)):
             raise TypeError(
-                f"model must be a RadialFoundation, such as HessForsbach(), or Tabulated(), got {shown(self.model)}; "
-                "use Tabulated() for the exact solution"
+                f"model must be a RadialFoundation, such as HessForsbach(), or Tabulated(), Refined(), ExactCurve(), "
+                f"got {shown(self.model)}; use Tabulated() for the exact solution"
             )
 
     def press(
@@ -99,10 +102,14 @@ class Compiled(ModelWrapper):
         vars(contact).update(max_pressure=p0, half_angle=angle)
         return contact
 
+    def _solve_by_curve(self, joint: Joint, kind: str, load: Array) -> SolverResult | None:
+        return solve_by_curve(self.model, joint, kind, load, evaluate_curve) if self.has_curve else None
+
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contacts of `Tabulated` in a compiled loop, if all arrays are float64."""
+        """Solve the contacts of arrays of joints by `Tabulated` in a compiled loop, if all arrays are float64."""
         is_compilable = kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load)))
-        if is_compilable and isinstance(self.model, Tabulated):
+        has_many_joints = max(numpy.size(number) for number in joint.numbers()) > 1
+        if is_compilable and has_many_joints and isinstance(self.model, Tabulated):
             return solve_tabulated(self.model, joint, kind, load)
         return super()._solve(joint, kind, load)
 

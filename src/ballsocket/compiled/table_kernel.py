@@ -59,7 +59,7 @@ def sum_series(series, first, lanes, rows, x, value, wave, terms):  # type: igno
             twice, t0, t1 = 2 * rows[x, j], rows[wave, j], rows[wave + 1, j]
             t2 = twice * t1 - t0
             t3 = twice * t2 - t1
-            rows[value, j] += four_terms(series, k, rows, terms, j, t0, t1, t2, t3)
+            rows[value, j] += four_terms(rows, terms, j, t0, t1, t2, t3)
             t0 = twice * t3 - t2
             rows[wave, j], rows[wave + 1, j] = t0, twice * t0 - t3
 
@@ -87,81 +87,46 @@ def sum_series_with_slopes(functions, count, first, lanes, rows, x, value, wave,
             t2, u2 = twice * t1 - t0, twice * u1 - u0
             t3, u3 = twice * t2 - t1, twice * u2 - u1
             s0, s1, s2, s3 = order * u0, (order + 1.0) * u1, (order + 2.0) * u2, (order + 3.0) * u3
-            rows[value, j] += four_terms(functions[0], k, rows, terms, j, t0, t1, t2, t3)
-            rows[slope, j] += four_terms(functions[0], k, rows, terms, j, s0, s1, s2, s3)
-            rows[value + 1, j] += four_terms(functions[1], k, rows, terms + 4, j, t0, t1, t2, t3)
-            rows[slope + 1, j] += four_terms(functions[1], k, rows, terms + 4, j, s0, s1, s2, s3)
+            rows[value, j] += four_terms(rows, terms, j, t0, t1, t2, t3)
+            rows[slope, j] += four_terms(rows, terms, j, s0, s1, s2, s3)
+            rows[value + 1, j] += four_terms(rows, terms + 4, j, t0, t1, t2, t3)
+            rows[slope + 1, j] += four_terms(rows, terms + 4, j, s0, s1, s2, s3)
             if count > 2:
-                rows[value + 2, j] += four_terms(functions[2], k, rows, terms + 8, j, t0, t1, t2, t3)
-                rows[slope + 2, j] += four_terms(functions[2], k, rows, terms + 8, j, s0, s1, s2, s3)
+                rows[value + 2, j] += four_terms(rows, terms + 8, j, t0, t1, t2, t3)
+                rows[slope + 2, j] += four_terms(rows, terms + 8, j, s0, s1, s2, s3)
             t0, u0 = twice * t3 - t2, twice * u3 - u2
             rows[wave, j], rows[wave + 1, j] = t0, twice * t0 - t3
             rows[wave + 2, j], rows[wave + 3, j] = u0, twice * u0 - u3
 
 
-def copy_coefficients(series: Any, k: int, first: int, lanes: int, rows: Numbers, terms: int) -> None:
-    """Copy four coefficients of the series of each contact, from that with index k on, to the rows from `terms` on.
-
-    The one series of all contacts needs no copy.
-    """
-    if series.ndim > 1:
-        rows[terms : terms + 4, :lanes] = series[k : k + 4, first : first + lanes]
-
-
-@overload(copy_coefficients, strict=False, jit_options={"forceinline": True})
-def _overload_copy_coefficients(
-    series: Any, k: Any, first: Any, lanes: Any, rows: Any, terms: Any
-) -> Callable[..., Any]:
-    """Implement `copy_coefficients` in compiled code."""
-
-    def copy(series, k, first, lanes, rows, terms):  # type: ignore[no-untyped-def]
-        for term in range(4):
-            for j in range(lanes):
-                rows[terms + term, j] = series[k + term, first + j]
-
-    return copy if series.ndim > 1 else lambda series, k, first, lanes, rows, terms: None
-
-
-def pick_coefficient(series: Any, k: int, rows: Numbers, term: int, j: int) -> Any:
-    """Return coefficient k of contact j of a block from the row `term`, or from the one series of all contacts."""
-    return rows[term, j] if series.ndim > 1 else series[k]
-
-
-@overload(pick_coefficient, strict=False, jit_options={"forceinline": True})
-def _overload_pick_coefficient(series: Any, k: Any, rows: Any, term: Any, j: Any) -> Callable[..., Any]:
-    """Implement `pick_coefficient` in compiled code."""
-    if series.ndim > 1:
-        return lambda series, k, rows, term, j: rows[term, j]
-    return lambda series, k, rows, term, j: series[k]
+@inline_formula
+def copy_coefficients(series, k, first, lanes, rows, terms):  # type: ignore[no-untyped-def]
+    """Copy four coefficients of the series of each contact, from that with index k on, to the rows from `terms` on."""
+    for term in range(4):
+        for j in range(lanes):
+            rows[terms + term, j] = series[k + term, first + j]
 
 
 @inline_formula
-def four_terms(series, k, rows, term, j, t0, t1, t2, t3):  # type: ignore[no-untyped-def]
-    """Sum four terms of the series of contact j of a block, from that with index k on."""
-    return (
-        pick_coefficient(series, k, rows, term, j) * t0
-        + pick_coefficient(series, k + 1, rows, term + 1, j) * t1
-        + pick_coefficient(series, k + 2, rows, term + 2, j) * t2
-        + pick_coefficient(series, k + 3, rows, term + 3, j) * t3
-    )
+def four_terms(rows, term, j, t0, t1, t2, t3):  # type: ignore[no-untyped-def]
+    """Sum four terms of the series of contact j of a block, whose coefficients are in the rows from `term` on."""
+    return rows[term, j] * t0 + rows[term + 1, j] * t1 + rows[term + 2, j] * t2 + rows[term + 3, j] * t3
 
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
+    """Solve the model `Tabulated` for arrays of joints in one compiled loop, by forces or indentations."""
     steps = inverse.RIGID_STEPS if joint.ball is None else inverse.ELASTIC_STEPS
 
     def read_curves(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
         """Compute ε, d, F, p0, dF/dd and the last change of ε of contacts: six arrays (contacts,)."""
         inputs = (load, curves.load_scale(kind), curves.ratio, *curves.widest, *curves.scale)
         start, functions = inverse.start_series(curves, kind), curves.functions
-        if functions.shape[2] == 1:
-            start, functions = start[:, 0].copy(), functions[:, :, 0].copy()
         outputs = numpy.empty((_OUTPUT_COUNT, len(load)))
         rows = tuple(_as_input(number, load.shape) for number in inputs)
         _tabulated_kernel(kind)(rows, start, functions, steps, outputs)
         return tuple(outputs)
 
-    return model.solve_with_reader(joint, kind, load, read_curves, single_joint_block=max(load.size, 1))
+    return model.solve_with_reader(joint, kind, load, read_curves)
 
 
 def _as_input(values: Numbers, shape: tuple[int, ...]) -> Any:

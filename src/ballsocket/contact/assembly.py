@@ -114,11 +114,12 @@ def make_contact(
     failures = {**result.failures, Status.NOT_REACHED: ~reachable, Status.OUTSIDE_DOMAIN: ~points}
     status = xp.zeros_like(xp.astype(F > 0, xp.int8))
     for code in _BY_SEVERITY:
-        if code in failures:
+        if code in failures and not arrays.all_true(arrays.logical_not(failures[code])):
             status = where(failures[code], xp.asarray(int(code), dtype=xp.int8), status)
     solved = ~is_missing(status)
-    F = F if kind == "force" else where(solved, F, xp.nan)
-    d = d if kind == "indentation" else where(solved, d, xp.nan)
+    if not (F.shape and arrays.all_true(solved)):
+        F = F if kind == "force" else where(solved, F, xp.nan)
+        d = d if kind == "indentation" else where(solved, d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
     else:

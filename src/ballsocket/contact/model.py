@@ -26,7 +26,8 @@ from .assembly import (
     select_and_check_load,
 )
 from .contact import Contact, Laws, PressModel
-from .law import CurveLaw, ForceLaw, fit_curve_law
+from .joint_curve import joint_curve, solve_by_curve
+from .law import CurveLaw, ForceLaw
 
 
 class Model(PressModel):
@@ -50,6 +51,8 @@ class Model(PressModel):
         Class of the result of `press`: `Contact` or a subclass.
     accepts_floats : bool
         True if the formulas take Python floats, which is faster than arrays of one element.
+    has_curve : bool
+        True if many loads on one joint are read from a curve through some hundred contacts, see `joint_curve`.
     """
 
     fits: ClassVar[tuple[Range, ...]] = (NON_NEGATIVE_CLEARANCE,)
@@ -59,6 +62,7 @@ class Model(PressModel):
     seconds_a_press: ClassVar[float] = 4e-7
     contact_type: ClassVar[type[Contact]] = Contact
     accepts_floats: ClassVar[bool] = False
+    has_curve: ClassVar[bool] = False
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -116,7 +120,7 @@ class Model(PressModel):
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
         with arrays.silent_numpy(load):  # a failed point gets a status, not a warning
-            result = self._solve(array_joint, kind, load)
+            result = self._solve_by_curve(joint, kind, load) or self._solve(array_joint, kind, load)
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
 
@@ -141,6 +145,14 @@ class Model(PressModel):
         If the model `accepts_floats`, all numbers may be Python floats instead, and the result has floats too.
         """
 
+    def _solve_by_curve(self, joint: Joint, kind: str, load: Array) -> SolverResult | None:
+        """Read the contacts of many loads on one joint from its curve; None if they must be solved."""
+        return solve_by_curve(self, joint, kind, load) if self.has_curve else None
+
+    def _solve_curve_points(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contacts that the curve of a joint interpolates; a model may have a faster solution for many."""
+        return self._solve(joint, kind, load)
+
     def law(self, joint: Joint) -> ForceLaw:
         """Return a fast function of the indentation in mm: force in N and stiffness in N/mm, for time integration.
 
@@ -154,7 +166,7 @@ class Model(PressModel):
         ForceLaw
             `law(indentation)` is (force, stiffness) in N and N/mm, equal to those of a press. It is 0 below an
             indentation of 0 and NaN where a press has no result. Closed forms evaluate their formulas. Any other model
-            fits a curve in ln d to some hundred presses. The relative error of that curve is 1e-9 in the force and
+            has a curve through some hundred presses. The relative error of that curve is 1e-9 in the force and
             1e-7 in the stiffness above a millionth of the clearance. Below, it is a power of d; beyond the socket's
             radius, NaN.
 
@@ -176,9 +188,14 @@ class Model(PressModel):
         return self.curve(joint)
 
     def curve(self, joint: Joint) -> CurveLaw:
-        """Fit the force over the indentation by a `CurveLaw`, up to an indentation of one socket radius."""
-        shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-        return fit_curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
+        """Return the force law of the curve of a joint of floats, up to an indentation of one socket radius.
+
+        Raises TypeError: a force at the beginning of the curve that is not above 0.
+        """
+        curve = joint_curve(self, joint, "indentation").select([0])
+        if not curve(numpy.array([curve.low]))[0, 0] > 0.0:
+            raise TypeError(f"no force law: the load at an indentation of {curve.low:.3g} mm must be above 0 N")
+        return CurveLaw(curve=curve)
 
     def in_cup(self, cup: Cup, **aim: Any) -> Model:
         """Return a model for this joint in a cup with a rim.

@@ -15,15 +15,16 @@ from numba import njit
 from ..compiled import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
 from ..compiled.law import CompiledLaw
 from ..compiled.overloads import inline_formula, jit_formula
+from ..contact import octave_curve
 from ..core.arrays import Numbers
 from ..core.checks import check_shape, check_vectors, shown
 from ..models import kinematics
 from ..models.kinematics import Kinematics
-from . import ball_centre, film, friction, potential, reaction, stepping
+from . import ball_centre, film, friction, reaction, stepping
 from .ball_centre import Constants
 from .element import ForceElement
 from .load import Load
-from .potential import CurvePotential, SpringPotential, curve_range, energy_curve
+from .potential import CurvePotential, SpringPotential, curve_potential
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +87,9 @@ class CompiledElement:
             springs = energy_law.springs
             numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
             return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=numbers)
-        if isinstance(energy_law, CurvePotential):
-            curve = energy_law.curve
-        else:
-            curve = energy_curve(model.law(joint), *curve_range(joint))
-        ends = curve.shallowest, curve.deepest, curve.first, curve.density
-        return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
+        if not isinstance(energy_law, CurvePotential):
+            energy_law = curve_potential(model, joint)
+        return CompiledLaw(function=_compiled_curve_potential(), numbers=energy_law.curve.numbers)
 
     @property
     def march(self) -> Any:
@@ -146,7 +144,7 @@ def _compiled_spring_potential(motion: Kinematics) -> Any:
 @cache
 def _compiled_curve_potential() -> Any:
     """Compile the function that evaluates a fitted energy curve: energy, force and stiffness."""
-    return njit(error_model="numpy", fastmath={"contract"})(potential.energy_derivatives_of_number)
+    return njit(error_model="numpy", fastmath={"contract"})(octave_curve.derivatives_at)
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]

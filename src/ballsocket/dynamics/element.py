@@ -12,7 +12,8 @@ import numpy
 
 from ..contact import Contact, Model
 from ..contact.assembly import check_joint
-from ..contact.law import CurveLaw
+from ..contact.joint_curve import joint_curve
+from ..contact.octave_curve import OctaveCurve
 from ..core import arrays
 from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
@@ -29,7 +30,7 @@ from .film import film_constants
 from .friction import Friction
 from .load import Load, add_bristle_loads
 from .matrices import join_vector
-from .potential import Potential, adhesion_potential, evaluate_curve, fit_quantity_curve, potential_of
+from .potential import Potential, adhesion_potential, evaluate_curve, potential_of
 from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tension_damping
 
 _log = logging.getLogger("ballsocket.dynamics")
@@ -262,10 +263,10 @@ class ForceElement(OneLine):
         return ValidityMonitor(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
 
     @cached_property
-    def curves(self) -> tuple[CurveLaw, CurveLaw]:
-        """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
-        model, joint = self.model, self.joint
-        return fit_quantity_curve(model, joint, "half_angle"), fit_quantity_curve(model, joint, "max_pressure")
+    def curves(self) -> tuple[OctaveCurve, OctaveCurve]:
+        """Curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
+        curve = joint_curve(self.model, self.joint.with_floats(), "indentation")
+        return curve.select([1]), curve.select([2])
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..contact.assembly import check_joint
-from ..contact.law import CurveLaw
+from ..contact.octave_curve import OctaveCurve, piece_edges, piece_number
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, is_plain_number, sqrt, where
 from ..core.checks import shown
@@ -38,7 +38,7 @@ NODES = 7  # number of tabulated directions, from the dome to the opening
 QUANTITIES = ("energy", "friction_lever", "half_angle", "max_pressure")
 """Tabulated quantities."""
 
-_PIECES = 24  # number of polynomial pieces of a curve over ln e
+_DENSITY = 3  # number of pieces of an octave of a curve
 
 _SHALLOWEST, _LARGEST_STRAIN = 0.02, 0.1
 """First tabulated displacement over the interference, and last one over the thickness of the liner."""
@@ -87,7 +87,7 @@ class PreloadTable:
     stiffness_along: float
     drill_ratio: float  # torque of friction about the axis of the dome over that about an axis across it
     # curves over the displacement from equilibrium by quantity, one for each direction
-    curves: dict[str, tuple[CurveLaw, ...]]
+    curves: dict[str, tuple[OctaveCurve, ...]]
     # largest error of the force between the tabulated directions, relative to the solver's force there
     error: float = 0.0
 
@@ -109,8 +109,8 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     interference = -float(joint.clearance)
     offset, stiffness = float(equilibrium.displacement[2]), equilibrium.stiffness_matrix
     limit = max(_LARGEST_STRAIN * float(min(joint.liner_thickness, joint.socket_radius)), 2.0 * interference)
-    distances = numpy.geomspace(_SHALLOWEST * interference, limit, _PIECES + 1)
-    curves: dict[str, list[CurveLaw]] = {name: [] for name in QUANTITIES}
+    distances = piece_edges(_SHALLOWEST * interference, limit, _DENSITY)
+    curves: dict[str, list[OctaveCurve]] = {name: [] for name in QUANTITIES}
     for cosine in node_cosines():
         contact, direction = _contact_along(model, joint, offset, distances, cosine)
         force, (lever, _, half_angle, pressure) = contact.force_vector @ direction, _patch_values(contact)
@@ -171,41 +171,38 @@ def _patch_values(contact: Any) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     return (x + y) / 2.0, z, half_angle, pressure.max(axis=(1, 2))
 
 
-def _curve(distances: Numbers, values: Numbers) -> CurveLaw:
-    """Fit a cubic spline of ln y over ln e, level at the first distance: y is constant at smaller ones."""
+def _curve(distances: Numbers, values: Numbers) -> OctaveCurve:
+    """Fit a cubic spline over e, level at the first distance: the quantity is constant at smaller ones."""
     from scipy.interpolate import CubicSpline
 
-    spline = CubicSpline(numpy.log(distances), numpy.log(values), bc_type=((1, 0.0), "not-a-knot"))
-    return _curve_law(distances, spline.c.T)
+    return _octave_curve(distances, CubicSpline(distances, values, bc_type=((1, 0.0), "not-a-knot")).c)
 
 
-def _energy_curve(distances: Numbers, forces: Numbers) -> CurveLaw:
-    """Integrate forces (N) along one direction to the elastic energy, and fit quintic pieces of ln U over ln e.
+def _energy_curve(distances: Numbers, forces: Numbers) -> OctaveCurve:
+    """Integrate forces (N) along one direction to the elastic energy: pieces of a cubic spline of F/e over e."""
+    from scipy.interpolate import CubicSpline
 
-    Force and stiffness at the knots are those of a cubic spline of ln(F/e).
-    """
-    from scipy.interpolate import BPoly, CubicSpline, PPoly
-
-    x = numpy.log(distances)
-    spline = CubicSpline(x, numpy.log(forces / distances), bc_type=((1, 0.0), "not-a-knot"))
-    nodes, weights = map(numpy.array, arrays.gauss_legendre(8))
-    points = x[:-1, None] + numpy.diff(x)[:, None] * nodes
-    work = numpy.diff(x) * ((numpy.exp(spline(points) + 2.0 * points)) @ weights)
-    energy = 0.5 * forces[0] * distances[0] + numpy.append(0.0, numpy.cumsum(work))
-    exponent = forces * distances / energy  # d ln U/d ln e
-    bend = exponent * (2.0 + spline(x, 1) - exponent)
-    rows = numpy.stack([numpy.log(energy), exponent, bend], axis=-1)
-    return _curve_law(distances, PPoly.from_bernstein_basis(BPoly.from_derivatives(x, rows)).c.T)
+    spline = CubicSpline(distances, forces / distances, bc_type=((1, 0.0), "not-a-knot"))
+    left = distances[:-1]
+    force = numpy.append(spline.c, numpy.zeros((1, len(left))), axis=0)
+    force[1:] += left * spline.c  # (e - left) times the spline, plus left times the spline
+    energy = numpy.append(force / numpy.arange(5, 0, -1)[:, None], numpy.zeros((1, len(left))), axis=0)
+    work = numpy.polyval(energy, numpy.diff(distances))
+    energy[-1] = 0.5 * forces[0] * distances[0] + numpy.append(0.0, numpy.cumsum(work)[:-1])
+    return _octave_curve(distances, energy)
 
 
-def _curve_law(distances: Numbers, local: Numbers) -> CurveLaw:
-    """Make a curve of polynomials (pieces, powers) in ln e - ln e_i, the highest power first."""
-    first, density = float(numpy.log(distances[0])), _PIECES / float(numpy.log(distances[-1] / distances[0]))
-    shift = numpy.poly1d([0.5 / density, 0.5 / density])  # ln e - ln e_i of a coordinate from -1 to 1
-    rows = [numpy.poly1d(piece)(shift).coeffs for piece in local]
-    pieces = numpy.array([numpy.pad(row, (local.shape[1] - len(row), 0)) for row in rows])
-    return CurveLaw(
-        shallowest=float(distances[0]), deepest=float(distances[-1]), first=first, density=density, pieces=pieces
+def _octave_curve(distances: Numbers, pieces: Numbers) -> OctaveCurve:
+    """Make a curve of polynomials (powers, pieces) in e less the beginning of the piece, the highest power first."""
+    low, high = float(distances[0]), float(distances[-1])
+    return OctaveCurve(
+        low=low,
+        high=high,
+        density=_DENSITY,
+        first=piece_number(low, _DENSITY),
+        origins=distances[:-1],
+        coefficients=pieces[None],
+        error=numpy.zeros(1),
     )
 
 

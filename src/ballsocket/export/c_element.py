@@ -12,15 +12,17 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from ..contact.law import CurveLaw
-from ..core.arrays import Numbers, isfinite, where
+import numpy
+
+from ..contact.octave_curve import OctaveCurve
+from ..core.arrays import isfinite, where
 from ..core.checks import known_name
 from ..core.display import ascii_text
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
 from ..dynamics.ball_centre import BallCentre, Constants, Vector
 from ..dynamics.load import contact_state_of
-from ..dynamics.potential import CurvePotential, energy_curve
+from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
 from ..version import __version__
 from .c_text import c_number, c_statements
@@ -62,7 +64,7 @@ class Recording:
         return self.element.constants._replace(**tuned)
 
     @cached_property
-    def curves(self) -> dict[str, CurveLaw]:
+    def curves(self) -> dict[str, OctaveCurve]:
         """Fitted curves that the C program evaluates, by name: half angle, largest pressure, energy."""
         half_angle, max_pressure = self.element.curves
         curves = {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure}
@@ -70,8 +72,7 @@ class Recording:
         if isinstance(potential, CurvePotential):
             curves[ENERGY] = potential.curve
         elif not _is_recordable(potential):
-            law = self.element.model.law(self.element.joint)
-            curves[ENERGY] = energy_curve(law, half_angle.shallowest, self.element.wall)
+            curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
         return curves
 
     @cached_property
@@ -149,7 +150,7 @@ class PreloadRecording(Recording):
     element: PreloadedElement  # type: ignore[assignment]
 
     @cached_property
-    def curves(self) -> dict[str, CurveLaw]:
+    def curves(self) -> dict[str, OctaveCurve]:
         """Tabulated curves of each quantity in each direction, by name."""
         tabulated = self.element.table.curves
         return {_curve_name(name, index): curve for name, rows in tabulated.items() for index, curve in enumerate(rows)}
@@ -352,14 +353,14 @@ def _range_check_statement(name: str, is_positive: bool) -> str:
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
-def _curve_function_code(name: str, curve: CurveLaw) -> str:
+def _curve_function_code(name: str, curve: OctaveCurve) -> str:
     """Return the C code of a fitted curve: its coefficients and the function that evaluates it."""
-    pieces: Numbers = curve.pieces
-    coefficient_rows = ",\n".join("    " + ", ".join(map(c_number, coefficients)) for coefficients in pieces.tolist())
-    ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
+    rows = numpy.column_stack([curve.origins, curve.coefficients[0].T])
+    row_lines = ",\n".join("    " + ", ".join(map(c_number, row)) for row in rows.tolist())
+    ends = f"{c_number(curve.low)}, {c_number(curve.high)}, {curve.first}, {curve.density}"
     return (
-        f"static const double {name}_rows[] = {{\n{coefficient_rows}\n}};\n"
-        f"static const curve {name}_data = {{{ends}, {pieces.shape[0]}, {pieces.shape[1]}, {name}_rows}};\n"
+        f"static const double {name}_rows[] = {{\n{row_lines}\n}};\n"
+        f"static const curve {name}_data = {{{ends}, {rows.shape[0]}, {rows.shape[1]}, {name}_rows}};\n"
         f"static void {name}(double d, double out[4]) {{ along_curve(&{name}_data, d, out); }}\n"
     )
 

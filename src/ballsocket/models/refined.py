@@ -46,6 +46,7 @@ class Refined(Model):
     seconds_a_press: ClassVar[float] = 6e-6
     is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
+    has_curve: ClassVar[bool] = True
     name: ClassVar[str] = "refined"
     title: ClassVar[str] = "closed form from the liner's own compliance, 23 coefficients"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(8), (16)"),)

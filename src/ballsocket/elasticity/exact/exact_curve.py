@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy
 
 from ...contact import Contact, ModelWrapper
 from ...contact.assembly import SolverResult
-from ...contact.per_joint import JointContacts, solve_per_joint
+from ...contact.per_joint import JointContacts
 from ...core.arrays import Array
 from ...core.checks import shown
 from ...problem import Joint
 from ...problem.gaps import CircularGap, LinearGap
-from .chebyshev_curve import ChebyshevCurve, ChebyshevState, fit_curve
+from .chebyshev_curve import ChebyshevState
 from .contact import ElasticContact
-from .load_curve import LoadCurve
-from .model import Exact, curve_of, make_solver_result
+from .model import Exact
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -67,6 +65,7 @@ class ExactCurve(ModelWrapper):
     model: Exact = Exact()  # noqa: RUF009 (frozen)
 
     seconds_a_press: ClassVar[float] = 2e-6
+    has_curve: ClassVar[bool] = True
     contact_type: ClassVar[type[Contact]] = CurveContact
 
     def __post_init__(self) -> None:
@@ -77,17 +76,7 @@ class ExactCurve(ModelWrapper):
         object.__setattr__(self, "model", replace(self.model, gap=LinearGap))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        def press(plain_joint: Joint, loads: numpy.ndarray) -> JointContacts:
-            return chebyshev_curve_of(self.model, plain_joint).press(kind, loads)
-
-        solution = solve_per_joint(self, joint, load, press)
-        return make_solver_result(solution, self.model.tolerance, load)
-
-
-@lru_cache(maxsize=256)
-def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve:
-    """Return the Chebyshev series of the load curve of a joint of plain numbers, from a cache."""
-    return fit_curve(curve_of(model, joint))
+        return self.model._solve_curve_points(joint, kind, load)
 
 
 def exact_stress_ratio(joint: Joint, half_angle: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
@@ -9,14 +10,15 @@ from typing import Any, ClassVar
 
 from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
-from ...contact.per_joint import CombinedSolution, solve_per_joint
+from ...contact.per_joint import solve_per_joint
 from ...core import arrays
 from ...core.arrays import Array
 from ...core.checks import check_numeric, require, shown
 from ...core.sources import Source
 from ...core.validity import SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
-from ...problem.gaps import CircularGap, GapKind, check_gap, gap_remarks, gap_validity, select_gap
+from ...problem.gaps import CircularGap, GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
+from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import ElasticContact, NearHemisphere
 from .kernel import Kernel
 from .load_curve import LoadCurve
@@ -124,23 +126,28 @@ class Exact(Model):
     )
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        return self._solve_on_curves(curve_of, joint, kind, load)
+
+    def _solve_curve_points(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        return self._solve_on_curves(chebyshev_curve_of, joint, kind, load)
+
+    def _solve_on_curves(
+        self, curve_of_joint: Callable[[Exact, Joint], LoadCurve | ChebyshevCurve], joint: Joint, kind: str, load: Array
+    ) -> SolverResult:
+        """Solve the contacts on the load curve of each joint; errors beyond the tolerance count as not converged."""
         solution = solve_per_joint(
-            self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
+            self, joint, load, lambda plain_joint, loads: curve_of_joint(self, plain_joint).press(kind, loads)
         )
-        return make_solver_result(solution, self.tolerance, load)
+        tolerance = max(self.tolerance, 10 * arrays.machine_epsilon(load))
+        return SolverResult(
+            laws=solution,
+            force=solution.force,
+            indentation=solution.indentation,
+            failures={Status.NOT_CONVERGED: ~(solution.max_error <= tolerance)},
+        )
 
 
 _NEAR_HEMISPHERE = NearHemisphere()
-
-
-def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the solver result of solved contacts; errors beyond the tolerance count as not converged."""
-    return SolverResult(
-        laws=solution,
-        force=solution.force,
-        indentation=solution.indentation,
-        failures={Status.NOT_CONVERGED: ~(solution.max_error <= max(tolerance, 10 * arrays.machine_epsilon(load)))},
-    )
 
 
 @lru_cache(maxsize=256)
@@ -150,3 +157,13 @@ def curve_of(model: Exact, joint: Joint) -> LoadCurve:
     kind = select_gap(model.gap, joint)
     gap = kind(clearance=float(joint.clearance), socket_radius=float(joint.socket_radius))
     return LoadCurve(kernel=kernel, gap=gap, tolerance=model.tolerance)
+
+
+@lru_cache(maxsize=256)
+def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve:
+    """Return the Chebyshev series of the load curve of a joint of plain numbers with a linear gap, from a cache.
+
+    A joint with a circular gap has the load curve itself.
+    """
+    curve = curve_of(model, joint)
+    return fit_curve(curve) if isinstance(curve.gap, LinearGap) else curve

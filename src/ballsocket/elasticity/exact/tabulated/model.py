@@ -28,7 +28,6 @@ from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_cur
 from .inverse import solve_state
 
 _BLOCK = 4000  # contacts in one block, which fits into the cache; powers of two collide in the cache
-_BLOCK_OF_ONE_JOINT = 2 * _BLOCK
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -162,14 +161,14 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 
 
 def solve_with_tables(
-    file: str, joint: Joint, load: Array, compute_quantities: CurveReader, single_joint_block: int
+    file: str, joint: Joint, load: Array, compute_quantities: CurveReader
 ) -> tuple[TableSolution, Array]:
     """Solve contacts for loads with the tables; NaN beyond the range of the tables.
 
     `compute_quantities` returns ε, d, F, p0, dF/dd and the last relative change of ε from the curves of joints and the
     loads. The last change is returned too.
     """
-    *values, shift = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
+    *values, shift = _compute_in_blocks(file, joint, load, compute_quantities)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     loads = broadcast(load, values[1])
     is_loaded = loads > 0
@@ -194,13 +193,8 @@ def curve_reader(kind: str) -> CurveReader:
     return read_half_angle if kind == "half_angle" else solve_load
 
 
-def _compute_in_blocks(
-    file: str, joint: Joint, load: Array, compute_quantities: CurveReader, single_joint_block: int = _BLOCK_OF_ONE_JOINT
-) -> tuple[Array, ...]:
-    """Compute quantities of contacts block by block with a function of curves; replace loads that are not positive.
-
-    `single_joint_block` is the number of contacts in a block if all have the same joint.
-    """
+def _compute_in_blocks(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> tuple[Array, ...]:
+    """Compute quantities of contacts block by block with a function of curves; replace loads that are not positive."""
     if type(load) is float:
         return compute_quantities(plain_joint_curves(file, joint), load if load > 0 else SMALL_LOAD)
     xp, numbers = arrays.namespace(load), joint.numbers()
@@ -218,7 +212,7 @@ def _compute_in_blocks(
         values = _map_blocks_in_jax(file, joint, [*flat, loads], compute_quantities)
         return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in values)
     all_curves = JointCurves(file, joint.with_numbers(flat))
-    size = (single_joint_block if is_single_joint else _BLOCK) * (1 if xp is numpy else 64)
+    size = _BLOCK * (1 if xp is numpy else 64)
     results = []
     for first in range(0, max(prod(shape), 1), size):
         block = slice(first, min(first + size, prod(shape)))
@@ -305,6 +299,7 @@ class Tabulated(Model):
     seconds_a_press: ClassVar[float] = 4e-6
     is_closed_sphere: ClassVar[bool] = True
     accepts_floats: ClassVar[bool] = True
+    has_curve: ClassVar[bool] = True
     name: ClassVar[str] = "tabulated"
     title: ClassVar[str] = "elastic ball and bonded liner, from tables of the exact answer"
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "(6)"), Source("goodman1965"))
@@ -336,19 +331,12 @@ class Tabulated(Model):
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         return self.solve_with_reader(joint, kind, load, curve_reader(kind))
 
-    def solve_with_reader(
-        self,
-        joint: Joint,
-        kind: str,
-        load: Array,
-        read: CurveReader,
-        single_joint_block: int = _BLOCK_OF_ONE_JOINT,
-    ) -> SolverResult:
+    def solve_with_reader(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
         """Solve the contacts for loads of one kind with a function that evaluates the curves of joints.
 
-        `read` is such a function, see `curve_reader`. It gets up to `single_joint_block` loads of one joint at once.
+        `read` is such a function, see `curve_reader`.
         """
-        solution, shift = solve_with_tables(self.file, joint, load, read, single_joint_block)
+        solution, shift = solve_with_tables(self.file, joint, load, read)
         tolerance = _ROUNDING_ERRORS * arrays.machine_epsilon(load)
         return SolverResult(
             laws=solution,
