@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 
 import numpy
@@ -50,10 +49,6 @@ class ForwardModel:
     data: tuple[Measured, ...]
     names: tuple[str, ...]  # names of the unknowns
 
-    @cached_property
-    def _known_errors(self) -> dict[str, float]:
-        return {name: size for measured in self.data for name, size in measured.machine.known_errors().items()}
-
     def results_at(self, values: Array, load_perturbation: float = 0.0) -> Array:
         """Compute the model results (points, data) for values of the unknowns (points, unknowns).
 
@@ -64,9 +59,9 @@ class ForwardModel:
         values_by_name = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
         joint_values, model_values = split_joint_and_model_values(values_by_name)
         joint, valid_geometry = vary_joint(self.joint, joint_values)
-        joints_at_points = _JointsAtPoints(
-            insert_model_numbers(self.model, model_values), joint, self._known_errors | values_by_name
-        )
+        errors = {name: size for measured in self.data for name, size in measured.machine.known_errors().items()}
+        model = insert_model_numbers(self.model, model_values)
+        joints_at_points = _JointsAtPoints(model, joint, errors | values_by_name)
         result_rows = self._compute_results(joints_at_points, 1 + load_perturbation)
         xp = arrays.namespace(values)
         result_rows = [
@@ -119,7 +114,16 @@ class _JointsAtPoints:
         """Compute the readings of one data set: model results, and of an indentation the machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        values = self._measured_quantity_values(contact, contact_count, measured, value_range)
+        if measured.observable is not None:
+            numbers = {name: self.numbers[name] for name in measured.observable.numbers}
+            values = measured.observable.read(contact, **numbers)
+        elif measured.quantity == "pressure":
+            angle = numpy.zeros(contact_count)
+            angle[value_range] = measured.angle
+            values = contact.pressure(arrays.namespace(contact.force).asarray(angle))
+        else:
+            values = getattr(contact, measured.quantity)
+        values = _add_point_axis(values)[:, value_range]
         if measured.quantity == "indentation" and measured.machine.name:
             values = values + self._machine_error(measured, _add_point_axis(contact.force)[:, value_range])
         return values
@@ -140,20 +144,6 @@ class _JointsAtPoints:
                 )
                 force = force - (force - contact.force) / (1 + compliance * stiffness)
         return self.compute_readings(contact, len(measured), measured, slice(None))
-
-    def _measured_quantity_values(
-        self, contact: Contact, contact_count: int, measured: Measured, value_range: slice
-    ) -> Array:
-        if measured.observable is not None:
-            numbers = {name: self.numbers[name] for name in measured.observable.numbers}
-            values = measured.observable.read(contact, **numbers)
-        elif measured.quantity == "pressure":
-            angle = numpy.zeros(contact_count)
-            angle[value_range] = measured.angle
-            values = contact.pressure(arrays.namespace(contact.force).asarray(angle))
-        else:
-            values = getattr(contact, measured.quantity)
-        return _add_point_axis(values)[:, value_range]
 
     def _machine_error(self, measured: Measured, force: Array) -> Array:
         """Compute the error in mm that a machine adds to readings at a force in N."""

@@ -261,11 +261,8 @@ class Information:
         powers = vector / prior_deviations
         factor_indices = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
         unidentifiable_factors = set(self.unidentifiable) & {unknowns[index].name for index in factor_indices}
-        if (
-            len(factor_indices) < 2
-            or not unidentifiable_factors
-            or not all(unknowns[index].logarithmic for index in factor_indices)
-        ):
+        are_logarithmic = all(unknowns[index].logarithmic for index in factor_indices)
+        if len(factor_indices) < 2 or not unidentifiable_factors or not are_logarithmic:
             return None
         powers = powers / powers[factor_indices[numpy.argmax(abs(powers[factor_indices]))]]
         exponents = {}

@@ -137,12 +137,10 @@ class FileObservable:
     default: float | None = None  # default of the argument; None if a file must state it
 
 
-_FILE_OBSERVABLES = (
-    FileObservable(FREQUENCY, oscillation, "mass", Kind.MASS),
-    FileObservable(FRICTION_TORQUE, sliding_torque, "axis_angle", Kind.ANGLE, pi / 2),
-)
-
 FILE_OBSERVABLES: Mapping[str, FileObservable] = MappingProxyType(
-    {observable.described.name: observable for observable in _FILE_OBSERVABLES}
+    {
+        FREQUENCY.name: FileObservable(FREQUENCY, oscillation, "mass", Kind.MASS),
+        FRICTION_TORQUE.name: FileObservable(FRICTION_TORQUE, sliding_torque, "axis_angle", Kind.ANGLE, pi / 2),
+    }
 )
 """Observables of files by the names of their quantities."""

@@ -2,6 +2,10 @@
 
 `study` presses one joint at every point of a design. `pareto`, `optimise` and `sensitivity` find the best designs and
 the parameters that matter. `design_map` and similar functions plot studies.
+
+Data take this way: a `file` or Python makes a `design` of `axes`; `run` makes it a `task`, whose blocks an executor
+computes into memory or into a `store`; `metadata` labels the dataset, `limits` judges it, `study_answer` describes it,
+and `file_formats` exports it.
 """
 
 from __future__ import annotations

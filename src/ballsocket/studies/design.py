@@ -125,19 +125,17 @@ def grid(**axes: Any) -> Design:
     (2, 3)
     """
     check_names(axes, (*PARAMETERS, *MATERIAL_PARTS), "among the axes")
+    varying: list[Axis] = []
     fixed: dict[str, float] = {}
-    varying = {}
     for name, value in axes.items():
-        if isinstance(value, Material):
-            numbers = _create_axis(name, [value]).values_in()
-            fixed |= {number: float(column[0]) for number, column in numbers.items()}
-        elif isinstance(value, Span) or not is_number(value):
-            varying[name] = value
-        elif name in MATERIAL_PARTS:
+        if isinstance(value, Span) or not is_number(value):
+            varying.append(_create_axis(name, value))
+        elif name in MATERIAL_PARTS and not isinstance(value, Material):
             raise ValueError(f"{name} must be a Material or a list of Materials, got {shown(value)}")
         else:
-            fixed[name] = float(parameter_values(name, numpy.asarray([value]))[0])
-    return Design(tuple(_create_axis(name, value) for name, value in varying.items()), fixed)
+            columns = _create_axis(name, [value]).values_in()
+            fixed |= {parameter: float(column[0]) for parameter, column in columns.items()}
+    return Design(tuple(varying), fixed)
 
 
 def is_number(value: Any) -> bool:
