@@ -11,8 +11,9 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.kinds import Kind
-from ballsocket.files.joint_file import JointFile, joint_of, parse_joint
+from ballsocket.files.joint_file import Direction, JointFile, joint_of, parse_joint
 from ballsocket.files.joint_toml import tables_of, toml_of
+from ballsocket.files.schema import Angle
 from ballsocket.files.units import parse
 from ballsocket.studies.file import read_study
 
@@ -340,3 +341,17 @@ def test_a_preset_whose_yield_stress_is_not_known_is_written_by_its_numbers():
     bare = replace(bs.joints["hip-28"], liner=replace(bs.UHMWPE, yield_stress=None))
     again = joint_of(tables_of(JointFile(bare, {}))).joint
     assert again.liner.yield_stress is None
+
+
+def test_an_angle_is_written_with_the_digits_that_were_typed_and_read_back_to_the_last_bit():
+    """The nearest degrees of some angles give another angle; a neighbour gives the same."""
+    for degrees in (30.0, 84.8, 0.1, 33.3, 35.668, 22.123456789, 120.000000001):
+        assert Angle(math.radians(degrees)).write(with_unit=False) == degrees
+    for angle in (1.8906655686558533, -3.058855722527143, 2.590331057056523, math.pi / 3):
+        assert math.radians(Angle(angle).write(with_unit=False)) == angle
+
+
+def test_a_load_may_have_a_short_direction():
+    assert Direction.read("direction", [0, 0.3, 0.4]) == (0.0, 0.3, 0.4)
+    with pytest.raises(ValueError, match="length of direction"):
+        Direction.read("direction", [0, 0, 0])
