@@ -109,10 +109,14 @@ class SpanAxis(Axis):
         return self.span.count
 
     def values_in(self, section: slice = slice(None)) -> Mapping[str, Numbers]:
-        low, high, last = self.span.low, self.span.high, self.span.count - 1
-        index = numpy.arange(*section.indices(len(self)))
-        steps = low + index * ((high - low) / max(1, last))
-        return {self.name: numpy.where((index == last) & (index > 0), high, steps)}
+        low, high, count = self.span.low, self.span.high, self.span.count
+        start, stop, _ = section.indices(count)
+        values = numpy.arange(start, stop, dtype=float)  # in place: a span may fill the memory
+        values *= (high - low) / max(1, count - 1)
+        values += low
+        if start < stop == count > 1:
+            values[-1] = high  # without rounding
+        return {self.name: values}
 
 
 @dataclass(frozen=True, kw_only=True)
