@@ -14,9 +14,11 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.core.arrays import Numbers
-from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
+from ballsocket.elasticity.finite_elements.bodies import factorize
+from ballsocket.elasticity.finite_elements.harmonics import Harmonics, _sum_powers, socket_harmonics
 from ballsocket.elasticity.finite_elements.mesh import socket_shape
 from ballsocket.elasticity.finite_elements.section import _CORNER_RADIUS, _superconvergent_points
+from ballsocket.elasticity.off_axis.bore_shapes import BoreDeviation, OvalBore
 
 RANGES = {
     "elastic ball": {"softness": (1e-4, 10.0)},
@@ -66,7 +68,7 @@ def harmonic_strains(meridian: Harmonics, contact: Any) -> Numbers:
         order, count = meridian._elimination_order(m)
         force, displacement = numpy.zeros(len(order)), numpy.zeros(3 * block.number.size)
         force[-count:] = (loads @ wave)[-count:]
-        displacement[order] = meridian._factorize_stiffness(m, order).solve(force)
+        displacement[order] = factorize(_sum_powers(meridian.stiffness_powers, m), order).solve(force)
         strain = numpy.einsum("eqsu,eu->seq", plain + m * azimuthal, displacement[meridian._element_unknowns])
         waves = [numpy.cos(m * AZIMUTHS)] * 4 + [numpy.sin(m * AZIMUTHS)] * 2
         total += numpy.stack([part[..., None] * wave for part, wave in zip(strain, waves, strict=True)])
@@ -107,10 +109,41 @@ def tilted_excesses(joints: int) -> Iterator[tuple[float, bool]]:
             yield largest / stress - 1, low <= largest <= high
 
 
+def random_bore(random: numpy.random.Generator, tilt: float) -> Any:
+    """Draw an oval bore, a wavy one, or one into which a ball with a clearance of 0.1 mm has worn near the load."""
+    kind, size = random.integers(3), random.uniform(0.0, 1.0)
+    if kind == 0:
+        return OvalBore(squeeze=0.3 * size - 0.15)
+    if kind == 1:
+        waves = random.uniform(4.0, 12.0)
+        return BoreDeviation(of=lambda n: 0.02 * size * numpy.cos(waves * numpy.arctan2(numpy.hypot(*n[:2]), n[2])))
+    angle = tilt + radians(random.uniform(-20.0, 20.0))
+    return BoreDeviation(
+        of=lambda n: numpy.maximum((0.1 + 0.5 * size) * (n[0] * numpy.sin(angle) + n[2] * numpy.cos(angle)) - 0.1, 0.0)
+    )
+
+
+def worn_excesses(joints: int) -> Iterator[tuple[float, bool]]:
+    """Yield the excess of the stress in bores that are no spheres, and whether the bounds contain it."""
+    random = numpy.random.default_rng(3)
+    for _ in range(joints):
+        joint, tilt = (
+            random_joint(random, {"poisson": (0.3, 0.49), "thickness_ratio": (1.0, 6.0)}),
+            random.uniform(0, 0.8),
+        )
+        force = float(bs.Tabulated().press(joint, half_angle=radians(random.uniform(20, 45))).force)
+        contact = bs.Sphere(worn=random_bore(random, tilt)).press(joint, force=force, tilt=tilt)
+        stress, low, high = contact.quick_von_mises
+        if not contact.status.failed and high < inf:
+            largest = largest_stress(contact)
+            yield largest / stress - 1, low <= largest <= high
+
+
 def main(joints: int) -> None:
     """Print the range of the excess and the share of the stresses within their bounds."""
-    for name in (*RANGES, "tilted"):
-        rows = tilted_excesses(joints) if name == "tilted" else axial_excesses(name, joints)
+    off_axis = {"tilted": tilted_excesses, "worn": worn_excesses}
+    for name in (*RANGES, *off_axis):
+        rows = off_axis[name](joints) if name in off_axis else axial_excesses(name, joints)
         excesses, within = numpy.array(list(rows)).T
         print(f"{name}: {excesses.min():+.3f} to {excesses.max():+.3f}, {within.mean():.1%} of {len(within)} within")
 

@@ -99,6 +99,14 @@ def bounded_von_mises(contact: Any, von_mises: Array) -> Bounded:
     return Bounded(von_mises, clip(1 - error, 0.0, 1.0) * von_mises, high)
 
 
+WORN_ERRORS = 0.85, 0.5
+"""Relative errors, below and above, of the stress of the axial contact in a bore that is not a sphere.
+
+Pressure of `Sphere` in 69 oval, wavy and worn bores loads the finite elements of the cup: the stress is up to 37 %
+larger, where a deep worn part is pressed all over, and down to 82 % smaller at a narrow peak of pressure.
+"""
+
+
 def rim_errors(joint: Joint, edge_distance: Array) -> tuple[Array, Array]:
     """Compute the relative errors, below and above, of the stress of the axial contact near the rim of a cup.
 

@@ -25,6 +25,13 @@ COLUMNS = ("instant", "force", "indentation", "half_angle", "max_pressure")
 """Columns of a table of worst contacts: index of the instant, N, mm, rad, MPa."""
 
 
+UNWORN_ERRORS = strength.TABLE_ERROR, 0.2
+"""Relative errors, below and above, of the stress without wear; above at most 0.12 for ν up to 0.46, by a free rim."""
+
+WORN_ERRORS = strength.WORN_ERRORS[0], UNWORN_ERRORS[1] + strength.WORN_ERRORS[1]
+"""Relative errors, below and above, of the stress in a worn bore."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class GridLaws:
     """Half angle and largest pressure of a simulated contact, for a `Contact`; other quantities are NaN."""
@@ -47,8 +54,11 @@ class GridLaws:
 class GridContact(Contact):
     """Contact from a wear simulation, as a `Contact` that checks validity and strength.
 
-    Its von Mises stress is that of the axial contact of the same half angle and largest pressure.
+    Its von Mises stress is that of the axial contact of the same half angle and largest pressure. `stress_errors` are
+    its relative errors, below and above.
     """
+
+    stress_errors: tuple[float, float] = UNWORN_ERRORS
 
     def _compute_von_mises(self) -> Array:
         """Compute the largest von Mises stress in the liner in MPa; by the exact solution on an elastic backing."""
@@ -63,10 +73,8 @@ class GridContact(Contact):
     @property
     def quick_von_mises(self) -> Bounded:
         """Largest von Mises stress in the liner in MPa with its bounds; it needs no solution for stresses."""
-        return Bounded(self.von_mises, (1 - strength.TABLE_ERROR) * self.von_mises, (1 + _WORN_ERROR) * self.von_mises)
-
-
-_WORN_ERROR = 0.2  # stress of a worn contact above its value, assumed; 0.12 without wear for ν up to 0.46
+        low, high = self.stress_errors
+        return Bounded(self.von_mises, (1 - low) * self.von_mises, (1 + high) * self.von_mises)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,7 +162,9 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     return numpy.arccos(numpy.clip(1 - versine, -1.0, 1.0))
 
 
-def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
+def grid_contact(
+    model: Model, joint: Joint, worst: Numbers, stress_errors: tuple[float, float] = UNWORN_ERRORS
+) -> GridContact:
     """Build a `GridContact` from one row or all rows of a table of worst contacts, with the columns `COLUMNS`."""
     is_single = worst.ndim == 1
     force, indentation, half_angle, max_pressure = (float(column) if is_single else column for column in worst.T[1:])
@@ -165,6 +175,7 @@ def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
         laws=GridLaws(half_angle=half_angle, max_pressure=max_pressure),
         force=force,
         indentation=indentation,
+        stress_errors=stress_errors,
     )
 
 
@@ -195,9 +206,11 @@ def check_rows(model: Model, joint: Joint, worst: Numbers) -> Numbers:
     )
 
 
-def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:
+def check_contact(
+    model: Model, joint: Joint, worst: Numbers, stress_errors: tuple[float, float], activity: str, instant: str
+) -> ContactCheck:
     """Check validity and strength of the worst contact of one activity, a row of a table."""
-    contact = grid_contact(model, joint, worst)
+    contact = grid_contact(model, joint, worst, stress_errors)
     pressure, von_mises, utilisation = (
         Bounded(*map(float, error_bar(contact, name))) for name in ("max_pressure", "von_mises", "utilisation")
     )

@@ -24,7 +24,7 @@ from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
-from .contact_checks import ContactCheck, check_contact, half_angles
+from .contact_checks import UNWORN_ERRORS, ContactCheck, check_contact, half_angles
 from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame
 from .cycle import Cycle
@@ -242,12 +242,14 @@ class HipSetup(OneLine):
             axis=1,
         )
 
-    def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
+    def contact_checks(
+        self, worst: Numbers, stress_errors: tuple[float, float] = UNWORN_ERRORS
+    ) -> tuple[ContactCheck, ...]:
         """Check validity and strength of each row of a table of worst contacts."""
         frame = self.frame
         instants = [self.cycle.describe_step(step) for step in frame.loaded[worst[:, 0].astype(int)]]
         return tuple(
-            check_contact(self.contact_model, self.joint, row, activity, instant)
+            check_contact(self.contact_model, self.joint, row, stress_errors, activity, instant)
             for (activity, _), row, instant in zip(frame.activities, worst, instants, strict=True)
         )
 

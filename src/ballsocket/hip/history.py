@@ -22,7 +22,7 @@ from ..core.quantities import QUANTITIES
 from ..core.records import Record
 from ..core.unit_systems import Amount, Sentence
 from ..lubrication import Lubricant
-from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
+from .contact_checks import COLUMNS, WORN_ERRORS, ContactCheck, largest_utilisation, list_check_notes, worst_verdict
 from .film import Film
 from .hip_setup import HipSetup
 from .law_fields import law_summary
@@ -213,7 +213,7 @@ class History(OneLine):
     @cached_property
     def contact_checks(self) -> tuple[tuple[ContactCheck, ...], ...]:
         """Checks of the contact model at each report, one for each activity with contact."""
-        return tuple(self.use.contact_checks(report.worst_contacts) for report in self.reports)
+        return tuple(self.use.contact_checks(report.worst_contacts, WORN_ERRORS) for report in self.reports)
 
     @property
     def valid(self) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy
 
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
-from ...contact.strength import rim_errors
+from ...contact.strength import WORN_ERRORS, rim_errors
 from ...contact.stress_ratio import von_mises_ratio
 from ...contact.verdict import Bounded
 from ...core import arrays
@@ -60,7 +60,11 @@ class OffAxisContact(SolvedContact):
     def _stress_errors(self) -> tuple[Array, Array]:
         """Relative errors, below and above, of the von Mises stress at the largest pressure."""
         margin = self.laws.combine(lambda contacts: contacts.state.edge_margin)
-        return rim_errors(self.joint, arrays.where(self.edge_loaded, 0.0, margin) * self.joint.socket_radius)
+        low, high = rim_errors(self.joint, arrays.where(self.edge_loaded, 0.0, margin) * self.joint.socket_radius)
+        if self.model.worn is None:
+            return low, high
+        worn_low, worn_high = WORN_ERRORS
+        return arrays.where(low > worn_low, low, worn_low), high + worn_high
 
     @cached_array
     def force_vector(self) -> Array:
@@ -219,6 +223,8 @@ class OffAxisContact(SolvedContact):
     def notes(self) -> tuple[str, ...]:
         """Sentences about loads without a solution, limits of validity and contact with the rim."""
         notes = list(super().notes)
+        if self.model.worn is not None and self.joint.liner.strengths:
+            notes.append(_WORN_NOTE.format(*reversed(WORN_ERRORS)))
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
         if not self._all_points_failed:
@@ -281,8 +287,13 @@ class OffAxisContact(SolvedContact):
 _CUT_ERROR = 2.0  # factor of the error of the margin of contacts that the rim cuts off, measured against rings of 0.75°
 
 _REVERSED_NOTE = "; if it is the force on the ball, such as a measured joint reaction, give the opposite direction"
-_RIM_NOTE = "edge loading: the contact reaches the rim"
-_PRELOADED_RIM_NOTE = "the contact reaches the rim, as is normal in a preloaded joint"
+_UNBOUNDED = "so its stress has no known bound"
+_RIM_NOTE = f"edge loading: the contact reaches the rim, {_UNBOUNDED}"
+_PRELOADED_RIM_NOTE = f"the contact reaches the rim, as is normal in a preloaded joint, {_UNBOUNDED}"
+_WORN_NOTE = (
+    "stress in a worn bore: up to {:.0%} above the stress by its largest pressure in a sphere, and up to {:.0%} below "
+    "it at a narrow peak of pressure"
+)
 _SHARP_RIM_NOTE = (
     "edge loading: the end of the bore indents the ball like the edge of a punch, where the pressure is unbounded; "
     "force and indentation are valid"
