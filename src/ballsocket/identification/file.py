@@ -88,8 +88,9 @@ class PriorValue(Parsed):
         if isinstance(value, str):
             return parse_ends(name, value, cls.kind)
         if not isinstance(value, Mapping):
+            ends = f"0.02..0.3 {cls.kind.assumed_unit}".strip()
             raise ValueError(
-                f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}"
+                f"{name} = {shown(value)} must be two ends as text, such as {ends!r}, or {{mean, deviation}}"
             )
         return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
 
