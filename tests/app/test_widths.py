@@ -33,10 +33,10 @@ CUT = """() => {
 
 def finish_work(page, view):
     """Run the work of a view, and wait for it."""
-    button = page.locator(f"section[data-view={view}] .run button:visible")
-    for name in button.all_inner_texts():
-        if name != "Cancel":
-            page.get_by_role("button", name=name, exact=True).click()
+    buttons = f"[...document.querySelectorAll('section[data-view={view}] .run button')]"
+    page.evaluate(  # at once, because a view may begin by itself
+        f"{buttons}.filter((one) => one.checkVisibility() && one.innerText != 'Cancel').forEach((one) => one.click())"
+    )
     bars = f"[...document.querySelectorAll('section[data-view={view}] .run progress')]"
     page.wait_for_function(f"() => !{bars}.some((bar) => bar.checkVisibility())")
 

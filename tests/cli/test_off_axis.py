@@ -95,7 +95,7 @@ def test_orient_prints_every_orientation_and_the_limits():
     words = ("orient", "hip-36", "--force", "2.5 kN", "--ring-width", "6 deg", "--limit", "edge_distance>=1 mm")
     printed = run(*words, "--inclination", "30..70", "--anteversion", "20 deg", columns=60).stdout
     for angle in range(30, 71, 5):
-        assert printed.count(f" {angle}°  ") + printed.count(f" {angle}°\n") >= 2
+        assert len(re.findall(rf"(?<= ){angle}°(?= |\n)", printed)) >= 2  # in the heads of both tables
     assert printed.count("\n20°") >= 2
     end = r"at 20° anteversion the limit holds up to \d\d° inclination \(steps of 5°\)"
     assert re.search(end, " ".join(printed.split()))

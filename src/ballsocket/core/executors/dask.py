@@ -205,7 +205,7 @@ def _compute_piece(number: int, work: Work) -> tuple[int, Any]:
 @contextmanager
 def _without_tracebacks() -> Iterator[None]:
     """Suppress log messages of Dask's client until the end of the block; a lost scheduler is raised as an error."""
-    loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    loggers = list(map(logging.getLogger, ("distributed.batched", "distributed.client", "tornado.application")))
     levels = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)
