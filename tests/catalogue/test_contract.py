@@ -86,11 +86,9 @@ def test_pressure_is_largest_at_the_stated_angle_zero_at_the_edge_and_at_a_direc
 def test_force_scales_with_squared_length_and_modulus(model):
     """Lengths times a and moduli times b give force times a² b (and a work of adhesion times a b)."""
     a, b = 3.0, 0.2
-    larger = bs.Joint(
-        **{name: a * getattr(HIP, name) for name in ("ball_radius", "clearance", "liner_thickness")},
-        liner=bs.Material(young=b * 1000.0, poisson=0.4),
-        ball=bs.Material(young=b * 230000.0, poisson=0.3),
-    )
+    lengths = {name: a * getattr(HIP, name) for name in ("ball_radius", "clearance", "liner_thickness")}
+    liner, ball = bs.Material(young=b * 1000.0, poisson=0.4), bs.Material(young=b * 230000.0, poisson=0.3)
+    larger = bs.Joint(**lengths, liner=liner, ball=ball)
     scaled = bs.AdhesiveSocket(work_of_adhesion=5e-5 * a * b) if model.name == "adhesive" else model
     one, other = model.press(HIP, force=3000.0), scaled.press(larger, force=3000.0 * a * a * b)
     scales = {"indentation": a, "half_angle": 1.0, "max_pressure": b, "area": a * a, "stiffness": a * b}

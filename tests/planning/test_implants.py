@@ -143,10 +143,8 @@ def test_obj_and_ply_files_hold_the_same_triangles(tmp_path):
     meshio = pytest.importorskip("meshio")
     corners, index = np.unique(SMALL.reshape(-1, 3).round(9), axis=0, return_inverse=True)
     mesh = meshio.Mesh(corners, [("triangle", index.reshape(-1, 3).astype(np.int32))])
-    for path, options in (
-        (tmp_path / "a.obj", {}),
-        *((tmp_path / "a.ply", {"binary": flag}) for flag in (False, True)),
-    ):
+    for name, options in (("a.obj", {}), ("a.ply", {"binary": False}), ("a.ply", {"binary": True})):
+        path = tmp_path / name
         meshio.write(path, mesh, **options)
         content = path.read_bytes().replace(b"vertex_indices", b"vertex_index")  # both names are usual
         path.write_bytes(b"vn 0 0 1\nvt 0 0\n" * (path.suffix == ".obj") + content)  # fewer than the points

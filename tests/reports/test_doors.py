@@ -173,13 +173,9 @@ def split(unit):
     return [unit] if unit in SYMBOLS else unit.split("/")
 
 
-def numbers_in(line):
-    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])", line)]
-
-
 def contains(line, expected):
     """Check that a line has the expected numbers, in their order, to the digits that are printed."""
-    found = iter(numbers_in(line))
+    found = map(float, re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])", line))
     return all(any(number == approx for number in found) for approx in expected)
 
 
