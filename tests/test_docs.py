@@ -112,16 +112,13 @@ def test_python_blocks_of_a_page_are_examples_with_output():
             assert block.startswith(">>> "), f"{path.name}: {block[:60]!r} is not an example with its output"
 
 
-def test_valid_models_are_within_ten_percent_on_the_presets():
+def test_valid_models_are_within_ten_percent_on_the_presets_and_promises_are_those_of_the_page():
     """The page on choosing a model states this limit."""
     for joint in bs.joints.values():
         answers = bs.compare(joint, force=3000.0)
         exact = answers["exact"].max_pressure
         for name, contact in answers.items():
             assert not contact.valid or contact.max_pressure == pytest.approx(exact, rel=0.1), (joint.name, name)
-
-
-def test_stated_promises_are_those_of_the_models():
     text = re.sub(r"\s+", " ", (DOCS / "explanation" / "choosing.md").read_text("utf-8"))
     stated = re.search(r"promise (\S+) % for .*?, `refined` (\S+) %, `tabulated` (\S+) % \(`model.promise`\)", text)
     models = bs.HessForsbach(), bs.Refined(), bs.Tabulated()

@@ -30,15 +30,13 @@ def test_exported_names_exist_are_unique_and_hide_no_module(room):
     assert all(isinstance(getattr(room, name), ModuleType) for name in modules & set(room.__all__))
 
 
-def test_studies_exports_its_functions_and_suggests_similar_names():
+def test_names_that_the_package_or_its_studies_do_not_have_suggest_similar_ones():
     from ballsocket.reports import study_plots
 
     assert bs.studies.design_map is study_plots.design_map
     with pytest.raises(AttributeError, match="has no attribute 'optimize'; did you mean 'optimise'?"):
         bs.studies.optimize  # noqa: B018
 
-
-def test_a_press_of_the_package_names_that_of_the_models():
     with pytest.raises(AttributeError, match=r"no attribute 'press'; .* bs\.Exact\(\)\.press.*; bs\.compare"):
         bs.press  # noqa: B018
 
@@ -105,12 +103,16 @@ def test_citations_are_those_of_the_cited_objects():
     assert "steuermann1939" not in keys(bs.compare(HIP, force=3000.0, models={"hertz": bs.Hertz()}))
 
 
-def test_every_source_is_in_the_bibliography():
+def test_every_source_is_in_the_bibliography_and_every_publication_is_cited():
     for model in (*bs.catalogue.values(), bs.PinInHole()):
         for source in model.sources:
             assert source.key in bibliography()
             assert source.authors_and_year
             assert "\\" not in str(source)
+    unused = set(bibliography()) - set(keys(*listed_models.values(), *CITABLE))
+    unused -= {source.key for source in table.SOURCES}
+    unused -= {source.key for used in (*relations.relations, Bristles, Motion, Viscoelastic) for source in used.sources}
+    assert unused == set()
 
 
 def test_presets_cite_the_publications_their_source_names():
@@ -135,13 +137,6 @@ def test_a_source_without_a_publication_is_refused_alone_and_skipped_in_a_contac
         with pytest.raises(TypeError, match="no known publication is named in the source of"):
             bs.cite(thing)
     assert keys(bs.Hertz().press(hip, force=1.0)) == ["hertz1882", "hess2021"]
-
-
-def test_every_publication_is_cited():
-    unused = set(bibliography()) - set(keys(*listed_models.values(), *CITABLE))
-    unused -= {source.key for source in table.SOURCES}
-    unused -= {source.key for used in (*relations.relations, Bristles, Motion, Viscoelastic) for source in used.sources}
-    assert unused == set()
 
 
 def test_all_summaries_have_one_list_of_columns():

@@ -37,11 +37,7 @@ QUESTIONS = {
 
 def by_model(results):
     """Return pressure and validity by model, of the models with a result."""
-    return {
-        result["model"]: (result["max_pressure"], result["valid"])
-        for result in results
-        if result["max_pressure"] is not None
-    }
+    return {row["model"]: (row["max_pressure"], row["valid"]) for row in results if row["max_pressure"] is not None}
 
 
 @pytest.mark.parametrize("name", some(QUESTIONS))
@@ -55,10 +51,7 @@ def test_a_question_has_one_answer_at_every_door(name, tmp_path):
     (tmp_path / "joint.toml").write_text(QUESTIONS[name], encoding="utf-8")
     file = parse_joint(QUESTIONS[name].encode(), name)
     solved, needs_cup = answer_question(PressQuestion(file=file)), bool(real_cup_reason(file))
-    printed, every = (
-        answer("press", "joint.toml", folder=tmp_path),
-        answer("press", "joint.toml", "--all", folder=tmp_path),
-    )
+    printed, every = (answer("press", "joint.toml", *words, folder=tmp_path) for words in ((), ("--all",)))
     assert by_model(printed["results"]) == {
         model: (pytest.approx(float(contact.max_pressure), rel=1e-12), bool(contact.valid))
         for model, contact in solved.comparison.items()

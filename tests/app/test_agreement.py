@@ -241,15 +241,12 @@ def test_messages_of_older_screens_change_nothing(browser, address):
         assert_agreement(user, ["replay"])
 
 
-def test_a_preset_replaces_text_that_nobody_has_confirmed(user):
+def test_a_preset_replaces_text_that_nobody_has_confirmed_and_text_that_equals_the_value_is_confirmed(user):
     page = user.open().page
     page.locator("[data-name=load] input[type=text]").fill("77")
     page.locator("[data-name=preset] select").select_option("hip-36")
     assert_agreement(user, ["text", "preset"])
-
-
-def test_typed_text_that_equals_the_value_is_confirmed_too(user):
-    """The browser reports no change of such a box, which must follow the next change from elsewhere all the same."""
+    # the browser reports no change of a box whose text equals the value; it must follow the next change all the same
     user.open().page.locator("[data-name=load] input[type=text]").fill("3000")
     user.page.evaluate("document.activeElement.blur()")
     user.nudge("load")

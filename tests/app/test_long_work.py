@@ -134,10 +134,8 @@ def test_a_run_that_waits_for_the_processor_goes_on_and_one_that_hangs_ends(monk
     now, used = [0.0], [0.0]
     monkeypatch.setattr(running, "time", SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(running, "processor_seconds", lambda pid: used[0])
-    for seconds, processor, why in (
-        (61.0, 61.0, "60 s of processor time, the"),
-        (661.0, 59.0, "661 s without a result"),
-    ):
+    ends = (61.0, 61.0, "60 s of processor time, the"), (661.0, 59.0, "661 s without a result")
+    for seconds, processor, why in ends:
         run, now[0], used[0] = Run(BUSY), 0.0, 59.0
         assert run.news() is None
         now[0] = 659.0
@@ -211,7 +209,7 @@ def test_a_run_answers_what_a_press_answers():
     assert "chamfer" in refused.why
 
 
-def test_a_run_whose_process_dies_says_so_and_one_that_is_stopped_gives_its_place_back():
+def test_a_process_that_dies_or_cannot_be_started_is_said_and_one_that_is_stopped_gives_its_place_back(monkeypatch):
     died, stopped = (Run(BUSY) for _ in range(2))
     died.news()
     died._process.kill()
@@ -220,6 +218,12 @@ def test_a_run_whose_process_dies_says_so_and_one_that_is_stopped_gives_its_plac
     stopped.stop()
     stopped.stop()
     assert not stopped._process.is_alive()
+
+    def begin(self):
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(Run, "_begin", begin)
+    assert Run(callable).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
@@ -231,14 +235,6 @@ def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
     second.stop()
     assert isinstance(until_the_end(first)[-1], RunFinished)
     assert isinstance(until_the_end(third)[-1], RunFinished)
-
-
-def test_a_process_that_cannot_be_started_is_said(monkeypatch):
-    def begin(self):
-        raise OSError(11, "Resource temporarily unavailable")
-
-    monkeypatch.setattr(Run, "_begin", begin)
-    assert Run(callable).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
 
 
 def square(force, report):
@@ -306,7 +302,7 @@ def shown(page, element):
     return page.channel.shown_value(f"#press-{element}") or ""
 
 
-def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkeypatch, jobs):
+def test_a_click_runs_once_for_all_pages_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkeypatch, jobs):
     page = opened(monkeypatch)
     assert page.channel.shown_value("=press.run")["label"] == "Square the force"
     assert not jobs
@@ -326,12 +322,7 @@ def test_a_click_runs_and_a_change_of_inputs_keeps_the_result_with_a_mark(monkey
     assert shown(page, "earlier") == ""
     assert page.view.result(page.screen) == 9e6
     assert len(jobs) == 1
-
-
-def test_a_result_is_shown_to_the_next_page_that_asks_for_it(monkeypatch, jobs):
-    edits(opened(monkeypatch), "press.run", True)
-    finish(*jobs[-1])
-    page = Page("")
+    page = Page("")  # the next that asks for it
     assert shown(page, "numbers") == "9e+06"
     edits(page, "press.run", True)
     assert len(jobs) == 1

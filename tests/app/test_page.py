@@ -86,10 +86,8 @@ def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
 
 
 def test_names_that_are_formulas_elsewhere_are_text_in_files():
-    page = Page(
-        "view=compare&preset=hip-28&beside1.name==1%2B1 $\\frac{a$&beside1.joint.ball_radius=14"
-        "&beside1.joint.clearance=.1&beside1.joint.liner_thickness=5&beside1.liner.material=pom"
-    )
+    joint = "".join(f"&beside1.{part}" for part in OWN.split("&"))
+    page = Page(f"view=compare&preset=hip-28&beside1.name==1%2B1 $\\frac{{a${joint}")
     assert trouble(page) == ""
     assert b"'=1+1" in saved(page, "CSV")
     assert saved(page, "PNG").startswith(b"\x89PNG")
@@ -161,7 +159,7 @@ def test_files_have_the_joint_and_reports_its_inputs_and_no_machine(view):
 HIP = "preset=hip-28&load.force=3000"
 
 
-def test_a_backing_is_built_from_bone_to_shell():
+def test_a_backing_is_built_from_bone_to_shell_of_at_most_twenty_layers():
     page = Page(HIP)
     page._refresh()
     edits(page, "behind.add", "titanium")
@@ -183,9 +181,6 @@ def test_a_backing_is_built_from_bone_to_shell():
     joint = page.screen.file.joint
     assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
     assert "behind.0" not in page.channel.shown_value("order")
-
-
-def test_a_wall_of_layers_ends():
     page = Page(HIP)
     for _ in range(20):
         edits(page, "behind.add", "titanium")
@@ -194,7 +189,7 @@ def test_a_wall_of_layers_ends():
     assert "'titanium' is one layer too many: at most 20" in unescape(trouble(page))
 
 
-def test_joints_are_compared_with_the_one_that_is_chosen():
+def test_joints_are_compared_with_the_one_that_is_chosen_also_when_another_is_removed():
     page = Page(f"view=compare&{HIP}&beside1.preset=hip-36&beside2.preset=hip-32")
     assert "the difference from hip-36" in page.channel.shown_value("#compare-note")
     options = page.channel.shown_value("=compare.base")["options"]
@@ -207,9 +202,6 @@ def test_joints_are_compared_with_the_one_that_is_chosen():
     assert f"{100 * (other / mine - 1):+.0f} %" in table
     assert "base=0" in page.channel.shown_value("link")
     assert Page(f"view=compare&{HIP}").screen.base == "1"  # nothing has been chosen by looking
-
-
-def test_a_base_remains_the_same_design_when_another_is_removed():
     page = Page(f"view=compare&{HIP}&beside1.preset=hip-36")
     edits(page, "compare.preset", "hip-32")
     edits(page, "compare.base", "2")
@@ -358,7 +350,7 @@ def test_no_range_ends_where_no_joint_is(name):
     assert high.read("0.3")["across"].high == pytest.approx(0.3 / screen.reading.unit(QUANTITIES[name]).factor)
 
 
-def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed():
+def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed_beside_its_reason():
     page = Page(f"{MAP}&limit=outer_diameter<=52")
     row = ["outer_diameter", "<=", "52"]
     assert page.channel.shown_value("=map.limits")["value"] == [row]
@@ -376,9 +368,6 @@ def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed():
     (limit,) = page.screen.limits
     assert present <= limit.high == pytest.approx(present, rel=0.01)
     assert limit.high == float(f"{limit.high:.3g}")
-
-
-def test_a_limit_that_the_joint_does_not_have_is_refused_beside_the_rows():
     page = Page(f"view=map&{OWN}")
     answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
     assert "has no ball_young" in answer["=map.limits"]["error"]
@@ -396,14 +385,11 @@ def test_the_present_numbers_of_a_design():
     assert np.isnan(present_value(file, "indentation"))
 
 
-def test_ticks_and_levels_are_round_and_enclose_the_values():
+def test_ticks_and_levels_are_round_and_enclose_the_values_and_crosses_mark_some_of_the_doubtful_points():
     assert svg.ticks_between(22.0, 46.0) == [25.0, 30.0, 35.0, 40.0, 45.0]
     assert svg.ticks_between(-10.0, 40.0) == [-10.0, 0.0, 10.0, 20.0, 30.0, 40.0]
     assert svg.levels_between(-3.2, 4.1, 8) == [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
     assert svg.levels_between(3.0, 3.0) == [3.0, 3.5]
-
-
-def test_crosses_mark_some_of_the_doubtful_points():
     line = np.linspace(0.0, 1.0, 61)
     plane = MapPlane(x=line, y=line, x_label="x", y_label="y")
     marked = np.zeros((61, 61), dtype=bool)

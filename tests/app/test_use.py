@@ -192,12 +192,15 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link(page):
     assert "∞" not in told(page, "gait-numbers")
 
 
-def test_a_cycle_that_cannot_be_pressed_says_why(page):
+def test_a_cycle_that_cannot_be_pressed_and_a_hip_that_cannot_be_worn_say_why(page, at_once, nothing_is_known):
     edits(page, "gait.own", {"name": "walk.csv", "text": "phase [%], force [N]\n0, 1\n50, few\n100, 1\n"})
     assert "cycle.csv" in told(page, "gait-trouble")
     dislocated = opened(LINK.replace("cup.inclination=45", "cup.inclination=90"))
     assert "dislocated" in told(dislocated, "gait-trouble")
     assert told(dislocated, "gait-viewer") == ""
+    page = opened(WEAR.replace("cup.inclination=40", "cup.inclination=90"))
+    edits(page, "wear.run", True)
+    assert "dislocated" in told(page, "wear-trouble")
 
 
 WORN_HIP = "view=wear&preset=hip-36&cup.inclination=40&cup.anteversion=15"
@@ -251,10 +254,8 @@ def made(scale):
     contact = {"valid": scale > 0.1, "unworn": [{"utilisation": 1.5 - scale}]}
     summary = {"history": [last], "contact": contact, "cycle": {"peaks": {"max_pressure_MPa": 10.0}}}
     curves = {"penetration": grown, "deepest": grown, "volume": 100 * grown, "low": 0.5 * grown, "high": 2 * grown}
-    depth, checks = (
-        scale * np.ones((grid.rings, grid.meridians)),
-        (wear_check(bs.joints["hip-36"], exact_number(30 * scale)),),
-    )
+    depth = scale * np.ones((grid.rings, grid.meridians))
+    checks = (wear_check(bs.joints["hip-36"], exact_number(30 * scale)),)
     bore = {"depth": depth, "grid": grid, "cup": bs.Cup(), "load": np.array([0.0, 0.0, 1.0])}
     texts = {"band": "band: of a test", "notes": ("a note",), "figure": b""}
     return hip_runs.WearResult(cycles=np.arange(3.0), **curves, **bore, **texts, summary=summary, checks=checks)
@@ -302,12 +303,6 @@ def test_inputs_are_a_design_beside_and_a_coefficient_with_its_unit(asked, nothi
     assert page.screen.beside == ()
     edits(page, "wear.coefficient", "1,066e-6 mm^3/(N m)")  # as others write it
     assert page.screen.use.coefficient == pytest.approx(1.066e-6)
-
-
-def test_a_hip_that_cannot_be_worn_says_why(at_once, nothing_is_known):
-    page = opened(WEAR.replace("cup.inclination=40", "cup.inclination=90"))
-    edits(page, "wear.run", True)
-    assert "dislocated" in told(page, "wear-trouble")
 
 
 @pytest.mark.long

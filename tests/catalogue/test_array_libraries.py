@@ -100,7 +100,11 @@ def test_jax_arrays_stay_in_jax_and_bad_loads_become_a_status_under_jit():
         jax.grad(lambda force: bs.Exact().press(HIP, force=force).max_pressure)(3000.0)
 
 
-def test_joints_and_contacts_are_jax_trees():
+LAYERS = bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
+BACKED = replace(HIP, backing=LAYERS)
+
+
+def test_joints_with_their_layers_and_contacts_are_jax_trees():
     jax = pytest.importorskip("jax")
     import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
 
@@ -116,16 +120,6 @@ def test_joints_and_contacts_are_jax_trees():
             assert float(pressed.max_pressure) == pytest.approx(model.press(HIP, force=3000.0).max_pressure, rel=1e-9)
         many = jax.vmap(lambda force: bs.Bartel().press(HIP, force=force).max_pressure)(jax.numpy.asarray(FORCES[1:]))
         np.testing.assert_allclose(many, bs.Bartel().press(HIP, force=np.array(FORCES[1:])).max_pressure, rtol=1e-12)
-
-
-LAYERS = bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
-BACKED = replace(HIP, backing=LAYERS)
-
-
-def test_a_backed_joint_is_a_jax_tree():
-    jax = pytest.importorskip("jax")
-    import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
-
     behind = (strength for layer in BACKED.backing for strength in layer.material.strengths.values())
     known = [*BACKED.numbers(), *BACKED.strengths(), *behind]
     assert sorted(jax.tree_util.tree_leaves(BACKED)) == sorted(known)
@@ -168,7 +162,7 @@ def test_torch_tensors_preserve_their_dtype(model):
     assert contact.valid.shape == (3,)
 
 
-def test_second_derivative_of_an_inverted_law_equals_differences():
+def test_an_inverted_law_has_its_second_derivative_and_a_massive_socket_a_first_one():
     """d²d/dF² = -S'/S³, through the bracketed inversion of the adhesive socket."""
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
@@ -176,6 +170,8 @@ def test_second_derivative_of_an_inverted_law_equals_differences():
         second = jax.grad(jax.grad(lambda force: model.press(HIP, force=force).indentation))(3000.0)
         above, below = (1 / model.press(HIP, force=force).stiffness for force in (3001.0, 2999.0))
         assert float(second) == pytest.approx((above - below) / 2, rel=1e-5)
+        slope = jax.grad(lambda radius: of_numbers(bs.Vessel(), 3000.0, radius, 0.1, np.inf))(17.9)
+        assert np.isfinite(float(slope))
 
 
 @TRACED
@@ -190,13 +186,6 @@ def test_derivatives_are_finite_beside_a_point_without_load(model):
 
         slope = jax.grad(total) if model.name == "plane-layer" else jax.jit(jax.grad(total))
         assert np.isfinite(float(slope(0.1)))
-
-
-def test_a_massive_socket_has_derivatives():
-    jax = pytest.importorskip("jax")
-    with jax.enable_x64(True):
-        slope = jax.grad(lambda radius: of_numbers(bs.Vessel(), 3000.0, radius, 0.1, np.inf))(17.9)
-        assert np.isfinite(float(slope))
 
 
 def test_contacts_of_plain_numbers_accept_arrays_of_any_library():

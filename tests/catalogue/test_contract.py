@@ -13,14 +13,10 @@ FORCES = np.array([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0])
 
 
 @EVERY
-def test_force_and_indentation_are_inverse(model):
+def test_force_indentation_and_half_angle_are_inverse(model):
     by_force = model.press(HIP, force=FORCES)
     by_indentation = model.press(HIP, indentation=by_force.indentation)
     np.testing.assert_allclose(by_indentation.force, FORCES, rtol=1e-10 if model.name in NUMERICAL else 1e-12)
-
-
-@EVERY
-def test_force_and_half_angle_are_inverse(model):
     angle = np.radians([20.0, 45.0, 70.0])
     contact = model.press(HIP, half_angle=angle)
     if model.name == "cosine-limit":  # every load has the half angle 90 degrees
@@ -60,7 +56,7 @@ def test_pressure_integral_lies_between_force_and_one_and_a_half_times_it(model)
 
 
 @EVERY
-def test_pressure_is_largest_at_the_stated_angle_and_zero_at_the_edge(model):
+def test_pressure_is_largest_at_the_stated_angle_zero_at_the_edge_and_at_a_direction_that_at_its_polar_angle(model):
     contact = model.press(HIP, force=3000.0)
     assert contact.pressure(0.0) == pytest.approx(contact.pole_pressure, rel=1e-12)
     assert contact.pressure(contact.max_pressure_angle) == pytest.approx(contact.max_pressure, rel=1e-12)
@@ -73,10 +69,6 @@ def test_pressure_is_largest_at_the_stated_angle_and_zero_at_the_edge(model):
     if model.name not in {"steuermann", "adhesive"}:
         assert contact.max_pressure_angle == 0.0
         assert np.all(np.diff(profile) < 1e-12)
-
-
-@EVERY
-def test_pressure_at_a_direction_is_that_at_its_polar_angle(model):
     contact = model.press(HIP, force=np.array([300.0, 3000.0]))
     polar, turn = np.array([0.0, 0.2, 0.5, 3.0])[:, None], np.array([[0.3]])
     x, y = np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn)
@@ -94,11 +86,9 @@ def test_pressure_at_a_direction_is_that_at_its_polar_angle(model):
 def test_force_scales_with_squared_length_and_modulus(model):
     """Lengths times a and moduli times b give force times a² b (and a work of adhesion times a b)."""
     a, b = 3.0, 0.2
-    larger = bs.Joint(
-        **{name: a * getattr(HIP, name) for name in ("ball_radius", "clearance", "liner_thickness")},
-        liner=bs.Material(young=b * 1000.0, poisson=0.4),
-        ball=bs.Material(young=b * 230000.0, poisson=0.3),
-    )
+    lengths = {name: a * getattr(HIP, name) for name in ("ball_radius", "clearance", "liner_thickness")}
+    liner, ball = bs.Material(young=b * 1000.0, poisson=0.4), bs.Material(young=b * 230000.0, poisson=0.3)
+    larger = bs.Joint(**lengths, liner=liner, ball=ball)
     scaled = bs.AdhesiveSocket(work_of_adhesion=5e-5 * a * b) if model.name == "adhesive" else model
     one, other = model.press(HIP, force=3000.0), scaled.press(larger, force=3000.0 * a * a * b)
     scales = {"indentation": a, "half_angle": 1.0, "max_pressure": b, "area": a * a, "stiffness": a * b}
@@ -108,12 +98,8 @@ def test_force_scales_with_squared_length_and_modulus(model):
 
 @EVERY
 def test_joints_and_loads_broadcast(model):
-    joint = bs.Joint(
-        ball_radius=np.array([[14.0], [16.0]]),
-        clearance=0.1,
-        liner_thickness=6.0,
-        liner=bs.Material(young=np.array([800.0, 1000.0, 1200.0]), poisson=0.4),
-    )
+    liner = bs.Material(young=np.array([800.0, 1000.0, 1200.0]), poisson=0.4)
+    joint = bs.Joint(ball_radius=np.array([[14.0], [16.0]]), clearance=0.1, liner_thickness=6.0, liner=liner)
     contact = model.press(joint, force=np.array([500.0, 3000.0])[:, None, None])
     for name in ("force", "indentation", "half_angle", "max_pressure", "stiffness", "energy", "valid", "status"):
         assert getattr(contact, name).shape == (2, 2, 3), name

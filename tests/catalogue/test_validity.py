@@ -14,16 +14,13 @@ from ..places import DATA
 CASES = json.loads((DATA / "exact.json").read_text())["cases"]
 
 
-def joint_of(case: dict) -> bs.Joint:
-    lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
-    return bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
-
-
 @pytest.mark.parametrize("model", [model for model in bs.catalogue.values() if model.promise is not None], ids=str)
 def test_valid_results_are_close_to_the_elastic_solution(model):
     for case in CASES:
+        lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
+        joint = bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
         for step in case["steps"]:
-            contact = model.press(joint_of(case), force=step["force"])
+            contact = model.press(joint, force=step["force"])
             if contact.valid:
                 for name in ("max_pressure", "indentation"):
                     assert getattr(contact, name) == pytest.approx(step[name], rel=1.3 * model.promise.within)

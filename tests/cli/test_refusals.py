@@ -91,6 +91,7 @@ deck {hip-36} --tilt 45 --out a => give an indentation
 
 press {hip-36} --tolerance 'clearance=0.1+-0.03 mm' => is for the report: add --report
 press {hip-36} --report hip.doc => must end in .html or .pdf
+press {hip-36} --report hip.html --tolerance clearance=0.2+-0.05 => outside its tolerance of 0.15 to 0.25 mm: change
 press {hip-36} --report hip.html --tolerance 'clearence=0.1+-0.03 mm' => did you mean 'clearance'?
 press {hip-36} --report hip.html --tolerance 'inclination=40+-5 deg' => inclination cannot vary for
 press hip-36 {hip-36} --figure hip.png => --figure shows one joint, got 2

@@ -82,12 +82,9 @@ def test_every_name_of_a_package_is_imported_by_its_first_use(room):
     assert imported == {(module, name) for module, names in room._NAMES_BY_MODULE.items() for name in names.split()}
 
 
-@pytest.mark.parametrize("words", [(), ("-h",)])
-def test_without_a_command_the_help_is_printed(words):
-    assert (run(*words).returncode, run(*words).stdout) == (0, run("--help").stdout)
-
-
-def test_help_lists_press_first_and_all_commands_with_the_first_lines_of_their_docstrings():
+def test_help_is_printed_without_a_command_and_lists_press_first_and_all_with_the_first_lines_of_their_docstrings():
+    for done in (run(), run("-h")):
+        assert (done.returncode, done.stdout) == (0, run("--help").stdout)
     rows = run("--help", columns=80).stdout.partition("Commands:\n")[2]
     listed = dict(re.findall(r"^  ([a-z-]+) +(.*)$", rows, flags=re.MULTILINE))
     first_lines = {name: command.__doc__.partition("\n")[0] for name, command in COMMANDS.items()}

@@ -47,18 +47,6 @@ def assert_reaches(comparator, liner, force, radii, clearances, walls):
     assert reaches["F/(E R1²)"] == pytest.approx([force / (liner.young * radius**2) for radius in (large, small)])
 
 
-def test_similar_joints_have_equal_similarity_numbers_and_half_angles():
-    """Lengths twice as large and moduli three times: the same numbers at twelve times the force."""
-    liner = Material(young=3 * UHMWPE.young, poisson=UHMWPE.poisson)
-    ball = Material(young=3 * COCR.young, poisson=COCR.poisson)
-    small = Joint(ball_radius=14.0, clearance=0.1, liner_thickness=6.0, liner=UHMWPE, ball=COCR)
-    large = Joint(ball_radius=28.0, clearance=0.2, liner_thickness=12.0, liner=liner, ball=ball)
-    numbers, scaled = similarity_ranges([(small, 2000.0)]), similarity_ranges([(large, 24000.0)])
-    assert all(numbers[name] == pytest.approx(scaled[name]) for name in SIMILARITY)
-    half_angle = Exact().press(large, force=24000.0).half_angle
-    assert Exact().press(small, force=2000.0).half_angle == pytest.approx(half_angle)
-
-
 def test_comparators_apply_by_the_range_of_their_joints(published):
     assert applicability(published["durom"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     assert applicability(published["anderson"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
@@ -80,7 +68,7 @@ def test_claims_have_the_similarity_ranges_of_their_joints(name):
     assert applicability(reaches, NEEDED, tilted=False)["verdict"] != "does not apply"
 
 
-def test_similarity_numbers_are_those_of_the_joint():
+def test_similarity_numbers_are_those_of_the_joint_and_similar_joints_have_equal_ones_and_half_angles():
     joint = Joint(ball_radius=20.0, clearance=0.1, liner_thickness=5.0, liner=UHMWPE, ball=COCR)
     soft_ball = joint.replace(ball=Material(young=10 * UHMWPE.young, poisson=0.3))
     numbers = similarity_ranges([(joint, 1000.0)])
@@ -91,6 +79,15 @@ def test_similarity_numbers_are_those_of_the_joint():
     assert similarity_ranges([(joint.replace(ball=None), 1.0)])["E/E of the ball"] == (0.0, 0.0)
     both = similarity_ranges([(joint, 1000.0), (joint, np.array([500.0, np.nan]))])["F/(E R1²)"]
     assert both == pytest.approx((500.0 / (UHMWPE.young * 400.0), 1000.0 / (UHMWPE.young * 400.0)))
+    # lengths twice as large and moduli three times: the same numbers at twelve times the force
+    liner = Material(young=3 * UHMWPE.young, poisson=UHMWPE.poisson)
+    ball = Material(young=3 * COCR.young, poisson=COCR.poisson)
+    small = Joint(ball_radius=14.0, clearance=0.1, liner_thickness=6.0, liner=UHMWPE, ball=COCR)
+    large = Joint(ball_radius=28.0, clearance=0.2, liner_thickness=12.0, liner=liner, ball=ball)
+    numbers, scaled = similarity_ranges([(small, 2000.0)]), similarity_ranges([(large, 24000.0)])
+    assert all(numbers[name] == pytest.approx(scaled[name]) for name in SIMILARITY)
+    half_angle = Exact().press(large, force=24000.0).half_angle
+    assert Exact().press(small, force=2000.0).half_angle == pytest.approx(half_angle)
 
 
 def test_verdict_follows_from_the_overlap_of_ranges():

@@ -29,16 +29,12 @@ def out(pack, tmp_path, monkeypatch):
     return Path(shutil.copytree(pack[2] / "out", tmp_path / "out"))
 
 
-def write_checksums(out):
-    names = [name for name in sorted((PAGE, RECORD, QUESTION)) if (out / name).exists()]
-    (out / SUMS).write_text("".join(f"{sha256((out / name).read_bytes()).hexdigest()}  {name}\n" for name in names))
-
-
 def change_record(out, change, judged_again=False):
     record = json.loads((out / RECORD).read_bytes())
     change(record)
     (out / RECORD).write_text(json.dumps({**record, **assess(record)} if judged_again else record), "utf-8")
-    write_checksums(out)
+    names = sorted((PAGE, RECORD, QUESTION))
+    (out / SUMS).write_text("".join(f"{sha256((out / name).read_bytes()).hexdigest()}  {name}\n" for name in names))
 
 
 def updated(*path, **entries):

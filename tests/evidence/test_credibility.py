@@ -208,9 +208,8 @@ def test_rows_state_gap_and_evidence(record):
     assert {name: table[name]["where"] for name in places} == places
     assert all((row["gap"] == "") == (row["status"] == "met") for row in table.values())
     without = [row for row in table.values() if row["id"].startswith("I") and row["status"] == "not met"]
-    assert [(row["requirement"], row["gap"]) for row in without] == [
-        ("source of the coefficient of friction", "a source in [sources]")
-    ]
+    gap = ("source of the coefficient of friction", "a source in [sources]")
+    assert [(row["requirement"], row["gap"]) for row in without] == [gap]
     record["limits"][1]["verdict"] = "undecided"
     assert rows(record)["L2"]["status"] == "not known"
 

@@ -68,12 +68,9 @@ def test_worst_row_has_the_largest_number_and_the_smallest_edge_distance():
     assert matrix.worst_rows(rows) == {"max_pressure": rows[1], "edge_distance": rows[1]}
 
 
-def test_the_last_axis_varies_fastest(pack):
+def test_the_last_axis_varies_fastest_and_a_case_has_the_numbers_of_a_single_press_in_the_cup(pack):
     cases = list_cases(pack[0])
     assert cases == [{"clearance": c, "force": f} for c in (0.05, 0.15) for f in (2000.0, 4000.0)]
-
-
-def test_numbers_of_a_case_are_those_of_a_single_press_in_the_cup(pack):
     question, record, _ = pack
     assert len(record["matrix"]) == 4
     for entry in record["matrix"]:
@@ -109,13 +106,10 @@ def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
     assert tilted.numbers["friction_torque"] == pytest.approx(aligned, rel=0.15)
 
 
-def test_numbers_are_written_with_five_digits():
+def test_numbers_are_written_with_five_digits_and_limits_and_inputs_in_words():
     texts = {None: "–", "inf": "inf", 12345.678: "12346", 0.123456: "0.12346", 1.5e-7: "1.5e-07"}
     texts |= {123456789.0: "123460000", 1.2e9: "1.2e+09", -2.5e6: "-2500000"}
     assert {value: number(value) for value in texts} == texts
-
-
-def test_limits_and_inputs_are_written_in_words():
     limit = {"name": "max_pressure", "low": 1.0, "high": 15.0}
     assert limit_text(limit) == "largest pressure at least 1 MPa and at most 15 MPa"
     assert input_title("backing[2].young") == "Young's modulus of layer 3 behind the liner"

@@ -188,7 +188,7 @@ def test_a_backing_is_listed_from_the_liner_outwards_and_goes_through_a_summary(
     assert again.summary() | {"backing": layers} == told | {"backing": layers}
 
 
-def test_two_of_three_radii_and_named_materials():
+def test_two_radii_fix_a_third_and_numbers_win_over_a_named_material():
     file = parse_joint(HIP.encode(), "hip")
     assert file.joint.socket_radius == 18.0
     assert (file.joint.liner, file.joint.ball, file.load) == (bs.UHMWPE, None, {})
@@ -196,6 +196,12 @@ def test_two_of_three_radii_and_named_materials():
     assert other.joint.clearance == 0.1
     lengths = 'head_diameter = "35.8 mm"\ndiametral_clearance = "200 um"\nouter_diameter = "4.95 cm"\n'
     assert parse_joint(f"[joint]\n{lengths}[liner]\nmaterial = 'UHMWPE'".encode(), "hip") == file
+    shell = "[[backing]]\nthickness = 3\nmaterial = 'titanium'\n"
+    bone = "[[backing]]\nthickness = inf\nmaterial = 'cortical-bone'"
+    text = HIP.replace('liner_thickness = "6.75 mm"', "outer_diameter = 55.5")
+    assert parse_joint(f"{text}{shell}{bone}".encode(), "hip").joint.liner_thickness == 6.75
+    liner = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip").joint.liner
+    assert (liner.young, liner.poisson) == (1000.0, 0.45)
 
 
 @pytest.mark.parametrize("inclination", ["45", '"45 deg"', '"0.7853981633974483 rad"'])
@@ -205,18 +211,6 @@ def test_a_cup_knows_where_it_faces(inclination):
     assert (found.inclination, found.side) == (pytest.approx(math.pi / 4), bs.Side.LEFT)
     assert (found.arc_of_cover, found.anteversion) == (math.radians(160.0), math.radians(-10.0))
     assert parse_joint(HIP.encode(), "hip").cup == bs.Cup()
-
-
-def test_layers_around_a_liner_end_at_its_shell():
-    shell = "[[backing]]\nthickness = 3\nmaterial = 'titanium'\n"
-    bone = "[[backing]]\nthickness = inf\nmaterial = 'cortical-bone'"
-    text = HIP.replace('liner_thickness = "6.75 mm"', "outer_diameter = 55.5")
-    assert parse_joint(f"{text}{shell}{bone}".encode(), "hip").joint.liner_thickness == 6.75
-
-
-def test_numbers_win_over_the_material():
-    liner = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip").joint.liner
-    assert (liner.young, liner.poisson) == (1000.0, 0.45)
 
 
 NO_ARRAY = r"backing.* must be (an array of tables|a table): \[\[backing\]\]"
@@ -230,25 +224,18 @@ REFUSED_JOINTS = [
     ("[joint]", "[joint]\nball = 'steel'", "'ball' in .joint. is not known; it is a separate table, .ball.$"),
     ("[joint]", "[joint]\nthickness = 3", r"'thickness' in .joint. is not known; it belongs in \[shell\] or \[\["),
     ("ball_radius = 17.9", "head_diameter = 0", r"head_diameter = 0 is not allowed: a diameter \(mm\) is above 0"),
-    ("ball_radius = 17.9", "ball_radius = 17.9\nhead_diameter = 36", "ball_radius and head_diameter are one too"),
     ('"6.75 mm"', '6\nouter_diameter = "48 mm"', "outer_diameter and liner_thickness are one too many"),
     ('"6.75 mm"', '6\ndiametral_clearance = "0.2 mm"', "clearance and diametral_clearance are one too many"),
-    ('liner_thickness = "6.75 mm"', 'outer_diameter = "3 cm"', "outer_diameter = '3 cm' is not .* leave a liner"),
-    ("UHMWPE", "UHMPE", "liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
     ('material = "UHMWPE"', "young = 1000", "the liner needs a material, .* missing: poisson"),
-    ('"100 um"', '"-100 um"', "clearance = '-100 um' is not allowed: a radial clearance"),
     ('material = "UHMWPE"', "young = '-1 GPa'\npoisson = 0.3", "liner.young = '-1 GPa' is not allowed"),
     ("[joint]", "[load]\nhalf_angle = 95\n[joint]", "half_angle = 95 is not allowed: .* .deg. .* below 90$"),
-    ("[joint]", "[load]\nforce = '-3 kN'\n[joint]", "force = '-3 kN' is not allowed: a force .N. is 0 or"),
     ('clearance = "100 um"', "socket_radius = 17", "clearance = -0.9 is not allowed"),
     ('"6.75 mm"', '"6.75 s"', "liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
     ("ball_radius = 17.9", "", "two of ball_radius, socket_radius, clearance are needed, got clearance"),
     ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "any two of them fix the third"),
-    ('liner_thickness = "6.75 mm"', "", "liner_thickness is missing"),
     ("[liner]", "[liner", "is not TOML"),
     ("[joint]", "load = 3\n[joint]", "load = 3 must be a table"),
     ("[joint]", "name = 3\n[joint]", "name = 3 must be text"),
-    ("[joint]", "[load]\nforce = 1\nindentation = 2\n[joint]", "one load is needed, got force, indentation"),
     ("[joint]", "[cup]\ninclination = 95\n[joint]", "inclination = 95 is not allowed: an inclination is 0 to 90 deg"),
     ("[joint]", "[cup]\nanteversion = '3 mm'\n[joint]", "anteversion = '3 mm' is not an angle"),
     ("[joint]", "[cup]\nside = 'port'\n[joint]", "side = 'port' is not allowed: 'right' or 'left'"),
@@ -325,7 +312,7 @@ fatigue_limit = "0.4 GPa"
 """
 
 
-def test_strengths_are_read_with_units_and_written_again():
+def test_strengths_are_read_with_units_and_written_again_and_so_is_one_that_is_not_known():
     pytest.importorskip("tomli_w")
     file = parse_joint(STRONG.encode(), "file")
     liner, ball = file.joint.liner, file.joint.ball
@@ -335,9 +322,6 @@ def test_strengths_are_read_with_units_and_written_again():
     assert (again.liner.strengths, again.ball) == (liner.strengths, ball)
     with pytest.raises(ValueError, match="liner.yield_stress = '0 MPa' is not allowed: a yield stress"):
         parse_joint(STRONG.replace("23 MPa", "0 MPa").encode(), "file")
-
-
-def test_a_preset_whose_yield_stress_is_not_known_is_written_by_its_numbers():
     bare = replace(bs.joints["hip-28"], liner=replace(bs.UHMWPE, yield_stress=None))
     again = joint_of(tables_of(JointFile(bare, {}))).joint
     assert again.liner.yield_stress is None

@@ -34,10 +34,9 @@ def two_sided(triangles):
     return np.concatenate([bore, pole, 1.01 * bore[:, ::-1]])
 
 
-RAISED = scans.liner(steps=24, segments=48)
 UPWARDS = np.array([0.0, 0.0, 1.0])
 MOVED = scans.rotated(pitch=50.0, roll=-20.0, yaw=70.0)
-LIPPED = scans.scattered(scans.locked(scans.lipped(RAISED)), 0.01)
+LIPPED = scans.scattered(scans.locked(scans.lipped(PLAIN)), 0.01)
 LINERS = {
     "plain": (PLAIN, 170.0, 8.0),
     "twelve facets": (scans.liner(steps=8, segments=16), 170.0, 8.0),
@@ -71,7 +70,7 @@ def test_a_liner_is_measured_within_its_tolerances(triangles, arc_of_cover, wall
     some([(20.0, -4.0, True, True), (15.0, 0.0, True, True), (10.0, 0.0, False, False)], 1),
 )
 def test_a_lip_moves_neither_axis_nor_arc_however_the_file_is_turned(lip, offset, outer, ring):
-    triangles = scans.lipped(RAISED, lip, offset, outer=outer)
+    triangles = scans.lipped(PLAIN, lip, offset, outer=outer)
     triangles = scans.locked(triangles) if ring else triangles
     plain, turned = (fit_liner(Mesh(corners)) for corners in (triangles, triangles @ MOVED.T + SHIFT))
     assert angle(plain.axis, UPWARDS) < 0.002
@@ -83,7 +82,7 @@ def test_a_lip_moves_neither_axis_nor_arc_however_the_file_is_turned(lip, offset
 
 
 def test_two_planes_between_which_nothing_decides_are_called_ambiguous():
-    fit = fit_liner(Mesh(scans.lipped(RAISED)))  # a concentric sphere, cut like the bore
+    fit = fit_liner(Mesh(scans.lipped(PLAIN)))  # a concentric sphere, cut like the bore
     assert fit.ambiguous
     assert min(angle(plane.normal, UPWARDS) for plane in fit.rim) < 0.01
 
@@ -144,10 +143,8 @@ def test_obj_and_ply_files_hold_the_same_triangles(tmp_path):
     meshio = pytest.importorskip("meshio")
     corners, index = np.unique(SMALL.reshape(-1, 3).round(9), axis=0, return_inverse=True)
     mesh = meshio.Mesh(corners, [("triangle", index.reshape(-1, 3).astype(np.int32))])
-    for path, options in (
-        (tmp_path / "a.obj", {}),
-        *((tmp_path / "a.ply", {"binary": flag}) for flag in (False, True)),
-    ):
+    for name, options in (("a.obj", {}), ("a.ply", {"binary": False}), ("a.ply", {"binary": True})):
+        path = tmp_path / name
         meshio.write(path, mesh, **options)
         content = path.read_bytes().replace(b"vertex_indices", b"vertex_index")  # both names are usual
         path.write_bytes(b"vn 0 0 1\nvt 0 0\n" * (path.suffix == ".obj") + content)  # fewer than the points
@@ -167,11 +164,7 @@ PLY = (
         ("a.stl", b"ply\nformat ascii 1.0\n", "a.stl is a PLY file: name it with the suffix .ply"),
         ("a.obj", b"v 1 2 3\nv 4 5 6\nv 7 8 0\nf -3 -2 -1\n", "a face names point -3, and the file has 3 points"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "the file is incomplete"),
-        (
-            "a.ply",
-            PLY.replace(b"face 1", b"face 0") + b"1 2 3\n",
-            "a.ply is incomplete: its header states 3 points, and it has 1",
-        ),
+        ("a.ply", PLY.replace(b"face 1", b"face 0") + b"1 2 3\n", "a.ply is incomplete: .* 3 points, and it has 1"),
         ("a.ply", PLY + b"1 2 3\n4 5 6\n7 8 0\n3 0 1 3\n", "a face names point 3, .*: count them from 0"),
     ],
 )

@@ -73,11 +73,18 @@ def test_pelvic_tilt_to_the_front_reduces_the_operative_anteversion_by_its_own_s
     assert angles(found.cup(upright=False)) == pytest.approx((45.0, 15.0), abs=1e-9)
 
 
-def test_a_symphysis_beside_the_middle_leaves_the_pelvic_plane():
+def test_a_symphysis_beside_the_middle_leaves_the_pelvic_plane_and_tubercles_of_any_spelling_replace_it():
     names, points = scans.pelvis(turn=scans.rotated(roll=6.0, yaw=-9.0))
     middle = oriented(names, points).frame.axes
     points[names.index("pubic symphysis")] += 3.0 * middle[0]
     np.testing.assert_allclose(oriented(names, points).frame.axes, middle, atol=1e-9)
+    names = ["RASIS", "ASIS_L", "R pubic tubercle", "tubercle left", *(f"Cup Rim {k}" for k in range(8))]
+    tubercles = POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 0]]
+    found = oriented(names, np.concatenate([POINTS[:2], tubercles, POINTS[3:]]))
+    assert angles(found.cup()) == pytest.approx((42.0, 17.0), abs=1e-9)
+    assert found.frame.tubercle_offset == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(ValueError, match="the right pubic tubercle lies to the left of the left one"):
+        oriented(names, np.concatenate([POINTS[:2], tubercles[::-1], POINTS[3:]]))
 
 
 def test_pelvic_obliquity_adds_to_the_inclination_of_the_higher_side():
@@ -96,16 +103,6 @@ def test_scatter_of_rim_points_gives_the_error_of_the_angles():
     assert stated == pytest.approx(1.8 / 1.4, rel=0.4)
     assert scatter == pytest.approx([stated, stated], rel=0.35)
     assert make_plan(frame=results[0].frame).notes[0].startswith("the orientation of the cup is not known")
-
-
-def test_tubercles_replace_the_symphysis_and_names_are_read_freely():
-    names = ["RASIS", "ASIS_L", "R pubic tubercle", "tubercle left", *(f"Cup Rim {k}" for k in range(8))]
-    tubercles = POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 0]]
-    found = oriented(names, np.concatenate([POINTS[:2], tubercles, POINTS[3:]]))
-    assert angles(found.cup()) == pytest.approx((42.0, 17.0), abs=1e-9)
-    assert found.frame.tubercle_offset == pytest.approx(0.0, abs=1e-9)
-    with pytest.raises(ValueError, match="the right pubic tubercle lies to the left of the left one"):
-        oriented(names, np.concatenate([POINTS[:2], tubercles[::-1], POINTS[3:]]))
 
 
 def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):

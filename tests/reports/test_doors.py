@@ -43,17 +43,9 @@ from ..places import EXAMPLES
 
 WIDE = 2000
 METRIC = re.compile(r"\d (?:mm|mm³|µm|nm|MPa|kN|N|N m)(?![\w/(])")
-SYMBOLS = {
-    "mm²": "mm**2",
-    "mm³": "mm**3",
-    "in²": "in**2",
-    "in³": "in**3",
-    "°": "deg",
-    "µin": "microinch",
-    "mil": "thou",
-}
+SYMBOLS = {"mm²": "mm**2", "mm³": "mm**3", "in²": "in**2", "in³": "in**3", "°": "deg", "µin": "microinch"}
 SYMBOLS |= {"million": "1", "": "1", "%": "1", "N m": "N*m", "lbf in": "lbf*in", "mm³/(N m)": "mm**3/(N*m)"}
-SYMBOLS |= {"mm MPa": "mm*MPa", "in psi": "in*psi"}
+SYMBOLS |= {"mm MPa": "mm*MPa", "in psi": "in*psi", "mil": "thou"}
 COUNTS = {"million": 1e-6, "%": 100.0}
 
 
@@ -65,9 +57,7 @@ def history():
 ANSWERS = {
     "wear of a hip": lambda: describe_history(history()),
     "bands of patients": lambda: describe_bands(bands()),
-    "hips side by side": lambda: describe_hips(
-        [HipRun(name="new", history=history()), HipRun(name="b", history=history())]
-    ),
+    "hips side by side": lambda: describe_hips([HipRun(name=name, history=history()) for name in ("new", "b")]),
 }
 """Descriptions of cheap results of every kind."""
 
@@ -113,11 +103,8 @@ def identified(*quantities):
     """Identify clearance and modulus from exact readings of the closed form."""
     model, joint, force = bs.HessForsbach(), bs.joints["hip-28"], np.array([500.0, 1000.0, 2000.0, 3000.0])
     contact = model.press(joint, force=force)
-    data = [
-        Measured(quantity=name, values=values, uncertainty=0.02 * values, force=force)
-        for name in quantities
-        for values in [getattr(contact, name)]
-    ]
+    read = {name: getattr(contact, name) for name in quantities}
+    data = [Measured(quantity=name, values=one, uncertainty=0.02 * one, force=force) for name, one in read.items()]
     return bs.identify(model, joint, data, {"clearance": (0.05, 0.2), "liner_young": (500.0, 2000.0)})
 
 
@@ -154,10 +141,8 @@ ANSWERS |= {
 
 
 def orientations():
-    sphere, angles = (
-        bs.Sphere(ring_width=np.radians(6.0)),
-        {"inclination": np.radians([30, 45, 60]), "anteversion": [0.3]},
-    )
+    sphere = bs.Sphere(ring_width=np.radians(6.0))
+    angles = {"inclination": np.radians([30, 45, 60]), "anteversion": [0.3]}
     return bs.orient(bs.joints["hip-36"], model=sphere, force=3000.0, **angles)
 
 
@@ -188,13 +173,9 @@ def split(unit):
     return [unit] if unit in SYMBOLS else unit.split("/")
 
 
-def numbers_in(line):
-    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])", line)]
-
-
 def contains(line, expected):
     """Check that a line has the expected numbers, in their order, to the digits that are printed."""
-    found = iter(numbers_in(line))
+    found = map(float, re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])", line))
     return all(any(number == approx for number in found) for approx in expected)
 
 

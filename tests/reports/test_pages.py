@@ -34,11 +34,8 @@ def test_texts_are_escaped(html):
     assert "<script" not in html
 
 
-def test_html_of_a_section_is_not_escaped_again():
+def test_html_of_a_section_is_not_escaped_again_and_a_missing_value_is_an_error():
     assert "<p>5 &lt; 6</p>" in pages.render_page("page.html", "title", {"one": ("One", "<p>5 &lt; 6</p>")})
-
-
-def test_a_missing_value_is_an_error():
     with pytest.raises(UndefinedError):
         pages.render_page("joint_report.html", "title", {"origin": ("Origin", "")})
     with pytest.raises(UndefinedError, match="unknown"):

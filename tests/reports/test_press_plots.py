@@ -82,15 +82,12 @@ def motion():
     return simulate(element, mass=1.0, duration=3e-3, step=2e-5, **throw)
 
 
-def test_the_parts_of_the_energy_reach_what_was_put_in(motion):
+def test_a_motion_has_its_energy_its_way_near_the_clearance_and_the_force_of_the_element(motion):
     (axes,) = energy_balance(motion).axes
     top = axes.collections[-1].get_paths()[0].vertices
     (line,) = axes.lines
     assert top[:, 1].max() == pytest.approx(line.get_ydata().max(), rel=1e-9)
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["moving", "stored", "lost", "put in"]
-
-
-def test_the_way_stays_near_its_clearance_and_the_force_is_that_of_the_element(motion):
     way, force = motion_figure(motion).axes
     np.testing.assert_array_equal(way.lines[1].get_xydata(), motion.position[:, [0, 2]])
     assert np.hypot(*way.lines[0].get_xydata().T) == pytest.approx(HIP.clearance)
@@ -303,7 +300,7 @@ RECORD = {
 }
 
 
-def test_the_matrix_marks_the_worst_cell_and_what_is_beyond_a_limit():
+def test_the_matrix_of_any_number_marks_the_worst_cell_a_missing_one_and_what_is_beyond_a_limit():
     axes = figures.matrix_figure(RECORD).axes[0]
     pressures = [row["numbers"]["max_pressure"] for row in ROWS]
     assert sorted(map(float, texts(axes))) == pytest.approx(sorted(pressures), abs=0.05)
@@ -314,9 +311,6 @@ def test_the_matrix_marks_the_worst_cell_and_what_is_beyond_a_limit():
     assert len(crosses) == sum(pressure > 15 for pressure in pressures)
     assert axes.get_ylabel() == "head diameter [mm]"
     assert axes.get_xlabel() == "radial clearance [mm] | normal force [N]"
-
-
-def test_a_matrix_without_a_result_in_a_case_and_of_any_number_is_drawn():
     gone = {**ROWS[0], "numbers": {**ROWS[0]["numbers"], "max_pressure": None}}
     axes = figures.matrix_figure({**RECORD, "matrix": [gone, *ROWS[1:]]}).axes[0]
     assert np.isnan(axes.images[0].get_array().filled(np.nan)).sum() == 1

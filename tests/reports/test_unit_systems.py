@@ -34,15 +34,12 @@ def test_numbers_with_units_in_a_sentence_are_converted(metric, imperial):
     assert Units.SI.sentence(metric) == metric
 
 
-def test_the_name_of_a_joint_stays():
+def test_the_name_of_a_joint_stays_and_so_do_sources_of_presets():
     joint = bs.joints["hip-36"].replace(name="36 mm, 3 kN")
     assert Units.IMPERIAL.sentence(str(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
     assert Units.IMPERIAL.sentence(Sentence(str(joint))) == Units.IMPERIAL.sentence(str(joint))
     title = describe_calibration(bs.calibrate(joint)).title
     assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(str(joint))
-
-
-def test_sources_of_presets_stay_as_published():
     text = " ".join(printed("presets", "bone-cement", "--units", "imperial").split())
     assert "representative of PMMA, 2-2.5 GPa" in text
     assert "MPa" not in text
@@ -68,9 +65,8 @@ def test_a_map_says_what_it_shows_and_names_its_limits():
     figure = study_plots.design_map(space, limits, best={"ball_radius": 19.6, "liner_thickness": 6.3})
     titles = ["largest pressure pmax [MPa]", "contact area A [mm²]", "half angle ε [°]"]
     assert [axes.get_title() for axes in figure.axes] == titles
-    assert (
-        figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; radial clearance = 0.1 mm; model hess-forsbach"
-    )
+    title = "hess-forsbach; normal force = 3000 N; radial clearance = 0.1 mm; model hess-forsbach"
+    assert figure.get_suptitle() == title
     shown = {text.get_text() for text in figure.axes[0].texts}
     assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= shown
     (alone,) = study_plots.design_map(space, limits, ["max_pressure"]).axes

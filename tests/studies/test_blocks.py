@@ -90,7 +90,7 @@ def test_sobol_samples_and_small_hypercubes_are_those_of_scipy(method, scipy, co
         np.testing.assert_array_equal(values[name], distribution.frozen.ppf(column))
 
 
-def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
+def test_a_permutation_has_each_number_once_and_large_hypercubes_one_sample_in_each_stratum(small_chunks):
     count = 5003
     chunks = [sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 1, number) for number in range(-(-count // 64))]
     points = np.concatenate(chunks, axis=1)
@@ -100,9 +100,6 @@ def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
     assert np.mean(points * count % 1.0) == pytest.approx(0.5, abs=0.02)
     other = sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
     assert not np.isclose(other, chunks[0]).any()
-
-
-def test_a_permutation_has_each_number_once():
     keys = np.random.SeedSequence(0).generate_state(8, np.uint64)
     for count in (1, 2, 65, 1000):
         assert sorted(permute(np.arange(count, dtype=np.uint64), count, keys).tolist()) == list(range(count))

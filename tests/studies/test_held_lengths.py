@@ -57,9 +57,8 @@ def test_the_best_head_and_its_scatter_hold_the_outside():
     best = optimise(bs.Exact(), CUP, {}, choices={"head_diameter": HEADS}, load={"force": 3000.0})
     assert best.point == {"head_diameter": 32.0}
     assert (best.joint.outer_diameter, best.held["outer_diameter"]) == pytest.approx((52.0, 52.0))
-    spread = sensitivity(
-        bs.HessForsbach(), CUP, {"head_diameter": Rectangular(low=27.9, high=28.1)}, load={"force": 3000.0}, count=8
-    )
+    heads = {"head_diameter": Rectangular(low=27.9, high=28.1)}
+    spread = sensitivity(bs.HessForsbach(), CUP, heads, load={"force": 3000.0}, count=8)
     thicker, thinner = (bs.HessForsbach().press(CUP.replace(head_diameter=d), force=3e3) for d in (27.9, 28.1))
     slope = np.log(thinner.max_pressure / thicker.max_pressure) / np.log(28.1 / 27.9)
     assert spread.elasticity.sel(quantity="max_pressure").item() == pytest.approx(slope, rel=1e-3)
@@ -68,13 +67,9 @@ def test_the_best_head_and_its_scatter_hold_the_outside():
 
 def test_a_thicker_shell_takes_from_the_liner_of_one_outside():
     found = bs.study(bs.Exact(), CUP, shell_thickness=[2.0, 4.0, 5.0], force=3000.0)
-    shells = [(bs.Layer(thickness=thickness, material=bs.TITANIUM),) for thickness in (2.0, 4.0, 5.0)]
-    by_hand = [
-        bs.Joint(
-            ball_radius=14.0, clearance=0.1, liner_thickness=11.9 - shell.thickness, liner=bs.UHMWPE, backing=(shell,)
-        )
-        for (shell,) in shells
-    ]
+    shells = [bs.Layer(thickness=thickness, material=bs.TITANIUM) for thickness in (2.0, 4.0, 5.0)]
+    inner = {"ball_radius": 14.0, "clearance": 0.1, "liner": bs.UHMWPE}
+    by_hand = [bs.Joint(**inner, liner_thickness=11.9 - shell.thickness, backing=(shell,)) for shell in shells]
     np.testing.assert_allclose(found.max_pressure, pressures(bs.Exact(), by_hand), rtol=1e-9)
     np.testing.assert_allclose(joint_dimension(found, "liner_thickness"), [9.9, 7.9, 6.9])
     with pytest.raises(ValueError, match="the joint has no shell"):
@@ -145,11 +140,8 @@ def test_maps_off_the_axis_press_along_the_direction_of_the_joint_file(tmp_path)
     (tmp_path / "cup.toml").write_text(TILTED, encoding="utf-8")
     ranges = ("--x=clearance=0.2..0.3", "--y=force=1..3 kN", "--points=2", "--limit=edge_distance>=1 mm")
     mapped = answer("map", "cup.toml", "--model=sphere", *ranges, folder=tmp_path)
-    contacts = bs.Sphere().press(
-        UNBACKED.replace(clearance=np.array([[0.2], [0.3]]), head_diameter=28.0),
-        force=np.array([1e3, 3e3]),
-        tilt=np.radians(50.0),
-    )
+    joint = UNBACKED.replace(clearance=np.array([[0.2], [0.3]]), head_diameter=28.0)
+    contacts = bs.Sphere().press(joint, force=np.array([1e3, 3e3]), tilt=np.radians(50.0))
     assert mapped["verdicts"]["kept"] == (contacts.edge_distance > 1.0).sum() == 2
 
 

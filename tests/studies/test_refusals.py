@@ -47,10 +47,7 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: press(clearence=[0.1], force=1.0), "did you mean 'clearance'"),
         (lambda: press(force=1.0, indentation=0.1), "one load is needed, got force, indentation"),
         (lambda: press(ball_radius=1.0, socket_radius=2.0, clearance=1.0, force=1.0), "any two of them fix the third"),
-        (
-            lambda: press(ball_radius=9, clearance=1, outer_radius=20.0, liner_thickness=2.0, force=1.0),
-            "either fixes the",
-        ),
+        (lambda: press(ball_radius=9, clearance=1, outer_radius=20, liner_thickness=2, force=1), "either fixes the"),
         (lambda: press(outer_radius=20.0, force=1.0), "add the one that stays, ball_radius = .* or liner_thickness = "),
         (lambda: press(head_diameter=[30.0], ball_radius=[15.0], force=1.0), "head_diameter.* ball_radius|ball_radius"),
         (lambda: press(clearance=[], force=1.0), "clearance has no values"),

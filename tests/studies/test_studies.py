@@ -4,6 +4,7 @@ import csv
 import json
 from dataclasses import replace
 from importlib import import_module
+from itertools import product
 from subprocess import DEVNULL
 
 import numpy as np
@@ -62,7 +63,7 @@ def test_labels_state_units_and_sources():
     assert found.status.attrs["flag_meanings"].split()[:2] == ["not_computed", "ok"]
 
 
-def test_derived_parameters_make_the_joint_they_say():
+def test_radii_and_diameters_that_follow_from_others_make_the_joint_they_say():
     found = bs.study(bs.HessForsbach(), HIP, outer_radius=26.0, socket_radius=[15.0, 20.0], clearance=0.2, force=2000.0)
     radii = np.array([15.0, 20.0])
     joint = HIP.replace(ball_radius=radii - 0.2, clearance=0.2, liner_thickness=26.0 - radii)
@@ -72,31 +73,28 @@ def test_derived_parameters_make_the_joint_they_say():
     np.testing.assert_allclose(Limit(name="liner_thickness").bar(found).value, 26.0 - 18.0 - 3.0)
     made = bs.Exact().press(backed.replace(liner_thickness=5.0), force=2000.0)
     assert found.max_pressure.item() == pytest.approx(made.max_pressure, rel=1e-9)
-
-
-def test_equal_radii_are_a_joint_without_clearance():
     joint, possible = vary_joint(HIP, {"socket_radius": np.array([18.0, 17.9, 18.1]), "ball_radius": 18.0})
     assert joint.clearance.tolist() == pytest.approx([0.0, 0.0, 0.1])
     assert joint.clearance[0] == 0.0
     assert possible.tolist() == [True, False, True]
+    diameters = {"head_diameter": [30.0, 36.0], "diametral_clearance": 0.2, "outer_diameter": 52.0}
+    found = bs.study(bs.HessForsbach(), HIP, **diameters, force=2000.0)
+    radii = {"ball_radius": [15.0, 18.0], "clearance": 0.1, "outer_radius": 26.0}
+    by_radii = bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0)
+    np.testing.assert_array_equal(found.max_pressure, by_radii.max_pressure)
+    for name, limit in radii.items():
+        np.testing.assert_allclose(Limit(name=name).bar(found).value, limit, rtol=1e-12)
 
 
 def test_a_material_keeps_its_strength_while_its_elastic_constants_vary():
     hip = bs.joints["hip-28"]
-    found = bs.study(
-        bs.Exact(),
-        hip,
-        quantities=["utilisation"],
-        force=3000.0,
-        liner_young=[1000.0, 700.0],
-        liner_poisson=[0.4, 0.45],
-    )
-    for young in (1000.0, 700.0):
-        for poisson in (0.4, 0.45):
-            liner = replace(bs.UHMWPE, young=young, poisson=poisson)
-            expected = bs.Exact().press(hip.replace(liner=liner), force=3000.0).utilisation
-            got = found.utilisation.sel(liner_young=young, liner_poisson=poisson).item()
-            assert got == pytest.approx(expected, rel=1e-9)
+    axes = {"liner_young": [1000.0, 700.0], "liner_poisson": [0.4, 0.45]}
+    found = bs.study(bs.Exact(), hip, quantities=["utilisation"], force=3000.0, **axes)
+    for young, poisson in product(*axes.values()):
+        liner = replace(bs.UHMWPE, young=young, poisson=poisson)
+        expected = bs.Exact().press(hip.replace(liner=liner), force=3000.0).utilisation
+        got = found.utilisation.sel(liner_young=young, liner_poisson=poisson).item()
+        assert got == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("ball", [bs.COCR, None])
@@ -117,12 +115,10 @@ def test_a_material_without_a_yield_stress_leaves_the_utilisation_of_the_others(
 
 def test_each_point_that_is_not_valid_has_its_reason(tmp_path):
     hip = bs.joints["hip-28"].replace(liner=bs.Material(young=1000.0, poisson=0.4))
-    found = bs.study(
-        bs.Hertz(), hip, quantities=["max_pressure", "utilisation"], clearance=[0.01, 3.0], force=[1.0, 3000.0]
-    )
+    asked = {"quantities": ["max_pressure", "utilisation"], "clearance": [0.01, 3.0], "force": [1.0, 3000.0]}
+    found = bs.study(bs.Hertz(), hip, **asked)
     export(found, tmp_path / "hertz.csv")
-    with (tmp_path / "hertz.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(tmp_path / "hertz.csv")
     joints = [hip.replace(clearance=float(row["clearance_mm"])) for row in rows]
     pressed = [bs.Hertz().press(joint, force=float(row["force_N"])) for joint, row in zip(joints, rows, strict=True)]
     for row, contact in zip(rows, pressed, strict=True):
@@ -133,16 +129,6 @@ def test_each_point_that_is_not_valid_has_its_reason(tmp_path):
     assert sum(int(note.split(" of ")[0]) for note in notes if " of 4: " in note) == len(reasons)
     assert all(any(reason in note for note in notes) for reason in reasons)
     assert any(note.startswith("utilisation: ") and "no yield stress" in note for note in notes)
-
-
-def test_diameters_are_axes():
-    diameters = {"head_diameter": [30.0, 36.0], "diametral_clearance": 0.2, "outer_diameter": 52.0}
-    found = bs.study(bs.HessForsbach(), HIP, **diameters, force=2000.0)
-    radii = {"ball_radius": [15.0, 18.0], "clearance": 0.1, "outer_radius": 26.0}
-    by_radii = bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0)
-    np.testing.assert_array_equal(found.max_pressure, by_radii.max_pressure)
-    for name, limit in radii.items():
-        np.testing.assert_allclose(Limit(name=name).bar(found).value, limit, rtol=1e-12)
 
 
 def rows_of(path):
@@ -256,9 +242,7 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
     monkeypatch.setattr("ballsocket.core.executors.processes.available_memory", lambda: 10**6)
-    with pytest.raises(
-        ValueError, match=r"1000000 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"
-    ):
+    with pytest.raises(ValueError, match="1000000 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"):
         table(tmp_path / "rows.parquet")
     with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):
         table(tmp_path / "rows.csv")
