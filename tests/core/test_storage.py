@@ -205,7 +205,7 @@ def test_the_cache_folder_follows_the_environment(monkeypatch):
     assert atomic_files.cache_folder() == Path("/home/me/.cache/ballsocket")
 
 
-def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
+def test_the_fingerprint_is_the_version_and_a_digest_of_the_package_and_another_one_is_refused():
     package = Path(bs.__file__).parent
     digest = sha256()
     for path in sorted(package.rglob("*")):
@@ -213,9 +213,6 @@ def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
             digest.update(path.relative_to(package).as_posix().encode())
             digest.update(path.read_bytes())
     assert fingerprint() == f"{bs.__version__}+{digest.hexdigest()[:8]}"
-
-
-def test_a_worker_of_another_version_is_refused():
     check_worker_code(fingerprint())
     with pytest.raises(ValueError, match="this worker has ballsocket .*, but the run was started by 0.9[+]old"):
         check_worker_code("0.9+old")
