@@ -27,7 +27,7 @@ def variability(use=None, **distributions):
     return PatientVariability(use=use or hip(**QUICK), distributions=distributions)
 
 
-def test_a_patient_has_the_values_of_its_sample():
+def test_a_patient_has_the_values_of_its_sample_and_nominal_ones_of_what_is_not_sampled():
     angle = Normal(mean=0.5, deviation=0.1)
     spread = {"body_weight": WEIGHT, "clearance": TIGHT, "cycles_per_year": LogNormal(median=1e6, factor=2.0)}
     spread |= {"inclination": angle, "anteversion": angle}
@@ -41,9 +41,6 @@ def test_a_patient_has_the_values_of_its_sample():
     assert patient.cycle_ratio == 2.0
     assert patient.use.seconds == 10.0  # the same time with twice as many cycles
     assert patient.simulate([FEW_CYCLES])[0].cycles == 2 * FEW_CYCLES
-
-
-def test_a_patient_has_the_nominal_values_of_what_is_not_sampled():
     one = variability(body_weight=WEIGHT, clearance=TIGHT, coefficient=COEFFICIENT)
     patient, nominal = one.patient({}), one.coarse_simulation
     assert patient.cycle_ratio == 1.0
@@ -100,7 +97,7 @@ def test_the_coarse_hip_can_be_pickled_and_wears_as_the_full_one(cycle):
     assert 1e6 / FEW_CYCLES * volume == pytest.approx(use.first.volume, rel=2e-2)
 
 
-def test_results_are_those_of_the_reports():
+def test_results_are_those_of_the_reports_whose_contacts_balance_their_loads(monkeypatch):
     use = replace(hip(creep=logarithmic(), **QUICK), joint=replace(hip().joint, liner=bs.UHMWPE))
     patient = variability(use, clearance=TIGHT).patient({"clearance": 0.1})
     reports = patient.simulate([FEW_CYCLES, 1e4])
@@ -118,9 +115,6 @@ def test_results_are_those_of_the_reports():
     assert (contact[:, 1] == 1).all()
     unloaded = replace(reports[0], edge_distance=np.array([]))
     assert result_table([unloaded])[0, RESULT_COLUMNS["edge_distance"]] == inf
-
-
-def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
     patient = variability(clearance=TIGHT).patient({})
     report = replace(patient.simulate([FEW_CYCLES])[0], converged=False)
     monkeypatch.setattr("ballsocket.hip.variability.make_report", lambda run: report)
