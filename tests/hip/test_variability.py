@@ -67,7 +67,7 @@ def test_cycles_per_year_are_the_median_or_those_of_a_mix():
     assert mixed.patient({"cycles_per_year": 2.2e6}).cycle_ratio == pytest.approx(2.0)
 
 
-def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
+def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants_or_rings_of_full_elasticity():
     fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).coarse_simulation
     assert isinstance(fine.surface, bs.Springs)
     assert (fine.ring_width, fine.cycle.n_steps) == (radians(8.0), 32)
@@ -75,6 +75,14 @@ def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
     same = variability(coarse, clearance=TIGHT).coarse_simulation
     assert (same.ring_width, same.cycle.n_steps) == (radians(9.0), 16)
     assert same.surface is coarse.surface
+    wide = variability(hip(ring_width=radians(10.0)), clearance=TIGHT)
+    shell = replace(wide, surface=bs.ClosedShell())
+    assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
+    assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
+    assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
+    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
+    assert checked.unworn_checks[0].valid
+    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))
 
 
 @pytest.mark.parametrize("cycle", [iso_14242_1(40), iso_14242_4(), rocking()], ids=lambda cycle: cycle.name)
@@ -133,14 +141,3 @@ def test_patients_with_the_real_cup_share_its_compliance_and_wear_as_on_springs(
         assert 0 < abs(elastic.volume / springs.volume - 1) < 0.01
         assert elastic.depth == pytest.approx(springs.depth, rel=0.03)
         assert elastic.max_pressure == pytest.approx(springs.max_pressure, rel=0.03)
-
-
-def test_patients_with_full_elasticity_have_rings_that_its_model_allows():
-    wide = variability(hip(ring_width=radians(10.0)), clearance=TIGHT)
-    shell = replace(wide, surface=bs.ClosedShell())
-    assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
-    assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
-    assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
-    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
-    assert checked.unworn_checks[0].valid
-    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))
