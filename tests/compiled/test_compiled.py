@@ -34,12 +34,17 @@ def test_compiled_and_python_models_agree_on_random_joints(model):
     assert_same(Compiled(model=model).press(joint, force=force), model.press(joint, force=force))
 
 
-def test_compiled_presses_accept_shapes_numbers_and_strides():
+def test_compiled_presses_accept_shapes_numbers_strides_and_arrays_of_strengths():
     fast, model = Compiled(model=bs.HessForsbach()), bs.HessForsbach()
     force = np.linspace(0.0, 4000.0, 24).reshape(4, 6)
     column = HIP.replace(ball_radius=np.array([[14.0], [16.0]]))
     for joint, load in ((HIP, force), (HIP, force[::2, ::-1].T), (column, force[:, 0])):
         assert_same(fast.press(joint, force=load), model.press(joint, force=load))
+    joint = HIP.replace(liner=bs.Material(young=800.0, poisson=0.45, yield_stress=np.array([[15.0], [20.0]])))
+    force = np.array([500.0, 1000.0, 2000.0])
+    one, other = (model.press(joint, force=force) for model in (Compiled(model=bs.HessForsbach()), bs.HessForsbach()))
+    assert one.utilisation.shape == one.force.shape == (2, 3)
+    np.testing.assert_allclose(one.utilisation, other.utilisation, rtol=1e-12)
 
 
 def test_loads_that_are_not_compiled_use_the_python_model():
@@ -166,14 +171,11 @@ def test_the_law_of_any_model_compiles(name):
     np.testing.assert_allclose(evaluate_compiled(compiled_law(plain), depths), expected, rtol=1e-7)
 
 
-def test_adhesive_laws_and_plain_functions_do_not_compile():
+def test_compiled_model_has_the_attributes_of_its_model_and_some_laws_and_models_do_not_compile():
     with pytest.raises(TypeError, match="must be above 0 N"):
         compiled_law(bs.AdhesiveSocket().law(HIP))
     with pytest.raises(TypeError, match="law must be"):
         compiled_law(lambda depth: (depth, 1.0))
-
-
-def test_compiled_model_has_the_attributes_and_notes_of_its_model():
     cup = bs.Cup(arc_of_cover=2.0)
     for model in (bs.Bartel(), bs.Tabulated()):
         fast = Compiled(model=model)
@@ -183,14 +185,6 @@ def test_compiled_model_has_the_attributes_and_notes_of_its_model():
         assert fast.in_cup(cup).press(HIP, force=3000.0).notes == model.in_cup(cup).press(HIP, force=3000.0).notes
     with pytest.raises(TypeError, match=r"got Exact\(.*use Tabulated\(\)"):
         Compiled(model=bs.Exact())
-
-
-def test_strengths_of_materials_count_in_the_shape_of_a_compiled_press():
-    joint = HIP.replace(liner=bs.Material(young=800.0, poisson=0.45, yield_stress=np.array([[15.0], [20.0]])))
-    force = np.array([500.0, 1000.0, 2000.0])
-    one, other = (model.press(joint, force=force) for model in (Compiled(model=bs.HessForsbach()), bs.HessForsbach()))
-    assert one.utilisation.shape == one.force.shape == (2, 3)
-    np.testing.assert_allclose(one.utilisation, other.utilisation, rtol=1e-12)
 
 
 def test_compiled_root_finder_stops_after_the_steps_and_at_the_tolerance_of_python():

@@ -61,12 +61,18 @@ def test_a_failed_point_keeps_its_load():
         assert (contact.force, contact.status) == (5.0, Status.NOT_REACHED)
 
 
-def test_points_outside_the_domain_have_no_result():
+def test_unreached_loads_and_points_outside_the_domain_have_no_result():
     result = SolverResult(laws=LAWS, force=np.array([1.0, 2.0]), indentation=np.array([0.1, 0.2]))
     _, joint, load = as_arrays(HIP, np.array([0.1, 0.2]))
     contact = make_contact(MODEL, bs.Contact, joint, "indentation", load, np.array([True, False]), result, False)
     assert contact.status.tolist() == [0, int(Status.OUTSIDE_DOMAIN)]
     np.testing.assert_array_equal(np.isnan(contact.force), [False, True])
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=np.array([0.3, 0.5, 0.3])))
+    solution = solve_per_joint(bs.Exact(), joint, np.array([1.0, 1.0, 200.0]), doubled, np.array(0.0))
+    np.testing.assert_allclose(solution.force, [0.1, np.nan, np.nan])
+    single = solve_per_joint(bs.Exact(), HIP, np.array(2.0), doubled, np.array(0.0))
+    assert single.force.shape == ()
+    assert single.force == pytest.approx(0.2)
 
 
 def doubled(joint, load, extra):
@@ -77,7 +83,7 @@ def doubled(joint, load, extra):
     return JointContacts(load=load, touching=touching, state=state, reached=reached, error={"force": 0.01 * force})
 
 
-def test_joints_are_solved_once_with_all_of_their_loads():
+def test_joints_are_solved_once_with_all_of_their_loads_and_each_has_its_own_solution():
     calls = []
 
     def solve(joint, load, extra):
@@ -91,9 +97,6 @@ def test_joints_are_solved_once_with_all_of_their_loads():
     np.testing.assert_allclose(solution.pressure(np.array([[0.5], [2.0]])), np.outer([0.5, 2.0], solution.force))
     np.testing.assert_allclose(solution.pressure(np.array(0.5)), 0.5 * solution.force)
     np.testing.assert_allclose(solution.combine(lambda piece: piece.error["force"]), 0.01 * solution.force)
-
-
-def test_each_of_many_joints_has_its_own_solution():
     clearance = np.array([[0.3, 0.1, 0.2, 0.4], [0.1, 0.4, 0.3, 0.2]])
     load = np.array([[1.0], [2.0]])
     solution = solve_per_joint(bs.Exact(), replace(HIP, clearance=clearance), load, doubled, np.array(0.0))
@@ -101,15 +104,6 @@ def test_each_of_many_joints_has_its_own_solution():
     profile = solution.pressure(np.array([0.5, 2.0]).reshape(2, 1, 1))
     np.testing.assert_allclose(profile, np.array([0.5, 2.0]).reshape(2, 1, 1) * clearance * load, rtol=1e-14)
     np.testing.assert_allclose(solution.pressure(clearance), clearance * clearance * load, rtol=1e-14)
-
-
-def test_unreached_loads_and_joints_outside_the_domain_are_nan():
-    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=np.array([0.3, 0.5, 0.3])))
-    solution = solve_per_joint(bs.Exact(), joint, np.array([1.0, 1.0, 200.0]), doubled, np.array(0.0))
-    np.testing.assert_allclose(solution.force, [0.1, np.nan, np.nan])
-    single = solve_per_joint(bs.Exact(), HIP, np.array(2.0), doubled, np.array(0.0))
-    assert single.force.shape == ()
-    assert single.force == pytest.approx(0.2)
 
 
 def test_solutions_of_one_contact_need_one_contact():

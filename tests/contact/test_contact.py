@@ -81,7 +81,7 @@ def test_a_comparison_has_a_row_per_model_and_reasons_of_missing_models():
         answers["bonded-layer"]
 
 
-def test_contacts_convert_to_dictionaries_and_frames():
+def test_contacts_and_comparisons_convert_to_dictionaries_and_frames():
     pytest.importorskip("pandas")
     contact = bs.Exact().press(HIP, force=np.array([[1000.0], [3000.0]]))
     assert contact.to_dict() == contact.summary()
@@ -90,10 +90,6 @@ def test_contacts_convert_to_dictionaries_and_frames():
     np.testing.assert_array_equal(frame.half_angle_deg, np.degrees(contact.half_angle).ravel())
     assert frame.valid.tolist() == [True, True]
     assert len(PRESSED.to_frame()) == 1
-
-
-def test_a_comparison_converts_to_a_frame():
-    pytest.importorskip("pandas")
     answers = bs.compare(HIP.replace(liner_thickness=np.inf), force=1000.0)
     frame = answers.to_frame()
     assert list(frame.index) == [*answers, *answers.missing]
@@ -111,7 +107,7 @@ def test_contacts_and_comparisons_have_plots():
     assert len(bs.compare(HIP, force=1000.0, models=few).plot().axes[0].lines) == 2
 
 
-def test_area_and_ratios_follow_their_definitions():
+def test_area_ratios_and_moduli_follow_their_definitions_and_have_their_limits():
     assert PRESSED.area == pytest.approx(2 * np.pi * 17.9**2 * (1 - np.cos(PRESSED.half_angle)))
     assert PRESSED.indentation_ratio == pytest.approx(PRESSED.indentation / 6.75)
     assert PRESSED.width_ratio == pytest.approx(18.0 * np.sin(PRESSED.half_angle) / 6.75)
@@ -119,14 +115,14 @@ def test_area_and_ratios_follow_their_definitions():
     thick = bs.HessForsbach().press(HIP.replace(liner_thickness=30.0), indentation=0.05)
     assert thick.depth_ratio == pytest.approx(0.05 / 18.0)
     assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
-
-
-def test_conformity_and_moduli_of_half_spaces_are_infinite_without_load():
     contact = bs.HessForsbach().press(HIP, force=0.0)
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
     for model in (bs.Hertz(), bs.PlaneLayer(), bs.Refined(), bs.Exact()):
         assert model.press(HIP, force=[0.0]).foundation_modulus == np.inf
+    deep = bs.Hertz().press(HIP, indentation=0.1 * 18.0 * 4.0**2 / 17.9)
+    assert deep.half_angle == pytest.approx(4.0, rel=1e-12)
+    assert deep.area == pytest.approx(4 * pi * 17.9**2, rel=1e-12)
 
 
 test_arguments_that_are_not_allowed_are_refused = refused_calls(
@@ -189,9 +185,3 @@ def test_force_vector_is_zero_within_the_clearance():
     assert vector(HIP, displacement)[1, 1] < 0.0
     fitted = HIP.replace(clearance=0.0)
     np.testing.assert_array_equal(vector(fitted, np.zeros(3)), 0.0)
-
-
-def test_area_is_at_most_that_of_the_ball():
-    deep = bs.Hertz().press(HIP, indentation=0.1 * 18.0 * 4.0**2 / 17.9)
-    assert deep.half_angle == pytest.approx(4.0, rel=1e-12)
-    assert deep.area == pytest.approx(4 * pi * 17.9**2, rel=1e-12)

@@ -111,7 +111,7 @@ def test_the_series_of_a_short_sine_is_accurate_to_rounding():
     assert arrays.short_sine(0.5) == np.sin(0.5)
 
 
-def test_principal_stresses_are_eigenvalues():
+def test_principal_stresses_are_eigenvalues_and_hydrostatic_pressure_has_no_von_mises_stress():
     random = np.random.default_rng(1)
     components = random.normal(size=(4, 20))
     state = Stress(**dict(zip(("radial", "meridional", "hoop", "shear"), components, strict=True)))
@@ -121,9 +121,6 @@ def test_principal_stresses_are_eigenvalues():
         assert [principal[number] for principal in state.principal] == pytest.approx(values[::-1].tolist(), abs=1e-12)
         deviator = values - values.mean()
         assert state.von_mises[number] == pytest.approx(np.sqrt(1.5 * np.sum(deviator**2)), rel=1e-12)
-
-
-def test_hydrostatic_pressure_has_no_von_mises_stress():
     pressure = np.asarray(-5.0)
     state = Stress(radial=pressure, meridional=pressure, hoop=pressure, shear=0.0 * pressure)
     assert state.von_mises == 0.0

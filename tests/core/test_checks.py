@@ -49,13 +49,10 @@ def test_unknown_names_get_the_most_similar_one(name, hint):
     assert checks.nearest(name, ["force", "max-pressure", "stiffness"]) == hint
 
 
-def test_similar_names_win_over_longer_ones_with_the_same_start():
+def test_similar_names_win_over_longer_ones_with_the_same_start_and_long_lists_are_cut():
     assert checks.nearest("forces", ["force", "forces-of-friction"]) == "; did you mean 'force'?"
     assert checks.nearest("exact-c", ["exact-curve", "exact"]) == "; did you mean 'exact'?"
     assert checks.nearest("bond", ["band", "bonded-layer"]) == "; did you mean 'bonded-layer'?"
-
-
-def test_long_lists_of_names_are_cut():
     assert checks.nearest("zz", [f"name-{number:03}" for number in range(100)]).endswith("name-019, ...")
 
 

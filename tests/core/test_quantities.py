@@ -132,11 +132,8 @@ def test_allowed_ranges_end_at_the_stated_limits(name, inside, outside):
     assert not any(map(allows, outside))
 
 
-def test_only_a_number_that_may_be_an_angle_in_degrees_gets_a_hint_in_radians():
+def test_columns_and_labels_have_their_unit_and_only_angles_in_degrees_a_hint_in_radians():
     assert QUANTITIES["half_angle"].radian_hint(100.0) == QUANTITIES["force"].radian_hint(1.0) == ""
-
-
-def test_columns_and_labels_have_their_unit():
     assert [QUANTITIES[name].column for name in ("indentation", "conformity")] == ["indentation_mm", "conformity"]
     assert (QUANTITIES["half_angle"].column, QUANTITIES["half_angle"].key) == ("half_angle_deg", "half_angle_deg")
     assert QUANTITIES["indentation"].label() == "indentation d [µm]"

@@ -29,7 +29,7 @@ def interrupted(path, error):
         raise error(draft)
 
 
-def test_a_file_is_written_completely_or_not_at_all(tmp_path):
+def test_a_file_of_a_name_of_any_length_is_written_completely_or_not_at_all(tmp_path):
     path = tmp_path / "a.txt"
     mask = os.umask(0o022)
     try:
@@ -52,6 +52,10 @@ def test_a_file_is_written_completely_or_not_at_all(tmp_path):
         draft.mkdir()
         atomic_files.write_text(draft / "part", "1")
     assert names(tmp_path / "store") == ["part"]
+    name = "n" * 255
+    assert atomic_files.write_text(tmp_path / name, "x").read_text(encoding="utf-8") == "x"
+    with make_draft_folder(tmp_path / name) as folder:
+        assert folder.name.startswith(f".{'n' * 40}.")
 
 
 def test_errors_name_the_requested_file_and_those_of_other_files_their_own(tmp_path):
@@ -83,13 +87,6 @@ def test_only_old_unlocked_draft_folders_of_the_same_file_are_removed(tmp_path, 
         assert locked.is_dir()
     assert names(tmp_path) == [".a.txt.young.draft", ".b.txt.old.draft", "a.txt"]
     assert not any(map(is_draft_folder, ("a.draft", ".a", "a")))
-
-
-def test_names_of_the_greatest_length_can_be_written(tmp_path):
-    name = "n" * 255
-    assert atomic_files.write_text(tmp_path / name, "x").read_text(encoding="utf-8") == "x"
-    with make_draft_folder(tmp_path / name) as folder:
-        assert folder.name.startswith(f".{'n' * 40}.")
 
 
 def test_arrays_are_read_as_they_were_written(tmp_path):
@@ -149,16 +146,7 @@ def counted(value):
     return compute, calls
 
 
-def test_a_cached_array_is_computed_once_for_each_key(cache):
-    compute, calls = counted(1.5)
-    for key in ((1.0, "a"), (1.0, "a"), (2.0, "a")):
-        np.testing.assert_array_equal(atomic_files.cached_array(key, compute), np.full((2, 3), 1.5))
-    assert len(calls) == 2
-    digest = sha256(b"3 (1.0, 'a')").hexdigest()[:32]
-    assert f"cup-{digest}.npz" in names(cache)
-
-
-def test_a_damaged_cached_array_is_computed_again(cache):
+def test_a_cached_array_is_computed_once_for_each_key_and_again_if_damaged(cache):
     compute, calls = counted(2.0)
     atomic_files.cached_array("key", compute)
     (file,) = cache.iterdir()
@@ -168,6 +156,12 @@ def test_a_damaged_cached_array_is_computed_again(cache):
         assert (atomic_files.cached_array("key", compute) == 2.0).all()
     assert len(calls) == 4
     assert file.read_bytes() == content
+    compute, calls = counted(1.5)
+    for key in ((1.0, "a"), (1.0, "a"), (2.0, "a")):
+        np.testing.assert_array_equal(atomic_files.cached_array(key, compute), np.full((2, 3), 1.5))
+    assert len(calls) == 2
+    digest = sha256(b"3 (1.0, 'a')").hexdigest()[:32]
+    assert f"cup-{digest}.npz" in names(cache)
 
 
 def test_the_oldest_cached_arrays_are_removed_above_the_size_limit(cache, monkeypatch):
@@ -185,16 +179,13 @@ def test_the_oldest_cached_arrays_are_removed_above_the_size_limit(cache, monkey
     assert (cache / "mine.txt").exists()
 
 
-def test_an_array_is_computed_without_a_writable_cache(tmp_path, monkeypatch):
+def test_the_cache_folder_follows_the_environment_and_need_not_be_writable(tmp_path, monkeypatch):
     atomic_files.write_text(tmp_path / "file", "")
     monkeypatch.setenv("BALLSOCKET_CACHE", str(tmp_path / "file" / "folder"))
     compute, calls = counted(1.0)
     for _ in range(2):
         assert (atomic_files.cached_array("key", compute) == 1.0).all()
     assert len(calls) == 2
-
-
-def test_the_cache_folder_follows_the_environment(monkeypatch):
     monkeypatch.setenv("BALLSOCKET_CACHE", "/here")
     monkeypatch.setenv("XDG_CACHE_HOME", "/cache")
     assert atomic_files.cache_folder() == Path("/here")
@@ -205,7 +196,7 @@ def test_the_cache_folder_follows_the_environment(monkeypatch):
     assert atomic_files.cache_folder() == Path("/home/me/.cache/ballsocket")
 
 
-def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
+def test_the_fingerprint_is_the_version_and_a_digest_of_the_package_and_another_one_is_refused():
     package = Path(bs.__file__).parent
     digest = sha256()
     for path in sorted(package.rglob("*")):
@@ -213,9 +204,6 @@ def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
             digest.update(path.relative_to(package).as_posix().encode())
             digest.update(path.read_bytes())
     assert fingerprint() == f"{bs.__version__}+{digest.hexdigest()[:8]}"
-
-
-def test_a_worker_of_another_version_is_refused():
     check_worker_code(fingerprint())
     with pytest.raises(ValueError, match="this worker has ballsocket .*, but the run was started by 0.9[+]old"):
         check_worker_code("0.9+old")
@@ -247,7 +235,7 @@ def square(number):
     return number * number
 
 
-def test_a_run_computes_and_stores_only_the_missing_pieces():
+def test_a_run_computes_and_stores_the_missing_pieces_and_all_of_them_without_a_store():
     store = MemoryStore(_1="one", _3=None, _9="other run")
     run = PieceRun(square, range(5), store)
     assert run.stored == {1: "one", 3: None}
@@ -257,9 +245,6 @@ def test_a_run_computes_and_stores_only_the_missing_pieces():
     again = PieceRun(square, range(5), store)
     assert again.missing == []
     assert list(again.compute_missing(Serial())) == []
-
-
-def test_runs_without_a_store_compute_every_piece_and_failed_ones_resume():
     run = PieceRun(square, [2, 1])
     assert (run.stored, run.missing) == ({}, [2, 1])
     assert list(run.compute_missing(Serial())) == [(2, 4), (1, 1)]

@@ -55,15 +55,12 @@ def test_an_empty_range_holds_for_no_contact():
     assert str(Promise(within=0.1, quantities=("stiffness",))) == "within 10 % in dF/dd"
 
 
-def test_domain_is_a_mask_of_the_points():
+def test_domain_is_a_mask_of_the_points_and_a_joint_outside_is_rejected():
     domain = (Range(quantity="joint.clearance", low=0.0, high=1.0, why="of a test"),)
     joint = HIP.replace(clearance=np.array([0.0, 0.5, 1.0]))
     np.testing.assert_array_equal(validity.check_domain(domain, joint, "test"), [False, True, False])
     assert validity.check_domain(domain, HIP, "test")
     assert validity.check_domain(domain, HIP.replace(clearance=np.zeros(0)), "test").shape == (0,)
-
-
-def test_a_joint_outside_the_domain_is_rejected():
     domain = (Range(quantity="joint.clearance", low=1.0, why="of a test"),)
     several = HIP.replace(clearance=[0.5, 0.7, 0.9])
     for joint, text in ((HIP, "c = 0.1: of a test"), (several, r"c = 0.5 \(and 2 more\): of a test")):
@@ -71,9 +68,10 @@ def test_a_joint_outside_the_domain_is_rejected():
             validity.check_domain(domain, joint, "test")
 
 
-def test_preloaded_joints_are_outside_the_default_fit():
+def test_default_fits_and_remarks_about_bodies_have_their_limits():
     assert validity.NON_NEGATIVE_CLEARANCE.strictly_holds(SimpleNamespace(joint=HIP.replace(clearance=0.0)))
     assert not validity.NON_NEGATIVE_CLEARANCE.strictly_holds(SimpleNamespace(joint=HIP.replace(interference=1e-9)))
+    assert [remark.high for remark in validity.body_remarks("a full space", "a full ball")] == [0.02, 0.05]
 
 
 @pytest.mark.parametrize(
@@ -88,10 +86,6 @@ def test_limits_of_common_validities(limit, name, inside, outside):
     for value, holds in ((inside, True), (outside, False)):
         contact = SimpleNamespace(**{name: value}, joint=SimpleNamespace(**{name: value}))
         assert limit.holds(contact) == holds
-
-
-def test_remarks_about_bodies_have_their_limits():
-    assert [remark.high for remark in validity.body_remarks("a full space", "a full ball")] == [0.02, 0.05]
 
 
 def test_fraction_of_an_infinite_layer_follows_its_formula():

@@ -20,7 +20,7 @@ def at(depth, attached):
     return ELEMENT(np.stack([zero, zero, C + depth], axis=-1), attached=attached)
 
 
-def test_ball_attaches_at_first_touch_and_separates_at_the_critical_stretch():
+def test_ball_attaches_at_first_touch_above_the_wall_and_separates_at_the_critical_stretch():
     assert pytest.approx(STICKY.critical_stretch(HIP)) == STRETCH
     approaching, leaving = (at(np.array([-0.5 * STRETCH, -1e-9, 0.0, 0.01]), attached) for attached in (False, True))
     assert (approaching.force[:2] == 0).all()
@@ -35,6 +35,9 @@ def test_ball_attaches_at_first_touch_and_separates_at_the_critical_stretch():
     assert edge.force[0, 2] == 0
     assert edge.status[0] == ContactState.FREE
     assert abs(edge.force[1, 2]) < 1e-3 * pull
+    assert pytest.approx(HIP.liner_thickness, rel=1e-12) == ELEMENT.wall
+    status = at(np.array([0.999, 1.001]) * HIP.liner_thickness, True).status
+    assert status.tolist() == [ContactState.CONTACT, ContactState.THROUGH_WALL]
 
 
 def test_dissipation_of_a_cycle_equals_the_energy_jump_at_attachment():
@@ -59,12 +62,6 @@ def test_force_of_an_attached_ball_is_the_derivative_of_the_energy():
     energy = at(np.array([-STRETCH * (1 - 1e-9), 0.0, 0.05]), True).energy
     assert energy[0] == pytest.approx(0.0, abs=1e-9 * energy[2])
     assert energy[1] < 0 < energy[2]
-
-
-def test_wall_of_an_adhesive_joint_is_measured_from_first_touch():
-    assert pytest.approx(HIP.liner_thickness, rel=1e-12) == ELEMENT.wall
-    status = at(np.array([0.999, 1.001]) * HIP.liner_thickness, True).status
-    assert status.tolist() == [ContactState.CONTACT, ContactState.THROUGH_WALL]
 
 
 def test_damping_does_not_generate_energy_in_tension():

@@ -144,10 +144,18 @@ def test_spin_reduces_the_friction_across_the_load_and_stiction_exceeds_sliding(
     assert slow == pytest.approx(2 * fast, rel=1e-3)
 
 
-def test_deflections_decay_without_contact():
+def test_bristles_decay_without_contact_and_are_springs_before_they_slide_with_the_limit_of_coulomb():
     away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
     assert away.deflection_rate[0] == pytest.approx(-1.0)
     assert away.force == (0.0, 0.0, 0.0)
+    normal = abs(PLAIN(DEEP).force[2])
+    grip = abs(SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]) / (0.1 * normal)
+    bend = HELD(DEEP, deflection=(1e-4, 0.0, 0.0, 0.0))
+    assert bend.force[0] == pytest.approx(-20.0 * 1e-4 * normal * grip, rel=1e-6)
+    assert bend.moment[1] == pytest.approx(HIP.ball_radius * bend.force[0], rel=1e-9)
+    fast, slow = (steady_slip(HELD, 1.0, velocity=(speed, 0.0, 0.0)).force[0] for speed in (100.0, 0.1))
+    assert fast == pytest.approx(-0.1 * normal * grip, rel=1e-3)
+    assert slow == pytest.approx(-0.15 * normal * grip, rel=2e-3)
 
 
 def steady_slip(element, duration, **state):
@@ -166,17 +174,6 @@ def test_sliding_bristles_have_the_resultants_of_the_patch():
     held, slid = steady_slip(element, 0.1, **state), SMOOTH(DEEP, **state)
     assert held.force[0] == pytest.approx(slid.force[0], rel=0.01)
     assert held.moment[2] == pytest.approx(slid.moment[2], rel=0.07)
-
-
-def test_bristles_are_springs_before_they_slide_with_the_limit_of_coulomb():
-    normal = abs(PLAIN(DEEP).force[2])
-    grip = abs(SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]) / (0.1 * normal)
-    bend = HELD(DEEP, deflection=(1e-4, 0.0, 0.0, 0.0))
-    assert bend.force[0] == pytest.approx(-20.0 * 1e-4 * normal * grip, rel=1e-6)
-    assert bend.moment[1] == pytest.approx(HIP.ball_radius * bend.force[0], rel=1e-9)
-    fast, slow = (steady_slip(HELD, 1.0, velocity=(speed, 0.0, 0.0)).force[0] for speed in (100.0, 0.1))
-    assert fast == pytest.approx(-0.1 * normal * grip, rel=1e-3)
-    assert slow == pytest.approx(-0.15 * normal * grip, rel=2e-3)
 
 
 def test_bristles_dissipate_and_balance_the_power():

@@ -90,7 +90,7 @@ def test_many_steps_conserve_energy_and_angular_momentum(model, step):
         assert motion.angular_drift < 1e-12
 
 
-def test_dissipated_energy_grows_and_balances():
+def test_dissipated_energy_grows_and_energy_balances_the_work_of_the_pull():
     motion = simulate(LOSSY, duration=0.02, spin=(0.0, 3.0, 5.0), **THROW)
     assert motion.drift < 1e-12
     assert (np.diff(motion.dissipated_energy) >= 0).all()
@@ -98,9 +98,6 @@ def test_dissipated_energy_grows_and_balances():
     assert motion.angular_drift is None
     bristles = replace(FREE, friction=Bristles(coefficient=0.1))
     assert simulate(bristles, duration=1e-4, **THROW).angular_drift is None
-
-
-def test_energy_balances_the_work_of_the_pull():
     motion = simulate(FREE, duration=0.01, pull=(0.0, 0.0, 500.0), **THROW)
     assert motion.drift < 1e-12
     assert motion.work[-1] == pytest.approx(500.0 * (motion.position[-1, 2] - motion.position[0, 2]))
@@ -167,7 +164,7 @@ def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 
-def test_free_flight_is_uniform_and_falls_under_the_pull():
+def test_free_flight_is_uniform_and_falls_under_the_pull_at_the_midpoint_of_each_step():
     """Without contact 1 kg under 9.80665 N falls by g t²/2, and its spin stays."""
     thrown = {"mass": 1.0, "position": (0.0, 0.01, -0.04), "velocity": (1.0, -2.0, 3.0), "spin": (1.0, -2.0, 3.0)}
     motion = simulate(FREE, pull=(0.0, 0.0, 9.80665), duration=5e-3, step=1e-3, **thrown)
@@ -182,10 +179,7 @@ def test_free_flight_is_uniform_and_falls_under_the_pull():
     expected = np.cross(motion.position, motion.velocity) * 1e-3
     np.testing.assert_allclose(motion.angular_momentum, expected)
     np.testing.assert_allclose(motion.pull_moment, expected - expected[0], atol=1e-16)
-
-
-def test_pull_of_a_step_is_that_at_its_midpoint():
-    """The impulse of a pull that grows linearly is exact by the midpoint rule: v = a t²/2."""
+    # the impulse of a pull that grows linearly is exact by the midpoint rule: v = a t²/2
     motion = simulate(FREE, mass=2.0, position=(0, 0, 0), pull=lambda t: (t, 0.0, 0.0), duration=0.05, step=0.01)
     np.testing.assert_allclose(motion.velocity[:, 0], 1e3 / 2.0 * motion.time**2 / 2, rtol=1e-12)
 

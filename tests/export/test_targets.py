@@ -120,11 +120,18 @@ def check_text(text, element, near):
     assert eval(formula, words | {"d": 5e-5}) == 0.0
 
 
-def test_the_expression_of_a_closed_form_is_the_closed_form():
+def test_the_expression_of_a_closed_form_is_the_closed_form_also_without_clearance():
+    """Without clearance the length of the fit is a thousandth of the socket radius."""
     exact = expression_fit(PLAIN, 0.05)
     assert (exact.coefficients, exact.range_note) == ((), "")
     assert_allclose(exact.scale, 1e3 * pi / 3 * bs.hess_forsbach(HIP) * HIP.socket_radius**2, rtol=1e-12)
     assert exact.error < 1e-12
+    element = ForceElement(bs.Bartel(), HIP.replace(clearance=0.0))
+    fit = expression_fit(element, 0.05)
+    assert (fit.clearance, fit.length) == (0.0, pytest.approx(1e-6 * element.joint.socket_radius))
+    assert fit.error < 1e-6
+    depths = np.array([1e-3, 0.05]) * 1e3 * fit.depth
+    assert_allclose(fit(1e-3 * depths), element.potential(depths)[1], rtol=2 * fit.error + 1e-9)
 
 
 def test_one_expression_fits_any_law_within_the_validity_of_its_model(fit):
@@ -158,7 +165,8 @@ def test_the_terminal_and_the_file_state_the_range_of_an_expression(tmp_path):
     assert note in (tmp_path / "hip" / "hip.osim").read_text()
 
 
-def test_the_best_power_law_is_balanced_and_no_other_is_better():
+def test_the_best_power_law_is_balanced_and_found_for_any_stiffness():
+    """The search for k is relative to the force: it holds for newtons and for micronewtons."""
     fit = power_fit(PLAIN, 0.05)
     depths = np.linspace(0.0025, 0.05, 500)
     forces = PLAIN.potential(depths)[1]
@@ -170,6 +178,12 @@ def test_the_best_power_law_is_balanced_and_no_other_is_better():
     assert 1.0 < fit.exponent < 2.0  # between the limits of a deep contact and of a light one
     for k, n in ((1.001, 0.0), (0.999, 0.0), (0.05**-0.003, 0.003), (0.05**0.003, -0.003)):
         assert worst(fit.stiffness * k, fit.exponent + n) > fit.error
+    for young in (1e-6, 1.0):
+        element = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=young, poisson=0.4)))
+        law = power_fit(element, 0.02)
+        assert law.exponent == pytest.approx(1.5, abs=1e-6)
+        assert law.error < 1e-6
+        assert_allclose(law.stiffness * 0.02**law.exponent, element.potential(np.array([0.02]))[1][0], rtol=1e-6)
 
 
 def test_a_table_has_the_values_of_the_model_up_to_the_load_of_the_file(tmp_path):
@@ -317,26 +331,6 @@ def test_a_table_of_the_law_begins_without_contact_and_ends_at_its_depth():
     for column, values in columns.items():
         assert rows[column][0] == 0.0
         assert_allclose(rows[column][1:], values, rtol=1e-8)
-
-
-def test_a_power_law_with_a_small_stiffness_is_found():
-    """The search for k is relative to the force: it holds for newtons and for micronewtons."""
-    for young in (1e-6, 1.0):
-        element = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=young, poisson=0.4)))
-        law = power_fit(element, 0.02)
-        assert law.exponent == pytest.approx(1.5, abs=1e-6)
-        assert law.error < 1e-6
-        assert_allclose(law.stiffness * 0.02**law.exponent, element.potential(np.array([0.02]))[1][0], rtol=1e-6)
-
-
-def test_an_expression_covers_a_socket_without_clearance():
-    """Without clearance the length of the fit is a thousandth of the socket radius."""
-    element = ForceElement(bs.Bartel(), HIP.replace(clearance=0.0))
-    fit = expression_fit(element, 0.05)
-    assert (fit.clearance, fit.length) == (0.0, pytest.approx(1e-6 * element.joint.socket_radius))
-    assert fit.error < 1e-6
-    depths = np.array([1e-3, 0.05]) * 1e3 * fit.depth
-    assert_allclose(fit(1e-3 * depths), element.potential(depths)[1], rtol=2 * fit.error + 1e-9)
 
 
 def test_the_depth_of_a_fit_is_that_of_a_load_or_the_largest_valid_one():

@@ -57,7 +57,7 @@ def test_every_patient_is_simulated_in_order_in_pieces_of_sixteen(monkeypatch):
     assert [len(cohort_run(n_patients).pieces) for n_patients in (1, 16, 17)] == [1, 1, 2]
 
 
-def test_a_patient_without_a_result_has_its_error():
+def test_a_patient_without_a_result_has_its_error_and_a_worker_of_another_version_is_refused():
     run = cohort_run(4, tilt=Rectangular(low=0.0, high=2.0))
     cohort = replace(run, values={"tilt": np.array([0.1, 1.9, 0.1])}).simulate()
     assert [bool(error) for error in cohort.refused] == [False, True, False]
@@ -66,9 +66,6 @@ def test_a_patient_without_a_result_has_its_error():
     np.testing.assert_array_equal(cohort.table[0], cohort.table[2])
     assert np.isfinite(cohort.table[0]).all()
     assert (cohort.table.shape, cohort.contact.shape) == ((3, 1, len(RESULT_UNITS)), (3, 2, 3))
-
-
-def test_a_worker_of_another_version_is_refused():
     refuses("the run was started by 0.9[+]old", replace(cohort_run(1), code="0.9+old"), 0)
 
 

@@ -279,17 +279,14 @@ def relative_difference(use, values, coefficient=K, **distributions):
     worn = np.exp(numbers_worn[:, : len(similarity.results)])
     scaled = worn * np.array([float(units[name][0]) for name in similarity.results])
     columns = [RESULT_COLUMNS[name] for name in similarity.results]
-    assert_equal_contacts(similarity, values["clearance"], numbers_worn[:, len(similarity.results) :], reports)
-    return abs(scaled / result_table(reports)[:, columns] - 1).max()
-
-
-def assert_equal_contacts(similarity, clearance, numbers, reports):
+    clearance, contacts = values["clearance"], numbers_worn[:, len(similarity.results) :]
     pressure_unit = float(similarity.modulus(clearance)) * clearance
-    for (rim, _, indentation, half_angle, pressure), report in zip(numbers, reports, strict=True):
+    for (rim, _, indentation, half_angle, pressure), report in zip(contacts, reports, strict=True):
         distance = max(rim, 0.0) * float(similarity.socket_radius(clearance))
         assert distance == pytest.approx(report.edge_distance.min(), rel=1e-9, abs=1e-9)
-        scaled = np.exp(indentation) * clearance, half_angle, np.exp(pressure) * pressure_unit
-        assert scaled == pytest.approx(report.worst_contacts[0, 2:5], rel=1e-9)
+        contact = np.exp(indentation) * clearance, half_angle, np.exp(pressure) * pressure_unit
+        assert contact == pytest.approx(report.worst_contacts[0, 2:5], rel=1e-9)
+    return abs(scaled / result_table(reports)[:, columns] - 1).max()
 
 
 LAWS = [

@@ -343,7 +343,7 @@ def test_activities_in_a_hip_file(tmp_path):
     assert (*mix.fractions, mix.per_year) == pytest.approx((0.9, 0.1, 2e6))
 
 
-def test_a_cycle_has_instants_a_rotation_order_and_a_body_weight():
+def test_a_cycle_has_instants_a_rotation_order_a_body_weight_and_parameters_with_units():
     assert (parsed(name="iso-14242-1").n_steps, parsed(name="iso-14242-1").order) == (100, "xyz")
     cycle = parsed(name="iso-14242-1", instants=24, rotation_order="rotation, adduction, flexion")
     assert (cycle.n_steps, cycle.order) == (24, "zyx")
@@ -351,6 +351,11 @@ def test_a_cycle_has_instants_a_rotation_order_and_a_body_weight():
     assert cycle_in(content).largest_force == pytest.approx(1976.0, rel=1e-6)
     content["cycle"]["body_weight"] = "0.9 kN"
     assert cycle_in(content).largest_force == pytest.approx(2223.0, rel=1e-6)
+    assert parsed(name="iso-14242-4", mismatch="3 mm").spring.mismatch == 3.0
+    assert parsed(name="iso-14242-4", stiffness="80 N/mm").spring.stiffness == 80.0
+    assert parsed(name="iso-14242-4", swing_load="0.1 kN").force(np.zeros(1))[0] == 100.0
+    assert parsed(name="two-axis", force="1 kN").largest_force == pytest.approx(1000.0, abs=1e-3)
+    assert parsed(name="constant-load", amplitude="10 deg").angles(np.zeros(1))[0, 0] == pytest.approx(radians(10))
 
 
 @pytest.mark.parametrize("name", ["iso-14242-1", "walking"])
@@ -373,14 +378,6 @@ def test_tables_beside_a_hip_file(tmp_path):
         refuses("does not close", parsed, tmp_path, **words | {key: 0.5})
     refuses("closing = 0.6 is not allowed", parsed, tmp_path, **words, closing=0.6)
     refuses("side = 'lef' is not known; did you mean 'left'", parsed, tmp_path, **words | {"side": "lef"})
-
-
-def test_parameters_of_simulators_have_units():
-    assert parsed(name="iso-14242-4", mismatch="3 mm").spring.mismatch == 3.0
-    assert parsed(name="iso-14242-4", stiffness="80 N/mm").spring.stiffness == 80.0
-    assert parsed(name="iso-14242-4", swing_load="0.1 kN").force(np.zeros(1))[0] == 100.0
-    assert parsed(name="two-axis", force="1 kN").largest_force == pytest.approx(1000.0, abs=1e-3)
-    assert parsed(name="constant-load", amplitude="10 deg").angles(np.zeros(1))[0, 0] == pytest.approx(radians(10))
 
 
 def test_the_motion_of_a_named_cycle_is_used(tmp_path):

@@ -36,15 +36,12 @@ def angles_of(cycle, *phases):
     return np.degrees(cycle.angles(np.array(phases)))
 
 
-def test_iso_force_has_its_key_points_and_half_cosines_between():
+def test_iso_force_and_angles_have_their_key_points_and_half_cosines_between():
     points = {0.0: 300, 0.12: 3000, 0.32: 1500, 0.5: 3000, 0.62: 300, 0.8: 300, 1.0: 300}
     between = {0.06: 1650, 0.22: 2250, 0.41: 2250, 0.03: 1650 - 1350 * cos(pi / 4), 0.09: 1650 + 1350 * cos(pi / 4)}
     for phase, force in (points | between).items():
         assert iso_14242_1().force(np.array([phase]))[0] == pytest.approx(force, rel=1e-12)
     assert iso_14242_1().largest_force == pytest.approx(3000.0, rel=1e-12)
-
-
-def test_iso_angles_have_their_key_points():
     by_half_cosines = iso_14242_1_key_points(16)
     for cycle in (iso_14242_1(), by_half_cosines):
         assert angles_of(cycle, 0.0, 0.25, 0.5, 0.75)[0] == pytest.approx([25, 3.5, -18, 3.5], abs=1e-12)

@@ -48,14 +48,10 @@ def test_elasticity_changes_volume_and_depth_slightly():
 
 
 @pytest.mark.long
-def test_finer_rings_give_the_same_wear():
+def test_finer_rings_give_the_same_wear_and_worn_depth_has_no_waves_of_the_grid():
     wide, narrow = (report_after(elastic(ring_width=radians(width)), 2e5) for width in (4.0, 2.5))
     assert wide.volume == pytest.approx(narrow.volume, rel=5e-3)
     assert wide.depth == pytest.approx(narrow.depth, rel=2e-2)
-
-
-@pytest.mark.long
-def test_worn_depth_has_no_waves_of_the_grid():
     use = elastic()
     wear = report_after(use, 1e6).wear
     rough = np.abs(np.diff(wear, n=4, axis=0))[wear[2:-2] > 0.5 * wear.max()]

@@ -105,7 +105,7 @@ def test_uniform_wear_has_the_film_of_a_larger_clearance():
     assert film.error == pytest.approx(wider.error, rel=0.05)
 
 
-def test_friction_falls_from_boundary_to_full_film():
+def test_friction_falls_from_boundary_to_full_film_and_lies_below_that_of_touching_surfaces():
     law = Stribeck(boundary=0.1)
     share = law.asperity_share(np.array([0.0, 0.5, 1.0, 2.0, 3.0, 20.0]))
     assert share[0] == pytest.approx(1.0, rel=1e-12)
@@ -118,9 +118,6 @@ def test_friction_falls_from_boundary_to_full_film():
     stress = [each.shear_stress(np.array(5.0), np.array(1e-4), np.array(30.0)) for each in (rough, smooth)]
     assert stress[0] == pytest.approx(0.1 * 5.0, rel=1e-3)
     assert stress[1] == pytest.approx(2.5e-9 * 30.0 / 1e-4, rel=1e-12)
-
-
-def test_friction_by_the_film_lies_below_that_of_touching_surfaces():
     use = hip(**QUICK)
     touching = use.film(Lubricant(friction=0.1), cycles=30)
     mixed = use.film(Lubricant(friction=Stribeck(boundary=0.1), cup_roughness=1e-4), cycles=30)
@@ -136,11 +133,17 @@ def test_a_still_ball_has_no_film_and_flexion_alone_does_not_refill_the_core():
     assert "its film falls" in film.note
 
 
-def test_edge_distance_equals_the_closed_form():
+def test_edge_distance_equals_the_closed_form_and_its_azimuth_follows_the_load():
     use = hip()
     contact = bs.HessForsbach().press(use.joint, force=use.cycle.force_magnitudes)
     expected = use.cup.edge_distance(use.joint.socket_radius, contact.half_angle)
     assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
+    lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
+    cycle = Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles)
+    use = hip(cycle=cycle, cup=bs.Cup())
+    edge = use.edge(use.unworn)
+    assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
+    assert edge.closest_approach(use.frame).step_description == "99.5 % of the cycle"
 
 
 def test_contact_at_the_rim_is_noted_with_its_instant():
@@ -173,15 +176,6 @@ def test_edge_distance_decreases_continuously_to_zero(surface):
     model = bs.Sphere(cup=bs.Cup(), surface=surface)
     expected = model.press(use.joint, force=1500.0, tilt=tilts[:10:3]).edge_distance
     assert distance[:10:3] == pytest.approx(expected, abs=0.1)
-
-
-def test_edge_azimuth_follows_the_load():
-    lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
-    cycle = Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles)
-    use = hip(cycle=cycle, cup=bs.Cup())
-    edge = use.edge(use.unworn)
-    assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
-    assert edge.closest_approach(use.frame).step_description == "99.5 % of the cycle"
 
 
 def test_missing_films_are_null_in_json(short_film):
@@ -221,7 +215,7 @@ def test_an_infinite_limit_wears_as_none_and_a_limit_of_zero_wears_nothing(words
     assert nothing.work == pytest.approx(2e5 * 1e3 * hip(**QUICK).first.work, rel=1e-9)
 
 
-def test_archard_wears_by_the_work_below_the_limit():
+def test_archard_wears_by_the_work_below_the_limit_which_json_and_notes_state():
     use, free = limited(1.0), hip(**QUICK)
     assert 0.1 < use.excluded_work_share < 0.9
     assert use.first.volume == pytest.approx((1 - use.excluded_work_share) * free.first.volume, rel=1e-12)
@@ -229,10 +223,6 @@ def test_archard_wears_by_the_work_below_the_limit():
     thickness = use.film(SMOOTH, cycles=5).thickness
     wears = use.wearing_exposure(use.exposure(use.unworn)).pressure > 0
     assert np.array_equal(wears, (thickness < SMOOTH.roughness) & (use.unworn.pressure > 0))
-
-
-def test_json_and_notes_state_the_limit_and_the_excluded_share():
-    use = limited(1.0)
     run, share = use.after(1e5), f"{100 * use.excluded_work_share:.3g} %"
     limit = json.loads(json.dumps(run.summary(), allow_nan=False))["laws"]["film_limit"]
     assert limit == {"lambda": 1.0, "excluded_work_share": use.excluded_work_share}
@@ -240,13 +230,10 @@ def test_json_and_notes_state_the_limit_and_the_excluded_share():
     assert history(hip(**QUICK), 1e4).summary()["laws"]["film_limit"] is None
 
 
-def test_a_file_has_the_limit_with_its_lubricant(tmp_path):
+def test_a_file_has_its_limit_and_prints_its_film_with_its_lubricant(tmp_path, short_film):
     limit = ("[wear]", "[wear]\nfilm_limit = 1.5")
     file = write_edited_file(tmp_path, *SHORT, limit, text=f"{TEXT}\n[film]\nviscosity = '1 mPa s'\n")
     assert read_hip(file).use.film_limit == FilmLimit(ratio=1.5, lubricant=Lubricant(viscosity=1e-3))
-
-
-def test_a_file_that_asks_for_a_film_prints_it_with_its_lubricant(tmp_path, short_film):
     file = write_edited_file(tmp_path, *SHORT, text=f'{TEXT}\n[film]\ncup_roughness = "0.5 um"\n')
     text = " ".join(run("hip", str(file)).stdout.split())
     assert "film with viscosity 2.5 mPa s, roughness Ra 0.02 µm (ball) and 0.5 µm (cup); by default: visc" in text

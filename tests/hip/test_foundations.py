@@ -162,12 +162,9 @@ def test_the_compiled_pass_equals_numpy(name, compiled, monkeypatch):
     np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-11 * other.pressure.max())
 
 
-def test_a_load_that_no_contact_balances_is_not_converged_on_either_path(compiled, monkeypatch):
+def test_a_million_cycles_and_a_load_that_no_contact_balances_are_the_same_on_both_paths(compiled, monkeypatch):
     for solver in (compiled, solve_in_blocks):
         assert not solved_by(solver, monkeypatch, np.nan * WORN, NO_LATERAL_SPRING, False).converged
-
-
-def test_a_million_cycles_are_the_same_on_both_paths(compiled, monkeypatch):
     integrators = []
     for solver in (compiled, solve_in_blocks):
         monkeypatch.setattr(socket_foundation, "spring_solver", lambda solver=solver: solver)
@@ -188,12 +185,9 @@ def test_blocks_of_loads_do_not_change_the_result(monkeypatch):
     assert (SPRINGS.cells_near_contact(together, WORN, 0.3) == near).all()
 
 
-def test_numpy_solves_where_numba_is_not_installed(monkeypatch):
+def test_numpy_solves_where_numba_is_not_installed_which_needs_no_folder_for_its_cache(monkeypatch):
     monkeypatch.setattr(spring_equilibrium, "find_spec", lambda name: None if name == "numba" else find_spec(name))
     assert spring_solver() is solve_in_blocks
-
-
-def test_without_a_folder_for_its_cache_numba_still_compiles(monkeypatch):
     numba = pytest.importorskip("numba")
     plain = numba.njit
 

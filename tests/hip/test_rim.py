@@ -131,7 +131,7 @@ def test_a_ball_leaves_its_bore_if_it_moves_to_the_rim_against_its_spring(mismat
     assert not spring_ball(mismatch).leaves_bore(forces).any()
 
 
-def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
+def test_a_mismatch_moves_the_contact_towards_the_rim_and_onto_it_in_the_swing_phase():
     use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(8.0))
     apart = use.frame.separation
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
@@ -145,6 +145,11 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
     summary = use.after(1e4).summary()["cycle"]["microseparation"]
     assert summary["centre_distance_mm"] == apart.centre_distance
     assert (summary["from"], summary["to"]) == ("59.5 % of the cycle", "2.5 % of the cycle")  # of the next
+    # the spring's 400 N tilt the load by their share of it
+    pulled, straight = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
+    near, far = (use.edge_distance(use.unworn)[use.frame.largest_load_index[0]] for use in (pulled, straight))
+    tilt = np.arctan2(400.0, straight.cycle.force_magnitudes.max())
+    assert near == pytest.approx(far - straight.joint.socket_radius * tilt, abs=0.1)
 
 
 def test_the_load_on_the_rim_points_from_the_centre_to_the_edge():
@@ -189,11 +194,3 @@ def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
         right.frame.separation.displacement * [1, -1, 1], abs=1e-9
     )
     assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
-
-
-def test_a_mismatch_moves_the_contact_towards_the_rim():
-    """The spring's 400 N tilt the load by their share of it."""
-    pulled, straight = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
-    near, far = (use.edge_distance(use.unworn)[use.frame.largest_load_index[0]] for use in (pulled, straight))
-    tilt = np.arctan2(400.0, straight.cycle.force_magnitudes.max())
-    assert near == pytest.approx(far - straight.joint.socket_radius * tilt, abs=0.1)

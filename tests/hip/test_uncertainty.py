@@ -86,7 +86,7 @@ def test_dislocated_patients_are_counted_and_left_out():
     assert bands.summary()["sobol"] is None
 
 
-def test_bands_for_one_coefficient_are_those_of_patients_with_it():
+def test_bands_for_one_coefficient_are_those_of_patients_with_it_and_need_results_and_wear():
     weights, rates = Normal(mean=800.0, deviation=130.0), LogNormal(median=1e6, factor=1.5)
     fits = Rectangular(low=0.08, high=0.12)
     one = variability(coefficient=COEFFICIENT, body_weight=weights, cycles_per_year=rates, clearance=fits)
@@ -101,9 +101,6 @@ def test_bands_for_one_coefficient_are_those_of_patients_with_it():
         assert np.array(bands.population_band("volume", name)) == pytest.approx(expected, rel=0.01)
     low, median, high = (bands.shared.values[name] for name in ("low", "median", "high"))
     assert (high / median, median / low) == pytest.approx((1.5**1.96, 1.5**1.96), rel=1e-3)
-
-
-def test_there_is_no_shared_result_without_results_or_wear():
     two, alone = variability(coefficient=COEFFICIENT, clearance=TIGHT), variability(coefficient=COEFFICIENT)
     sampled = {"coefficient": np.array([K, 2 * K]), "clearance": np.array([0.1, 0.1])}
     unworn, ones = {**sampled, "coefficient": np.array([0.0, K])}, np.ones((2, 1, 6))
@@ -241,15 +238,12 @@ def changed(result, name, index, values):
     return replace(result, **{name: array})
 
 
-def test_edge_loading_is_the_fraction_of_patients_whose_contact_reaches_the_edge():
+def test_edge_loading_is_a_fraction_of_patients_and_their_validity_that_since_the_first_cycle():
     result = cohort(4)
     result = changed(result, "table", np.s_[:, 1, COLUMNS.index("edge_distance")], [0.0, 0.0, 0.1, 0.0])
     assert [report["edge_loading"] for report in bands(result).summary()["bands"]] == [0.0, 0.75]
     result = changed(result, "contact", np.s_[1, 2, 2], 1.0)  # the others are worn to the rim
     assert [report["edge_loaded"] for report in bands(result).summary()["bands"]] == [0.0, 0.25]
-
-
-def test_validity_and_utilisation_are_those_since_the_first_cycle():
     result = cohort(4)
     result = changed(
         result, "contact", np.s_[:, :, 0], [[0.1, 0.2, 0.3], [0.9, 0.2, 0.3], [0.1, 0.5, 0.3], [0.1, 0.2, 0.3]]

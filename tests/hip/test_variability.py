@@ -27,7 +27,7 @@ def variability(use=None, **distributions):
     return PatientVariability(use=use or hip(**QUICK), distributions=distributions)
 
 
-def test_a_patient_has_the_values_of_its_sample():
+def test_a_patient_has_the_values_of_its_sample_and_nominal_ones_of_what_is_not_sampled():
     angle = Normal(mean=0.5, deviation=0.1)
     spread = {"body_weight": WEIGHT, "clearance": TIGHT, "cycles_per_year": LogNormal(median=1e6, factor=2.0)}
     spread |= {"inclination": angle, "anteversion": angle}
@@ -41,9 +41,6 @@ def test_a_patient_has_the_values_of_its_sample():
     assert patient.cycle_ratio == 2.0
     assert patient.use.seconds == 10.0  # the same time with twice as many cycles
     assert patient.simulate([FEW_CYCLES])[0].cycles == 2 * FEW_CYCLES
-
-
-def test_a_patient_has_the_nominal_values_of_what_is_not_sampled():
     one = variability(body_weight=WEIGHT, clearance=TIGHT, coefficient=COEFFICIENT)
     patient, nominal = one.patient({}), one.coarse_simulation
     assert patient.cycle_ratio == 1.0
@@ -70,7 +67,7 @@ def test_cycles_per_year_are_the_median_or_those_of_a_mix():
     assert mixed.patient({"cycles_per_year": 2.2e6}).cycle_ratio == pytest.approx(2.0)
 
 
-def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
+def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants_or_rings_of_full_elasticity():
     fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).coarse_simulation
     assert isinstance(fine.surface, bs.Springs)
     assert (fine.ring_width, fine.cycle.n_steps) == (radians(8.0), 32)
@@ -78,6 +75,14 @@ def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
     same = variability(coarse, clearance=TIGHT).coarse_simulation
     assert (same.ring_width, same.cycle.n_steps) == (radians(9.0), 16)
     assert same.surface is coarse.surface
+    wide = variability(hip(ring_width=radians(10.0)), clearance=TIGHT)
+    shell = replace(wide, surface=bs.ClosedShell())
+    assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
+    assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
+    assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
+    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
+    assert checked.unworn_checks[0].valid
+    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))
 
 
 @pytest.mark.parametrize("cycle", [iso_14242_1(40), iso_14242_4(), rocking()], ids=lambda cycle: cycle.name)
@@ -100,7 +105,7 @@ def test_the_coarse_hip_can_be_pickled_and_wears_as_the_full_one(cycle):
     assert 1e6 / FEW_CYCLES * volume == pytest.approx(use.first.volume, rel=2e-2)
 
 
-def test_results_are_those_of_the_reports():
+def test_results_are_those_of_the_reports_whose_contacts_balance_their_loads(monkeypatch):
     use = replace(hip(creep=logarithmic(), **QUICK), joint=replace(hip().joint, liner=bs.UHMWPE))
     patient = variability(use, clearance=TIGHT).patient({"clearance": 0.1})
     reports = patient.simulate([FEW_CYCLES, 1e4])
@@ -118,9 +123,6 @@ def test_results_are_those_of_the_reports():
     assert (contact[:, 1] == 1).all()
     unloaded = replace(reports[0], edge_distance=np.array([]))
     assert result_table([unloaded])[0, RESULT_COLUMNS["edge_distance"]] == inf
-
-
-def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
     patient = variability(clearance=TIGHT).patient({})
     report = replace(patient.simulate([FEW_CYCLES])[0], converged=False)
     monkeypatch.setattr("ballsocket.hip.variability.make_report", lambda run: report)
@@ -139,14 +141,3 @@ def test_patients_with_the_real_cup_share_its_compliance_and_wear_as_on_springs(
         assert 0 < abs(elastic.volume / springs.volume - 1) < 0.01
         assert elastic.depth == pytest.approx(springs.depth, rel=0.03)
         assert elastic.max_pressure == pytest.approx(springs.max_pressure, rel=0.03)
-
-
-def test_patients_with_full_elasticity_have_rings_that_its_model_allows():
-    wide = variability(hip(ring_width=radians(10.0)), clearance=TIGHT)
-    shell = replace(wide, surface=bs.ClosedShell())
-    assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
-    assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
-    assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
-    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
-    assert checked.unworn_checks[0].valid
-    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))

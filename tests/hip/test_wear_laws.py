@@ -131,7 +131,7 @@ def test_summaries_have_units_in_their_keys():
     assert law_summary(SimpleNamespace(depth=None)) == {"law": "SimpleNamespace"}
 
 
-def test_laws_are_read_with_their_units():
+def test_laws_are_read_with_their_units_and_the_creep_law_follows_from_its_keys():
     archard = read_wear_law({"coefficient": "2e-15 m^3/(N m)"})
     assert (archard.name, archard.coefficient) == ("archard", pytest.approx(2e-6))
     law = read_wear_law({"law": "cross-shear", "coefficient": 1e-6, "circular": 2e-6, "reference": "500 kPa"})
@@ -145,9 +145,6 @@ def test_laws_are_read_with_their_units():
     assert [wear_factor("coefficient", text) for text in per_work] == pytest.approx([1e-6] * 7, rel=1e-12)
     for text in ("1e-6 mm/m", "1e-6 mm^3/(mm^2 m)", "1e-9", 1e-9):
         assert wear_per_slide("coefficient", text) == pytest.approx(1e-9, rel=1e-12)
-
-
-def test_the_creep_law_follows_from_its_keys():
     assert read_creep_law({}, 0.4) == LogarithmicCreep()
     chain = read_creep_law({"compliances": [1e-3], "times": [60], "confinement": "constrained"}, 0.4)
     assert (chain.compliances, chain.times, chain.confinement) == ((1e-3,), (60.0,), pytest.approx(7 / 15))
@@ -217,7 +214,7 @@ def test_penetration_has_bedding_in_and_then_a_steady_rate():
     assert any("not verified" in note for note in history.notes)
 
 
-def test_confinement_scales_the_strain_of_a_free_bar():
+def test_confinement_scales_the_strain_of_a_free_bar_and_is_noted():
     """Uniaxial strain: σr = σθ = ν/(1 - ν) σz, hence εz = σz (1 - 2 ν²/(1 - ν))/E."""
     for poisson in (0.0, 0.3, 0.4, 0.49, 0.5):
         assert constrained_share(poisson) == pytest.approx(1 - 2 * poisson**2 / (1 - poisson), abs=1e-15)
@@ -228,9 +225,6 @@ def test_confinement_scales_the_strain_of_a_free_bar():
         after = [one.advance_strain(one.initial_strain(2), pressure, seconds) for one in (LADDER, confined)]
         assert after[1] == pytest.approx(share * after[0], rel=1e-14)
     assert (replace(LADDER, confinement=1.0).response(1e4) == LADDER.response(1e4)).all()
-
-
-def test_confined_liner_creeps_less_and_has_a_note():
     free, confined = (hip(creep=logarithmic(share), **QUICK) for share in (1.0, constrained_share(0.4)))
     deep, less = (report_after(use, 1e3).creep_depth for use in (free, confined))
     assert constrained_share(0.4) * deep < less < deep  # pressures fall less where less creeps
@@ -238,16 +232,13 @@ def test_confined_liner_creeps_less_and_has_a_note():
     assert any(re.search(r"creep strain is [0-9.]+ of that of a free bar", note) for note in confined.notes)
 
 
-def test_creep_does_not_depend_on_the_block_length(monkeypatch):
+def test_creep_depends_on_time_and_not_on_cycles_or_the_block_length(monkeypatch):
     use = hip(creep=LADDER, **QUICK)
     usual = report_after(use, 3e5)
     monkeypatch.setattr(wear_integrator, "_CREEP_GROWTH", wear_integrator._CREEP_GROWTH / 2)
     finer = report_after.__wrapped__(use, 3e5)
     assert usual.creep_depth == pytest.approx(finer.creep_depth, rel=0.01)
     assert usual.volume == pytest.approx(finer.volume, rel=0.005)
-
-
-def test_creep_depends_on_time_and_not_on_cycles():
     slow = report_after(hip(creep=LADDER, seconds_per_cycle=100.0, **QUICK), 1e4)
     usual = report_after(hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K), **QUICK), 1e6)
     assert slow.creep_depth == pytest.approx(usual.creep_depth, rel=1e-2)

@@ -81,17 +81,14 @@ def test_an_end_of_a_profile_is_a_constrained_minimum_at_the_limit_of_the_rise()
             assert rises[100] == pytest.approx(rises.min(), abs=0.05)
 
 
-def test_a_band_that_ends_at_an_end_of_a_range_is_reported():
+def test_a_band_that_ends_at_an_end_of_a_range_is_reported_but_not_at_a_physical_limit():
+    """A very stiff machine is identifiable: its compliance cannot be below 0."""
     fit = identified(*angles_and_pressures(1000), free=NARROW)
     assert (fit["liner_young"].low, fit["liner_young"].high) == (600.0, 1000.0)
     assert fit["liner_young"].limited_by == ("liner_young",)
     assert fit["clearance"].limited_by == ("liner_young",)
     assert "the band of liner_young ends at 600 MPa and 1000 MPa, the end of its range" in fit.notes
     assert "the band of clearance ends where the range of liner_young ends" in fit.notes
-
-
-def test_a_band_may_end_at_a_physical_limit():
-    """A very stiff machine is identifiable: its compliance cannot be below 0."""
     machine = Machine(compliance=(0.0, 2e-5))
     fit = identified(indentations(machine=machine), free={"clearance": (0.02, 0.4)})
     compliance = fit["machine.compliance"]
@@ -121,7 +118,7 @@ def unstated(seed=3, quantity="indentation"):
     return Measured(quantity=quantity, values=values, force=PRESS, name="press")
 
 
-def test_an_unknown_noise_is_estimated_and_said():
+def test_an_unknown_noise_is_estimated_and_said_for_each_data_set():
     """Its bands are those of the estimated noise, wider by Student's quantile."""
     data = unstated(quantity="displacement")
     unknown = identified(data, free=CLEARANCE)
@@ -139,9 +136,6 @@ def test_an_unknown_noise_is_estimated_and_said():
     assert not stated.summary()["data"][0]["uncertainty_estimated"]
     next_press = next(gain.candidate for gain in unknown.next.gains if gain.candidate.quantity == "indentation")
     assert next_press.uncertainty == pytest.approx(estimate, rel=1e-6)
-
-
-def test_each_data_set_has_its_own_noise():
     areas = MODEL.press(TRUTH, force=PRESS).area + np.random.default_rng(7).normal(0, 5.0, 12)
     both = identified(unstated(4), Measured(quantity="area", values=areas, force=PRESS), free=CLEARANCE)
     assert [float(sigma[0]) for sigma in both.uncertainties] == pytest.approx([4e-4, 5.0], rel=0.6)

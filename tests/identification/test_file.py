@@ -159,15 +159,12 @@ def test_a_file_is_identified(question, name):
     assert given.identify_unknowns().point == pytest.approx(TRUTH, rel=2e-3)
 
 
-def test_the_drift_of_a_machine_is_read_with_the_order_of_the_readings(question):
+def test_a_drift_is_read_with_the_order_of_readings_and_a_stiffness_as_the_frequency_of_a_mass(question):
     values = ", ".join(f'"{1e3 * value:.6f} um"' for value in READ + 3e-4 * np.arange(4.0, -1.0, -1.0))
     inline = f'quantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\norder = [4, 3, 2, 1, 0]'
     given = question(('offset = "2 um"', 'offset = "2 um"\ndrift = "-1..1 um"'), ('file = "press.csv"', inline))
     assert given.data[0].machine.drift == pytest.approx((-1e-3, 1e-3))
     assert given.identify_unknowns().point["frame.drift"] == pytest.approx(3e-4, rel=0.05)
-
-
-def test_the_frequency_of_a_mass_measures_the_stiffness(question):
     frequency = (1e3 * CONTACT.stiffness[4] / 2.0) ** 0.5 / (2 * np.pi)
     swing = f'quantity = "frequency"\nvalues = "{frequency} Hz"\nmass = "2 kg"\nforce = "3 kN"\nuncertainty = "0.1 %"\n'
     given = question(after=f"\n[[data]]\n{swing}")

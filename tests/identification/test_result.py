@@ -167,7 +167,7 @@ def candidates_of(quantity, result):
     return [candidate for candidate in standard_candidates(result) if candidate.quantity == quantity]
 
 
-def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_largest():
+def test_standard_candidates_are_six_loads_with_the_absolute_or_relative_uncertainty_of_the_data():
     result = identified(measured())
     candidates = candidates_of("indentation", result)
     np.testing.assert_allclose([candidate.force for candidate in candidates], 4500.0 * np.arange(1, 7) / 6)
@@ -179,9 +179,6 @@ def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_larges
     assert candidates_of("indentation", identified(by_depth))[-1].force == pytest.approx(4500.0, rel=1e-3)
     free_play = Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01)
     assert candidates_of("indentation", identified(free_play))[-1].force == pytest.approx(3000.0)
-
-
-def test_the_uncertainty_of_a_candidate_is_absolute_or_relative_as_in_the_data():
     constant = candidates_of("indentation", identified(measured()))
     assert [candidate.uncertainty for candidate in constant] == pytest.approx([2e-4] * 6)
     result = identified(measured(uncertainty=0.03 * CONTACT.indentation))
@@ -216,23 +213,20 @@ def test_the_gain_of_one_unknown_is_half_the_logarithm_of_the_growth(scatter, we
     assert gain.summary() == {**stated, "bits": gain.bits, "left": gain.uncertainty_ratio}
 
 
-def test_a_candidate_without_a_result_is_omitted():
+def test_gains_are_in_descending_order_without_candidates_that_have_no_result():
     depth = bs.Tabulated().press(JOINT, force=FORCE).indentation
     data = Measured(quantity="indentation", values=depth, uncertainty=2e-4, force=FORCE)
     result = identified(data, model=bs.Tabulated())
     assert experiment(result, [Candidate("indentation", 1e-3, 1e12)]).gains == ()
-
-
-def gain(quantity, bits, identifies=()):
-    return Gain(Candidate(quantity, 1.0), bits, {}, identifies)
-
-
-def test_gains_are_in_descending_order_and_the_best_of_a_quantity_comes_first():
     found = experiment(identified(measured()))
     assert [gain.bits for gain in found.gains] == sorted((gain.bits for gain in found.gains), reverse=True)
     assert found.best is found.gains[0]
     gains = (gain("area", 3.0), gain("half_angle", 2.0), gain("area", 1.0))
     assert Experiment(gains, ()).best_by_quantity == gains[:2]
+
+
+def gain(quantity, bits, identifies=()):
+    return Gain(Candidate(quantity, 1.0), bits, {}, identifies)
 
 
 def test_sufficient_quantities_identify_every_unidentifiable_unknown():
@@ -242,33 +236,12 @@ def test_sufficient_quantities_identify_every_unidentifiable_unknown():
     assert Experiment(gains, ()).sufficient_quantities == ()
 
 
-def test_coverage_and_bias_of_trials():
+def test_trials_have_coverage_and_bias_and_repeat_with_their_seed():
     middle = np.array([[0.1, 1.0], [-0.1, 1.2], [0.4, 1.0], [0.0, 1.2]])
     tried = Trials(("a", "b"), np.array([0.0, 1.0]), middle, middle - 0.2, middle + 0.2)
     assert tried.summary() == {"trials": 4, "coverage": tried.coverage, "bias": tried.bias}
     assert tried.coverage == {"a": 0.75, "b": 1.0}
     assert tried.bias == pytest.approx({"a": 0.25, "b": 0.25})
-
-
-def test_synthetic_data_scatter_about_the_results_with_the_widened_uncertainty_of_values_and_loads():
-    result = identified(measured(load_uncertainty=60.0))
-    wide = replace(result, misfit=replace(result.misfit, widening=3.0))
-    noise = result.misfit.uncertainty * np.random.default_rng(5).standard_normal(6)
-    for fitted, factor in ((result, 1.0), (wide, 3.0)):
-        (drawn,) = draw_data_sets(fitted, np.random.default_rng(5))
-        np.testing.assert_allclose(drawn.values, result.results[0] + factor * noise, rtol=1e-12)
-
-
-def test_synthetic_data_are_saturated_and_not_negative():
-    film = Measured(quantity="max_pressure", values=[2.0, 6.0], uncertainty=50.0, force=FORCE[[1, 2]], saturation=6.0)
-    result = identified(film, measured(uncertainty=0.2, machine=Machine()), measured())
-    drawn = [draw_data_sets(result, np.random.default_rng(seed)) for seed in range(20)]
-    pressures, depths = (np.stack([sets[index].values for sets in drawn]) for index in (0, 1))
-    assert (pressures.min(), pressures.max()) == (0.0, 6.0)
-    assert depths.min() < 0.0  # as a machine may read
-
-
-def test_trials_repeat_with_their_seed():
     result = identified(measured())
     first, second, third = (trials(result, 3, seed=seed) for seed in (0, 0, 2))
     np.testing.assert_allclose(first.middle, second.middle, rtol=1e-9)
@@ -278,3 +251,18 @@ def test_trials_repeat_with_their_seed():
     assert first.names == ("clearance",)
     np.testing.assert_array_equal(first.truth, result.best.theta)
     np.testing.assert_allclose(trials(result, 1).middle, first.middle[:1], rtol=1e-9)
+
+
+def test_synthetic_data_scatter_by_the_widened_uncertainty_and_are_saturated_and_not_negative():
+    result = identified(measured(load_uncertainty=60.0))
+    wide = replace(result, misfit=replace(result.misfit, widening=3.0))
+    noise = result.misfit.uncertainty * np.random.default_rng(5).standard_normal(6)
+    for fitted, factor in ((result, 1.0), (wide, 3.0)):
+        (drawn,) = draw_data_sets(fitted, np.random.default_rng(5))
+        np.testing.assert_allclose(drawn.values, result.results[0] + factor * noise, rtol=1e-12)
+    film = Measured(quantity="max_pressure", values=[2.0, 6.0], uncertainty=50.0, force=FORCE[[1, 2]], saturation=6.0)
+    result = identified(film, measured(uncertainty=0.2, machine=Machine()), measured())
+    drawn = [draw_data_sets(result, np.random.default_rng(seed)) for seed in range(20)]
+    pressures, depths = (np.stack([sets[index].values for sets in drawn]) for index in (0, 1))
+    assert (pressures.min(), pressures.max()) == (0.0, 6.0)
+    assert depths.min() < 0.0  # as a machine may read

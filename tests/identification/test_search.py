@@ -267,15 +267,12 @@ def fitted(*settings, **options):
     return misfit, find_best_fit(misfit, seed=0)
 
 
-def test_the_best_fit_of_a_linear_problem_is_the_least_squares_solution():
+def test_the_best_fit_is_the_least_squares_solution_with_a_prior_as_one_more_value():
     misfit, best = fitted(NOISE)
     expected, squares, *_ = np.linalg.lstsq(MATRIX, MATRIX @ TRUTH + NOISE, rcond=None)
     np.testing.assert_allclose(misfit.transform.to_values(best.theta), expected, atol=1e-9)
     assert best.cost == pytest.approx(squares[0] / 2 / 0.02**2, rel=1e-9)
     assert (best.converged, best.rivals, misfit.freedom) == (True, (), 3)
-
-
-def test_a_prior_distribution_is_one_more_value():
     prior = Normal(mean=0.0, deviation=0.005)
     misfit, best = fitted(NOISE, (unknown(NAMES[0], prior, -0.04, 0.04), unknown(NAMES[1])))
     rows = np.vstack([MATRIX / 0.02, [[1 / 0.005, 0.0]]])
@@ -326,15 +323,12 @@ def test_ends_of_profiles_are_at_the_marginal_standard_deviation():
     np.testing.assert_allclose(profiles.lowest, best.theta, atol=1e-6)
 
 
-def test_a_profile_ends_at_the_end_of_the_range():
+def test_a_profile_ends_at_the_end_of_the_range_of_its_unknown_or_of_another():
     misfit, best = fitted(unknowns=(unknown(NAMES[0], low=0.099, high=0.45), unknown(NAMES[1])))
     (((low, high), _),) = profile_ends(misfit, [best.theta], best.cost, (4.0,)).ends
     assert (low.closed, low.limited_by, high.closed) == (False, (0,), True)
     assert low.theta[0] == pytest.approx(misfit.transform.low[0])
-
-
-def test_the_range_of_one_unknown_limits_the_band_of_another():
-    """Two nearly parallel columns: the one may only move as far as the range of the other."""
+    # of two nearly parallel columns, the one may only move as far as the range of the other
     matrix = np.stack([MATRIX[:, 0], MATRIX[:, 0] + 1e-3 * MATRIX[:, 1]], axis=1)
     misfit, best = fitted(unknowns=(unknown(NAMES[0]), unknown(NAMES[1], low=-0.25, high=-0.15)), matrix=matrix)
     ((first, second),) = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends
@@ -352,16 +346,13 @@ def test_the_scatter_ratio_is_birges_ratio_or_one(factor):
     assert scatter_ratio(misfit, best) == pytest.approx(max(ratio, 1.0), rel=1e-5)
 
 
-def test_the_scatter_ratio_ignores_lower_bounds_below_the_result():
+def test_the_scatter_ratio_ignores_met_lower_bounds_and_is_the_likeliest_scale_of_a_heavy_tail():
     saturated = linear_misfit(NOISE)
     object.__setattr__(saturated, "saturated", np.ones(5, dtype=bool))
     best = FitResult(saturated.transform.to_theta(TRUTH + 0.3), 0.0, True)
     results = saturated.forward.results_at(saturated.transform.to_values(best.theta[None]))[0]
     z = np.minimum(saturated.standardised_residuals(results), 0.0)
     assert scatter_ratio(saturated, best) == pytest.approx(max(sqrt(np.sum(z**2) / 3), 1.0), rel=1e-5)
-
-
-def test_the_scatter_ratio_of_a_heavy_tail_is_its_most_likely_scale():
     noise = np.array([0.06, -0.07, 0.09, -0.06, 0.5])
     misfit = linear_misfit(noise, scatter=HeavyTailed())
     u = noise / 0.02 / scatter_ratio(misfit, FitResult(misfit.transform.to_theta(TRUTH), 0.0, True))
@@ -431,7 +422,7 @@ def test_an_unknown_that_an_unidentifiable_one_shifts_is_unidentifiable_too(shif
     assert information_of(directions, (0.2, half), closed=(True, False)).unidentifiable == ("b",)
 
 
-def test_parallel_bands_are_one_unidentifiable_direction():
+def test_parallel_bands_are_one_product_with_powers_in_halves():
     matrix = 5e3 * np.ones((2, 2))
     information = information_of(DIAGONAL, (2.0, 2.0), OPEN, matrix=matrix)
     assert (information.unidentifiable, information.rank) == (("a", "b"), 1)
@@ -442,9 +433,6 @@ def test_parallel_bands_are_one_unidentifiable_direction():
     half = np.exp(QUANTILE_95 * SPAN * sqrt(2 / 1e4))
     assert (product.low, product.value, product.high) == pytest.approx((9.0 / half, 9.0, 9.0 * half), rel=1e-6)
     assert information_of(np.eye(2), (2.0, 2.0), OPEN, matrix=matrix).rank == 0  # perpendicular
-
-
-def test_powers_of_a_product_are_rounded_to_halves():
     direction = np.array([1.0, 2.02]) / np.linalg.norm([1.0, 2.02])
     across = np.array([[direction[1], -direction[0]]] * 2)
     information = information_of(across, (2.0, 2.0), OPEN, matrix=1e4 * np.outer(direction, direction))

@@ -136,18 +136,13 @@ def test_a_ball_that_turns_about_its_load_has_no_steady_film(method, spin):
     assert any("no lubricant enters" in note for note in film.notes)
 
 
-def test_a_film_at_rest_is_squeezed_out_with_the_root_of_time():
-    """On springs h ~ t^(-1/2) once the first film is forgotten."""
+def test_a_film_at_rest_is_squeezed_out_with_the_root_of_time_and_a_dry_one_fills_from_the_inlet():
+    """On springs h ~ t^(-1/2) once the first film is forgotten; a dry one fills while the ball turns by its width."""
     dry = dry_contact(CONTACT, radians(2.0))
     wave = FilmWave(contact=dry, viscosity=2.5e-9, spin=np.zeros(3), flood=1e-3)
     early = wave.advance(np.full(dry.mesh.cells, 1e-3), 2.0)
     late = wave.advance(early, 6.0)
     assert late[dry.inside].mean() == pytest.approx(early[dry.inside].mean() / 2, rel=0.02)
-
-
-def test_a_film_starts_up_from_the_inlet():
-    """A dry contact fills while the ball turns by its width."""
-    dry = dry_contact(CONTACT, radians(2.0))
     wave = FilmWave(contact=dry, viscosity=2.5e-9, spin=np.array([1.5, 0.0, 0.0]))
     steady, _ = wave.solve_steady()
     first = wave.advance(np.zeros(dry.mesh.cells), 0.3)
@@ -194,9 +189,6 @@ def test_films_of_few_molecules_and_turbulent_films_are_not_valid():
         film = bs.film(CONTACT, cell_width=radians(4.0), **words)
         assert not film.valid
         assert any(note in text for text in film.notes)
-
-
-def test_reynolds_number_is_that_of_a_film_of_water():
     film = bs.film(CONTACT)
     assert film.reynolds_number == pytest.approx(1000.0 * 0.027 * film.central / 1e3 / 2.5e-3)
     assert film.valid

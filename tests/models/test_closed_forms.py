@@ -71,7 +71,7 @@ def test_plain_numbers_give_the_results_of_arrays(model):
         assert getattr(number, name) == pytest.approx(getattr(array, name)[0], rel=1e-12), name
 
 
-def test_vessel_modulus_is_the_thick_sphere_under_uniform_pressure():
+def test_moduli_have_their_formulas_and_a_vessel_that_of_a_thick_sphere_under_uniform_pressure():
     E, nu, a, b = 1000.0, 0.35, 18.0, 24.75
     # u = A r + B/r² with u(b) = 0 and σ_rr(a) = -p
     lame, shear = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
@@ -79,9 +79,6 @@ def test_vessel_modulus_is_the_thick_sphere_under_uniform_pressure():
     displacement_per_A = a - b**3 / a**2
     joint = replace(HIP, liner=bs.Material(young=E, poisson=nu))
     assert bs.spherical_vessel(joint) == pytest.approx(stress_per_A / -displacement_per_A, rel=1e-12)
-
-
-def test_moduli_have_their_formulas():
     E, nu, R2, L = 1000.0, 0.4, 18.0, 6.75
     kappa = R2 / (R2 + L)
     joint = replace(HIP, liner=bs.Material(young=E, poisson=nu))
@@ -140,7 +137,8 @@ def test_pressure_of_steuermann_is_that_of_his_formula(order):
         assert contact.pressure(r / R2) == pytest.approx(E / pi * kappa * A * 2 * order * integral, rel=1e-9)
 
 
-def test_adhesion_holds_the_ball_until_the_pull_off():
+def test_adhesion_holds_the_ball_until_the_pull_off_and_an_adhering_patch_without_indentation():
+    """At d = 0 the patch of cos ε = 1 - η adheres; a smaller one belongs to a ball that is pulled."""
     model = bs.AdhesiveSocket(work_of_adhesion=1e-3)
     stretch, eta = model.critical_stretch(HIP), model.adhesion_number(HIP)
     K = bs.hess_forsbach(HIP)
@@ -152,6 +150,11 @@ def test_adhesion_holds_the_ball_until_the_pull_off():
     depths = np.linspace(-0.02, 0.02, 8001)
     forces = model.force(HIP.with_numbers([np.array([float(x)]) for x in HIP.numbers()]), depths)
     assert -forces.min() == pytest.approx(model.pull_off(HIP), rel=1e-6)
+    patch = np.arccos(1 - model.adhesion_number(HIP))
+    assert model.press(HIP, indentation=0.0).half_angle == pytest.approx(patch, rel=1e-9)
+    contact = model.press(HIP, half_angle=patch * np.array([0.99, 1.01]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.NOT_REACHED, bs.Status.OK])
+    assert contact.indentation[1] > 0
 
 
 def test_validity_ends_at_the_stated_poisson_ratios():
@@ -182,16 +185,6 @@ def test_half_space_fails_exactly_beyond_a_quarter_turn():
         contact = bs.Hertz().press(HIP, indentation=(angle * HIP.socket_radius) ** 2 / radius)
         assert contact.half_angle == pytest.approx(angle, rel=1e-12)
         assert contact.status is status
-
-
-def test_no_indentation_has_a_half_angle_below_that_of_the_adhering_patch():
-    """At d = 0 the patch of cos ε = 1 - η adheres; a smaller one belongs to a ball that is pulled."""
-    model = bs.AdhesiveSocket(work_of_adhesion=1e-3)
-    patch = np.arccos(1 - model.adhesion_number(HIP))
-    assert model.press(HIP, indentation=0.0).half_angle == pytest.approx(patch, rel=1e-9)
-    contact = model.press(HIP, half_angle=patch * np.array([0.99, 1.01]))
-    np.testing.assert_array_equal(contact.status, [bs.Status.NOT_REACHED, bs.Status.OK])
-    assert contact.indentation[1] > 0
 
 
 @pytest.mark.parametrize(

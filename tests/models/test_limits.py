@@ -68,12 +68,9 @@ def test_exact_kinematics_have_no_result_at_extreme_loads():
     assert contact.notes[0] == "1 of 2: the model does not reach this load"
 
 
-def test_vessel_modulus_of_a_thin_liner_is_that_of_a_bonded_layer():
+def test_modulus_of_a_thin_liner_is_that_of_a_bonded_layer_and_of_a_massive_socket_finite():
     joint = hip(liner_thickness=1e-3)
     assert bs.spherical_vessel(joint) == pytest.approx(bs.bonded_layer(joint), rel=2e-4)
-
-
-def test_massive_socket_has_finite_moduli():
     joint = hip(liner_thickness=np.inf)
     assert bs.spherical_vessel(joint) == pytest.approx(2 * 1000.0 / (1.4 * 18.0))
     assert bs.hess_forsbach(joint) == pytest.approx(1.06 * 1000.0 / 18.0)
@@ -98,11 +95,8 @@ test_joints_without_an_answer_are_refused = refused_calls(
 )
 
 
-def test_hess_forsbach_has_incompressible_liners():
+def test_an_incompressible_liner_has_an_answer_by_hess_forsbach_and_a_status_by_bartel():
     assert bs.HessForsbach().press(STIFF, force=3000.0).max_pressure > 0
-
-
-def test_one_invalid_point_of_many_has_a_status():
     poisson = np.full(20_000, 0.4)
     poisson[777] = 0.5
     contact = bs.Bartel().press(hip(liner=bs.Material(young=1000.0, poisson=poisson)), force=3000.0)
@@ -112,15 +106,12 @@ def test_one_invalid_point_of_many_has_a_status():
     assert contact.notes[0] == "1 of 20000: the model has no formula for this joint"
 
 
-def test_steuermann_of_order_one_is_hertz():
+def test_hertz_has_the_textbook_formulas_and_is_steuermann_of_order_one():
+    """F = 4/3 E* a³/R*, d = a²/R*, p0 = 3F/(2π a²)."""
     one, hertz = (model.press(HIP, force=3000.0) for model in (bs.Steuermann(exponent=1), bs.Hertz()))
     angle = np.linspace(0.0, 1.2, 30)
     np.testing.assert_allclose(one.pressure(angle), hertz.pressure(angle), rtol=1e-12)
     assert one.energy == pytest.approx(hertz.energy)
-
-
-def test_hertz_has_the_textbook_formulas():
-    """F = 4/3 E* a³/R*, d = a²/R*, p0 = 3F/(2π a²)."""
     contact = bs.Hertz().press(HIP, force=100.0)
     R = 17.9 * 18.0 / 0.1
     a = np.sqrt(R * contact.indentation)
@@ -129,15 +120,12 @@ def test_hertz_has_the_textbook_formulas():
     assert contact.half_angle == pytest.approx(a / 18.0)
 
 
-def test_plane_layer_of_a_narrow_contact_is_hertz():
+def test_plane_layer_is_hertz_in_a_narrow_contact_and_a_row_of_columns_in_a_wide_one():
+    """Wide, a >> L, and compressible: p = K_BL u, so d = a²/(2R*) and F = (π/4) K_BL a⁴/R*."""
     joint = hip(liner_thickness=3000.0, ball=None)
     layer, hertz = (model.press(joint, force=1.0) for model in (bs.PlaneLayer(), bs.Hertz()))
     for name in ("indentation", "max_pressure", "half_angle", "stiffness", "energy"):
         assert getattr(layer, name) == pytest.approx(getattr(hertz, name), rel=1e-3), name
-
-
-def test_plane_layer_of_a_wide_contact_is_a_row_of_columns():
-    """a >> L, compressible: p = K_BL u, so d = a²/(2R*) and F = (π/4) K_BL a⁴/R*."""
     joint = hip(liner_thickness=0.3, liner=bs.Material(young=1000.0, poisson=0.2))
     contact = bs.PlaneLayer().press(joint, half_angle=0.4)
     a, R = 0.4 * 18.0, 17.9 * 18.0 / 0.1

@@ -28,15 +28,12 @@ def test_outside_table_3_the_last_column_is_used_and_noted():
         assert any("outside ν 0.15 to 0.47" in note for note in contact.notes) == (poisson > 0.47)
 
 
-def test_bartel_has_the_reference_values_at_3000_newton():
+def test_bartel_has_the_reference_values_at_3000_newton_and_the_published_overestimates():
+    """Heß & Forsbach 2021, Fig. 4, ν 0.45: pmax of Bartel and of the bonded layer is far above the paper's model."""
     contact = bs.Bartel().press(HIP, force=3000.0)
     assert contact.indentation == pytest.approx(0.03872, abs=5e-6)
     assert contact.max_pressure == pytest.approx(11.7168, abs=5e-5)
     assert np.degrees(contact.half_angle) == pytest.approx(43.718, abs=5e-4)
-
-
-def test_published_overestimates_at_high_poisson_ratio_have_their_sign():
-    """Heß & Forsbach 2021, Fig. 4: Bartel's and the bonded layer's maximum pressure are far above the paper's model."""
     joint = HIP.replace(liner=bs.Material(young=1e3, poisson=0.45))
     models = bs.HessForsbach(), bs.Bartel(), bs.BondedLayer()
     paper, bartel, bonded = (model.press(joint, force=3000.0).max_pressure for model in models)
@@ -60,13 +57,10 @@ def test_pull_off_force_has_the_reference_values(eta, share):
     assert socket.pull_off(HIP) == pytest.approx(np.pi * 18.0**2 * K * HIP.clearance * share, rel=2.5e-6)
 
 
-def test_weak_adhesion_has_the_pull_off_force_of_a_sphere():
+def test_weak_adhesion_has_the_pull_off_force_of_a_sphere_and_a_strong_one_sticks_a_hemisphere():
     w = 1e-9
     expected = 2 * np.pi * w * 18.0**2 / 0.1
     assert bs.AdhesiveSocket(work_of_adhesion=w).pull_off(HIP) == pytest.approx(expected, rel=1e-3)
-
-
-def test_hemisphere_sticks_above_adhesion_number_one():
     K = bs.hess_forsbach(HIP)
     socket = bs.AdhesiveSocket(work_of_adhesion=K * (1.2 * HIP.clearance) ** 2 / 2)
     contact = socket.press(HIP, force=10.0)
@@ -93,7 +87,8 @@ def test_pin_in_hole_has_the_values_of_persson(degrees, flexibility, pressure):
     assert np.degrees(back.half_angle) == pytest.approx(degrees, rel=1e-12)
 
 
-def test_pin_in_hole_has_the_perfect_fit_angle_and_balances_its_load():
+def test_pin_in_hole_has_the_perfect_fit_angle_balances_its_load_and_begins_as_a_hertz_cylinder():
+    """b² = 4 Q R*/(π E*) with E* = E1/2 for equal materials, p0 = 2Q/(π b)."""
     fit = bs.Joint(ball_radius=10.0, clearance=0.0, liner_thickness=np.inf, liner=ALUMINIUM, ball=ALUMINIUM)
     contact = bs.PinInHole().press(fit, line_load=np.array([1.0, 1000.0]))
     np.testing.assert_allclose(np.degrees(contact.half_angle), 84.83, atol=5e-3)
@@ -101,10 +96,6 @@ def test_pin_in_hole_has_the_perfect_fit_angle_and_balances_its_load():
     angle = np.linspace(-loose.half_angle, loose.half_angle, 400_001)
     total = np.trapezoid(loose.pressure(angle) * np.cos(angle), angle) * 10.1
     assert total == pytest.approx(2000.0, rel=1e-6)
-
-
-def test_pin_in_hole_under_a_light_load_is_a_hertz_cylinder():
-    """b² = 4 Q R*/(π E*) with E* = E1/2 for equal materials, p0 = 2Q/(π b)."""
     contact = bs.PinInHole().press(PLATE, line_load=1e-3)
     half_width = np.sqrt(8 * 1e-3 * (10.1**2 / 0.1) / (np.pi * 70_000.0 / (1 - 0.09)))
     assert contact.max_pressure == pytest.approx(2e-3 / (np.pi * half_width), rel=1e-4)

@@ -72,11 +72,18 @@ def test_the_tilt_is_the_angle_that_a_force_was_turned_by(cup, angle, length):
     assert cup.tilt(force) == pytest.approx(angle, abs=1e-14)
 
 
-def test_directions_over_time_give_angles_over_time():
+def test_tilt_of_a_vertical_load_combines_both_angles_and_follows_directions_over_time():
     forces = np.array([[MEDIAL, UP], [(0.0, 1.0, 1.0), (0.0, 0.0, -2.0)]])
     np.testing.assert_allclose(np.degrees(bs.Cup().tilt(forces)), [[15.0, 0.0], [45.0, 180.0]], atol=1e-12)
     assert type(bs.Cup().tilt(MEDIAL)) is float
     assert bs.Cup().edge_distance(10.0, np.zeros(2), forces).shape == (2, 2)
+    cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
+    assert cup.tilt(UP) == pytest.approx(np.arccos(cos(radians(45.0)) * cos(radians(15.0))), rel=1e-12)
+    assert cup.tilted(0.7).tilt(UP) == pytest.approx(0.7, rel=1e-12)
+    assert cup.tilted(0.7).anteversion == 0.0
+    assert not bs.Cup(arc_of_cover=3.0).oriented
+    assert bs.Cup(inclination=0.0).oriented
+    assert bs.Cup(anteversion=0.0).oriented
 
 
 @given(st.builds(bs.Cup, **ORIENTED))
@@ -87,16 +94,6 @@ def test_frame_is_right_handed_and_orthonormal(cup):
     np.testing.assert_allclose(z, cup.dome, atol=1e-15)
     assert x[1] == 0.0  # x lies in the plane of the rim and in the frontal plane
     assert x[2] >= 0.0
-
-
-def test_tilt_of_a_vertical_load_combines_both_angles():
-    cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
-    assert cup.tilt(UP) == pytest.approx(np.arccos(cos(radians(45.0)) * cos(radians(15.0))), rel=1e-12)
-    assert cup.tilted(0.7).tilt(UP) == pytest.approx(0.7, rel=1e-12)
-    assert cup.tilted(0.7).anteversion == 0.0
-    assert not bs.Cup(arc_of_cover=3.0).oriented
-    assert bs.Cup(inclination=0.0).oriented
-    assert bs.Cup(anteversion=0.0).oriented
 
 
 def test_rim_distance_decreases_with_tilt_and_half_angle():

@@ -282,16 +282,13 @@ def test_strengths_are_listed_and_removed():
     assert bare.numbers() == joint.numbers()
 
 
-def test_texts_of_joints():
+def test_texts_of_joints_state_the_clearance_or_an_interference_which_is_a_negative_one():
     joint = bs.Joint(ball_radius=17.0, clearance=0.25, liner_thickness=np.inf, liner=bs.UHMWPE, name="test")
     assert joint.dimensions == "R1 17 mm, clearance 0.25 mm, massive socket"
     assert str(joint) == f"test: {joint.dimensions} of {bs.UHMWPE}; ball rigid"
     summary = joint.summary()
     assert (summary["liner_thickness"], summary["socket_radius"]) == ("inf", 17.25)
     assert (summary["ball"], summary["backing"], summary["support"]) == (None, [], "fixed")
-
-
-def test_an_interference_is_a_negative_clearance():
     joint = bs.Joint(ball_radius=17.0, interference=0.05, liner_thickness=5.5, liner=bs.UHMWPE)
     assert (joint.clearance, joint.interference) == (-0.05, 0.05)
     assert "R1 17 mm, interference 0.05 mm, liner 5.5 mm" in str(joint)

@@ -61,16 +61,13 @@ def with_one_error(name):
     return texts - set(presets._FAMILY)
 
 
-def test_a_suggestion_never_names_another_family():
+def test_each_name_has_one_family_and_a_suggestion_never_names_another():
     names, suggested = sorted(presets._FAMILY), 0
     for name in names[:: either(quick=len(names) // 2, long=16)]:  # all of them take minutes
         hints = [hint for hint in map(material_hint, with_one_error(name)) if "did you mean" in hint]
         assert [hint for hint in hints if repr(presets._FAMILY[name]) not in hint] == []
         suggested += len(hints)
     assert suggested > 300
-
-
-def test_each_name_has_one_family():
     compact = [presets._compact(name) for name in (*bs.materials, *MATERIAL_ALIASES)]
     assert len(set(compact)) == len(compact)
     assert {find_material(name) for name in MATERIAL_ALIASES} == set(bs.materials)
@@ -129,14 +126,11 @@ def secant_ratio(stress):
     return np.interp(stress, STRESS, STRESS / STRAIN) / INITIAL
 
 
-def test_the_secant_modulus_leaves_the_initial_one_at_the_proportional_limit():
+def test_proportional_limit_offset_yield_and_secant_moduli_are_those_that_are_stated():
     limit = bs.UHMWPE.proportional_limit
     assert secant_ratio(limit) == pytest.approx(0.99, abs=0.005)
     assert secant_ratio(limit - 1.0) > 0.995
     assert secant_ratio(limit + 1.5) < 0.93
-
-
-def test_offset_yield_and_secant_moduli_are_those_that_the_page_states():
     offset = STRESS[np.argmax(STRESS < INITIAL * (STRAIN - 0.002))]
     assert (offset, np.interp(0.04, STRAIN, STRESS)) == pytest.approx((10.6, 20.2), abs=0.1)
     assert pytest.approx(1510, abs=5) == INITIAL

@@ -104,7 +104,7 @@ def test_loads_near_the_perfect_fit_are_solved():
     np.testing.assert_allclose(again.indentation, depth, rtol=1e-10)
 
 
-def test_every_field_has_derivatives_in_jax():
+def test_every_field_has_derivatives_in_jax_and_a_traced_load_without_a_contact_no_solution():
     jax = pytest.importorskip("jax")
     fields = ("indentation", "max_pressure", "half_angle", "stiffness")
 
@@ -121,10 +121,6 @@ def test_every_field_has_derivatives_in_jax():
         expected = (answer(numbers + step) - answer(numbers - step)) / (2 * step[k])
         tolerance = 1e-6 * answer(numbers).max()
         np.testing.assert_allclose(slopes[:, k] * number, expected * number, rtol=1e-6, atol=tolerance)
-
-
-def test_a_traced_load_without_a_contact_has_no_solution():
-    jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         press = jax.jit(lambda force: bs.Tabulated().press(HIP, force=force).max_pressure)
         pressures = [float(press(force)) for force in (-1.0, 0.0, 1e3)]
@@ -175,7 +171,7 @@ def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path
             build_tables.build_tables(place, workers=0)
 
 
-def test_a_small_table_interpolates_its_function():
+def test_a_small_table_interpolates_its_function_by_products_of_limited_order():
     def sample(liner):
         x, y = chebyshev.poisson_coordinate(liner[0]), chebyshev.thickness_coordinate(liner[1])
         return np.array([[x + 2 * y, 0.5 * x * y], [1.0 + x, y]])  # (functions, angles)
@@ -194,9 +190,6 @@ def test_a_small_table_interpolates_its_function():
         np.testing.assert_allclose(chebval(points, values[function]), expected[function], rtol=1e-6, atol=1e-7)
     single = table.coefficients_of_one([float(part[0]) for part in coordinates])
     np.testing.assert_allclose(single, values, atol=1e-12)
-
-
-def test_orders_of_products_are_limited():
     spec = build_tables._TableSpec(sample=lambda liner: np.ones((1, 1)) * np.exp(liner[0]), counts=(4, 4), order=2)
     stored = spec.fit(lambda function, liners, chunksize: map(function, liners))
     assert stored.dtype == np.float32
@@ -215,14 +208,11 @@ def test_random_contacts_lie_in_their_ranges():
     assert np.median(ratio) == pytest.approx(2.0, rel=0.15)
 
 
-def test_one_joint_without_contacts_has_empty_results():
+def test_results_do_not_depend_on_the_number_of_joints_and_are_empty_without_contacts():
+    """Few joints with many loads share their functions. The curve of one joint is accurate to 1e-9."""
     contact = bs.Tabulated().press(HIP, force=np.empty((0, 3)))
     assert contact.indentation.shape == (0, 3)
     assert contact.pressure(0.1 + np.empty((0, 3))).shape == (0, 3)
-
-
-def test_results_do_not_depend_on_the_number_of_joints():
-    """Few joints with many loads share their functions. The curve of one joint is accurate to 1e-9."""
     thickness, force, model = np.array([[4.0], [6.75]]), np.geomspace(0.1, 4000.0, 1500), bs.Tabulated()
     grid = model.press(replace(HIP, liner_thickness=thickness), force=force)
     for row, value in enumerate(thickness[:, 0].tolist()):

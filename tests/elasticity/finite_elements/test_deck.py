@@ -284,7 +284,7 @@ def test_files_appear_complete_or_not_at_all(tmp_path, monkeypatch):
     assert path.read_text() == made.text()
 
 
-def test_the_end_of_each_step_is_read(tmp_path):
+def test_the_end_of_each_step_is_read_and_contact_pressures_are_separated_from_other_results(tmp_path):
     path = tmp_path / "a.dat"
     rows = (
         *(("PUSHED", 0.5, "0.1 -0.5 0.0"), ("PUSHED", 1.0, "0.1 -1.0 0.0")),
@@ -297,9 +297,6 @@ def test_the_end_of_each_step_is_read(tmp_path):
     assert {step: rows[0, 1] for step, rows in forces.items()} == {0: -1.0, 1: -2.0}
     np.testing.assert_array_equal(ccx.read_printed(path, "BORE")[0][:, 0], [7, 12])
     assert ccx.read_printed(tmp_path / "none.dat", "PUSHED") == {}
-
-
-def test_contact_pressures_are_separated_from_other_results(tmp_path):
     numbers = "".join(f"{value:12.5E}" for value in (-1.0, 2.0, 3.0, 4.5, -0.5, 0.0))
     block = "  100CL  101 {}           9                     0    1           1\n -4  {}       6    1\n"
     block += f" -5  ONE         1    4    1    1\n -1{7:10d}{numbers}\n -3\n"

@@ -415,15 +415,12 @@ def test_condensed_compliance_equals_that_of_the_complete_system(order, interfac
     np.testing.assert_allclose(body.displacements(forces)[body.contact, 1], normal, atol=rounding)
 
 
-def test_sliding_layers_move_together_across_and_freely_along_the_interface():
+def test_sliding_layers_move_together_across_the_interface_and_freely_along_it_and_at_the_rim():
+    """A free shell sits on its rim; the liner in it does not."""
     mesh, moved, inner = solve_sliding(Support.FIXED)
     one, other = moved[mesh.number[:, inner]], moved[mesh.number[:, inner + 1]]
     np.testing.assert_array_equal(one[:, 1], other[:, 1])
     assert abs(one[1:, 0] - other[1:, 0]).max() > 1e-3 * abs(one[:, 1]).max()
-
-
-def test_a_sliding_liner_in_a_free_shell_is_free_at_its_rim():
-    """The shell sits on its rim; the liner in it does not."""
     mesh, moved, inner = solve_sliding(Support.FREE)
     along = moved[mesh.number[-1], 0]
     assert np.all(along[: inner + 1] != 0)

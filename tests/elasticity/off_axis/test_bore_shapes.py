@@ -106,7 +106,8 @@ def test_scan_file_gives_sphere_axis_and_wear(tmp_path):
     assert worn.pole_pressure < fresh.pole_pressure
 
 
-def test_scan_of_an_exact_sphere_has_no_deviation():
+def test_roughness_is_the_root_mean_square_deviation_and_none_on_an_exact_sphere():
+    """Waves of zero mean leave the sphere unchanged."""
     scan = scan_from_points(scanned_points(radius=20.0, reach=70.0, shift=(1.0, -2.0, 3.0)))
     assert scan.centre == pytest.approx([1.0, -2.0, 3.0], abs=1e-9)
     assert scan.radius == pytest.approx(20.0, abs=1e-9)
@@ -114,6 +115,12 @@ def test_scan_of_an_exact_sphere_has_no_deviation():
     assert np.linalg.norm(scan.directions, axis=0) == pytest.approx(1.0)
     for depth in (scan.roughness, scan.deviation, scan.depth(scan.directions)):
         assert depth == pytest.approx(0.0, abs=1e-9)
+    points = scanned_points(depth=lambda n: 0.03 * np.cos(8 * np.arctan2(n[1], n[0])))
+    wavy, averaged = (scan_from_points(points, finest=finest) for finest in (0.02, 0.3))
+    assert wavy.radius == pytest.approx(18.0, abs=1e-3)
+    assert wavy.roughness == pytest.approx(0.03 / 2**0.5, rel=0.02)
+    assert abs(wavy.deviation).max() == pytest.approx(0.03, rel=0.02)
+    assert len(averaged.deviation) < len(wavy.deviation) / 10
 
 
 def test_scan_interpolates_a_linear_depth_exactly_and_stays_in_range():
@@ -124,16 +131,6 @@ def test_scan_interpolates_a_linear_depth_exactly_and_stays_in_range():
     assert linear.interpolate(inside) == pytest.approx(slope @ inside, abs=2e-3)
     outside = linear.interpolate(np.array([[0.0], [0.0], [-1.0]]))
     assert linear.deviation.min() <= outside[0] <= linear.deviation.max()
-
-
-def test_roughness_is_the_root_mean_square_deviation():
-    """Waves of zero mean leave the sphere unchanged."""
-    points = scanned_points(depth=lambda n: 0.03 * np.cos(8 * np.arctan2(n[1], n[0])))
-    wavy, averaged = (scan_from_points(points, finest=finest) for finest in (0.02, 0.3))
-    assert wavy.radius == pytest.approx(18.0, abs=1e-3)
-    assert wavy.roughness == pytest.approx(0.03 / 2**0.5, rel=0.02)
-    assert abs(wavy.deviation).max() == pytest.approx(0.03, rel=0.02)
-    assert len(averaged.deviation) < len(wavy.deviation) / 10
 
 
 @pytest.mark.parametrize("azimuth", [0.0, pi / 2, 5.1])
@@ -210,7 +207,7 @@ def test_the_ball_is_loose_where_it_fits_through_the_worn_bore(rings):
         assert fitted.wear_depth_to_loosen() == pytest.approx(expected, rel=2e-3, abs=1e-9)
 
 
-def test_preloaded_joint_resists_push_and_pull():
+def test_preloaded_joint_resists_push_and_pull_beyond_a_half_socket():
     pressed, pulled = (WRAPPED.press(TIGHT, indentation=indentation) for indentation in (0.06, 0.03))
     unloaded = WRAPPED.press(TIGHT, force=0.0)
     assert pulled.indentation < unloaded.indentation < pressed.indentation
@@ -219,9 +216,6 @@ def test_preloaded_joint_resists_push_and_pull():
     slope = (pressed.force - pulled.force) / 0.03
     assert slope == pytest.approx(pressed.stiffness, rel=1e-3)  # the contact is closed: linear
     assert WRAPPED.press(TIGHT, force=5000.0).indentation > unloaded.indentation
-
-
-def test_a_half_socket_does_not_hold_a_preloaded_ball():
     assert held(180.0).press(TIGHT, force=0.0).status is bs.Status.DISLOCATED
     contact = held(180.0).press(TIGHT, force=2000.0)
     assert not contact.valid

@@ -97,7 +97,7 @@ def test_last_eight_compliances_are_cached_for_all_orientations():
     assert cached(0) is not first
 
 
-def test_edge_relation_of_elastic_bodies_uses_the_combined_modulus():
+def test_edges_have_the_combined_modulus_and_levels_that_are_minus_the_gap_outside_the_contact():
     relation = elastic_edges(HIP, BORE, bounded=True)
     softness = sum((1 - body.poisson**2) / body.young for body in (HIP.liner, HIP.ball))
     width = radians(90.0) / BORE.rings * HIP.socket_radius
@@ -107,9 +107,6 @@ def test_edge_relation_of_elastic_bodies_uses_the_combined_modulus():
     assert relation.inset == rigid.inset == pytest.approx(0.113)
     assert (relation.bounded, rigid.bounded) == (True, False)
     assert bs.Springs().edges(RIGID, CUP, BORE).compliance == pytest.approx(1 / bs.hess_forsbach(RIGID))
-
-
-def test_levels_are_positive_in_the_contact_and_minus_the_gap_outside():
     relation = spring_edges(50.0, BORE)
     pressure, gap = np.zeros((1, BORE.rings, BORE.meridians)), np.full((1, BORE.rings, BORE.meridians), 0.3)
     pressure[0, 0], gap[0, 1] = 10.0, -0.1

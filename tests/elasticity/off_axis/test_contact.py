@@ -23,7 +23,7 @@ def tilted():
     return COARSE.press(RIGID, force=2500.0, tilt=0.6, azimuth=0.4)
 
 
-def test_summary_has_the_values_of_the_contact(tilted):
+def test_summary_has_the_values_of_the_contact_and_the_load_as_the_force_in_the_body(tilted):
     summary = tilted.summary()
     assert summary["edge_margin_deg"] == pytest.approx(degrees(tilted.edge_margin))
     assert summary["edge_distance"] == pytest.approx(tilted.edge_margin * RIGID.socket_radius)
@@ -38,9 +38,6 @@ def test_summary_has_the_values_of_the_contact(tilted):
     assert len(many["status"]) == 2
     for array in (tilted.force_vector, tilted.stiffness_matrix, tilted.max_pressure_at, tilted.moment):
         assert not array.flags.writeable
-
-
-def test_force_in_the_body_is_the_load():
     cup = bs.Cup(inclination=0.7, anteversion=0.2)
     direction = np.array([-0.3, 0.1, 1.0])
     summary = replace(COARSE, cup=cup).press(RIGID, force=1500.0, direction=direction).summary()
@@ -141,9 +138,6 @@ def test_ball_is_held_up_to_half_a_radius_apart_one_radius_in_contact_and_the_ri
     apart = COARSE.press(RIGID, tilt=pi, indentation=0.5)
     assert (apart.force, apart.max_pressure, apart.area) == (0, 0, 0)
     assert COARSE.press(RIGID, force=1e12).status is bs.Status.DISLOCATED
-
-
-def test_force_beyond_the_rim_is_held_behind_the_equator():
     cup = bs.Cup(arc_of_cover=radians(220.0))
     held = replace(COARSE, cup=cup).press(RIGID, force=50.0, tilt=radians(105.0))
     assert held.status is not bs.Status.DISLOCATED

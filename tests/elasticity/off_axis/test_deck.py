@@ -86,7 +86,7 @@ def test_deck_has_the_geometry_of_cup_and_ball():
     assert (skin.min(), skin.max()) == pytest.approx((0.9 * ball, ball))
 
 
-def test_deck_scales_the_displacement_and_the_contact_stiffness():
+def test_deck_scales_its_displacement_and_stiffness_loads_the_inner_face_and_fixes_the_outer_one():
     pushed = [line for line in deck_text().splitlines() if line.startswith("PUSHED, ") and "." in line]
     x, z = (float(line.rsplit(",", 1)[1]) for line in pushed)
     assert (x, z) == pytest.approx((4e-5 * np.sin(0.5), 4e-5 * np.cos(0.5)))
@@ -94,9 +94,6 @@ def test_deck_scales_the_displacement_and_the_contact_stiffness():
     assert stiffness == pytest.approx(500 * DECK.expected["max_pressure"] / 0.04, rel=1e-5)
     assert section("*ELASTIC") == [[pytest.approx(1000.0), pytest.approx(0.4)]]
     assert "1000000, 0.3" in deck_text()  # the skin
-
-
-def test_deck_loads_the_inner_face_and_fixes_the_outer_one():
     socket = DECK.socket
     inner = [number for number, _, (_, _, k), _ in socket.elements() if k == 0]
     lining = deck_text()[deck_text().index("NAME=LINED") :].splitlines()[1 : len(inner) + 1]
@@ -118,7 +115,7 @@ def test_elements_fill_the_half_shell():
     assert next(DECK.ball.elements())[0] == len(elements) + 1
 
 
-def test_elements_grow_by_half_across_an_interface_and_a_thin_layer_has_three():
+def test_elements_divide_the_angles_evenly_grow_by_half_across_an_interface_and_are_three_in_a_thin_layer():
     """The backing is thick enough to continue the growth of the liner's elements."""
     assert np.diff(DECK.socket.radius) == pytest.approx(np.full(3, JOINT.liner_thickness / 3))
     backed = JOINT.replace(backing=(bs.Layer(thickness=40.0, material=bs.TITANIUM),))
@@ -128,9 +125,6 @@ def test_elements_grow_by_half_across_an_interface_and_a_thin_layer_has_three():
     ratios = steps[1:] / steps[:-1]
     assert ratios.max() < 1.6
     assert ratios[abs(radius - 24.75).argmin() - 1] > 1.2
-
-
-def test_element_sizes_divide_the_angles_evenly():
     assert (len(DECK.socket.polar), len(DECK.socket.azimuth)) == (6 + 1, 12 + 1)
     assert np.diff(DECK.socket.polar) == pytest.approx(radians(15.0))
     narrow = deck_of(12.0, tilt=0.1, cup=bs.Cup(arc_of_cover=radians(50.0)))

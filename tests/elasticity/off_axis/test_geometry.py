@@ -110,9 +110,12 @@ def test_last_ring_is_graded_towards_the_rim(make, fractions):
         cells.centroids[0, 0, 0] = 1.0
 
 
-def test_grids_have_a_smallest_number_of_rings_and_meridians():
+def test_grids_have_a_smallest_number_of_rings_and_meridians_and_small_ones_are_not_coarsened():
     assert (even_grid(0.3, 2.0).rings, even_grid(0.3, 2.0).meridians, graded_grid(0.3, 2.0).rings) == (4, 8, 1 + 3)
     assert [even_grid(reach, 1.0 / 6).rings for reach in (1.0, 1.01)] == [6, 7]  # rounding adds no ring
+    for rings, meridians, coarsened in ((23, 44, False), (24, 44, True), (26, 34, False), (26, 36, True)):
+        cells = Grid(edges=np.linspace(0.0, 1.3, rings + 1), meridians=meridians)
+        assert (cells.coarser_grid is not None) == coarsened
 
 
 @pytest.mark.parametrize("cells", [FINE, ODD], ids=["even", "odd"])
@@ -139,12 +142,6 @@ def test_coarse_matrices_are_means_of_the_fine_operator(cells):
         field = random.normal(size=(1, coarse.rings, 1)) * np.cos(m * coarse.azimuth)
         expected = cells.coarsen(AxisymmetricOperator(matrices=matrices)(cells.refine(field)))
         assert AxisymmetricOperator(matrices=coarse_matrices)(field) == pytest.approx(expected, abs=1e-9)
-
-
-def test_few_rings_or_unpaired_meridians_are_not_coarsened():
-    for rings, meridians, coarsened in ((23, 44, False), (24, 44, True), (26, 34, False), (26, 36, True)):
-        cells = Grid(edges=np.linspace(0.0, 1.3, rings + 1), meridians=meridians)
-        assert (cells.coarser_grid is not None) == coarsened
 
 
 def test_cell_averages_attenuate_each_harmonic():
@@ -286,7 +283,7 @@ def test_edge_lies_between_the_last_loaded_and_the_first_open_cell():
     assert measures_of(patch).edge_margin == pytest.approx(CAP_GRID.reach - edge, abs=1e-9)
 
 
-def test_contact_that_reaches_the_rim_ends_there_with_an_extrapolated_pressure():
+def test_contact_that_reaches_the_rim_ends_there_and_has_a_margin_where_it_almost_does():
     patch = cap(direction(radians(75.0)), radians(30.0))
     assert measures_of(patch).edge_loaded
     assert measures_of(patch).edge_margin == 0.0
@@ -300,9 +297,6 @@ def test_contact_that_reaches_the_rim_ends_there_with_an_extrapolated_pressure()
     last, before = (patch.pressure_at(direction(polar)) for polar in CAP_GRID.polar[[-1, -2]])
     expected = last + (last - before) * (end - middle) / (middle - CAP_GRID.polar[-2])
     assert patch.pressure_at(direction(end - 1e-9)) == pytest.approx(expected, rel=1e-6)
-
-
-def test_margin_of_a_contact_that_almost_reaches_the_rim_is_positive():
     patch = cap(direction(radians(58.5) + 1e-3), radians(30.0))
     level = patch.level.copy()
     level[-1] = -1e-12
