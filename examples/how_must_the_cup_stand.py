@@ -13,10 +13,10 @@ not depend on the orientation, so a map of seventy orientations takes a second.
 from dataclasses import replace
 
 import numpy as np
-from ballsocket.reports.orientation_results import orientation_figure
 from matplotlib.figure import Figure
 
 import ballsocket as bs
+from ballsocket.reports.orientation_plots import orientation_figure
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=7.0, liner=bs.CROSSLINKED_PE, ball=bs.COCR)
 stance = (-0.2, 0.0, 1.0)  # to the right, to the front, upwards: the middle of the body is to the left of a right hip

@@ -92,7 +92,7 @@ def test_orient_prints_every_orientation_and_the_limits():
     for angle in range(30, 71, 5):
         assert len(re.findall(rf"(?<= ){angle}°(?= |\n)", printed)) >= 2  # in the heads of both tables
     assert printed.count("\n20°") >= 2
-    end = r"at 20° anteversion the limit holds up to \d\d° inclination \(steps of 5°\)"
+    end = r"at 20° anteversion the limit is kept for certain up to \d\d° inclination \(steps of 5°\)"
     assert re.search(end, " ".join(printed.split()))
     alone = refusal(*words, "--inclination", "45", "--anteversion", "20", "--figure", "a.png")
     assert "--figure needs a range of an angle" in alone

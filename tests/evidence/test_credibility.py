@@ -1,5 +1,6 @@
 """Credibility levels, and the rows of requirements, for changed records."""
 
+import re
 from itertools import product
 from operator import itemgetter
 
@@ -51,7 +52,7 @@ def test_goals_rise_with_the_risk_and_exist_in_their_gradation(record):
     met = [result["adequacy"]["met"] for result in results]
     assert met[0] > met[1] > met[2]
     levels = {"".join(row["reached"] for row in result["credibility"]) for result in results}
-    assert levels in ({"bcbcacbacbbbb"}, {"bccdacbacbbbb"})
+    assert re.fullmatch("bc[cd][cd]acbacbbbb", *levels)
     for result in results:
         short = [row["factor"] for row in result["credibility"] if row["reached"] < row["goal"]]
         adequacy = result["adequacy"]
@@ -162,8 +163,11 @@ def test_discretization_level_follows_from_the_error_bars(record):
     def level_and_gap():
         return itemgetter("reached", "missing")(factor(record, "discretization error"))
 
+    assert level_and_gap() == ("d", "nothing")
+    for row in record["matrix"]:
+        row["bars"] = {"utilisation": row["bars"]["utilisation"]}  # only some numbers have an error of the solver
     assert level_and_gap() == ("b", "an error bar for the edge distance, or a margin to the limit")
-    record["limits"] = record["limits"][:1]  # of the largest pressure, which has an error bar
+    record["limits"] = record["limits"][:1]  # of the largest pressure, which has one
     assert level_and_gap() == ("d", "nothing")
     first = record["matrix"][0]
     first["errors"]["max_pressure"] = 0.04
@@ -182,10 +186,13 @@ def test_an_error_margin_is_the_error_over_the_distance_to_the_limit_and_more_th
     for error, status in ((0.51, "not met"), (0.49, "met"), (0.05, "met")):
         for row in record["matrix"]:
             row["numbers"]["max_pressure"], row["errors"]["max_pressure"] = 10.0, error
+            row["bars"].pop("max_pressure", None)
         assert rows(record)["E1"]["status"] == status
     assert error_margins(record)[0]["share"] == pytest.approx(0.5 / 5.0)
     record["limits"][0].update(low=9.0)
     assert error_margins(record)[0]["share"] == pytest.approx(0.5 / 1.0)
+    record["matrix"][0]["bars"]["max_pressure"] = [9.8, 10.8]  # the larger of error and error bar counts
+    assert error_margins(record)[0]["share"] == pytest.approx(0.8 / 1.0)
     for pressure in (15.0, None):  # no margin
         record["matrix"][0]["numbers"]["max_pressure"] = pressure
         assert error_margins(record)[0]["share"] is None
@@ -202,8 +209,8 @@ def test_rows_state_gap_and_evidence(record):
     statuses = {name: table[name]["status"] for name in ("L1", "L2", "U1", "U2")}
     assert statuses == {"L1": "not met", "L2": "met", "U1": "not met", "U2": "not known"}  # bands exceed 15 MPa
     assert table["L1"]["gap"] == "1 case beyond the limit"
-    assert table["E2"]["gap"] == "an error bar of the edge distance"
-    assert table["E1"]["evidence"].endswith(" % of the margin")
+    for name in ("E1", "E2"):
+        assert table[name]["evidence"].endswith(" % of the margin")
     places = {"U1": "uncertainty.bands", "V1": "code_verification[0]", "F13": "credibility[12]"}
     assert {name: table[name]["where"] for name in places} == places
     assert all((row["gap"] == "") == (row["status"] == "met") for row in table.values())

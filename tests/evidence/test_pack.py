@@ -211,13 +211,17 @@ def test_nominal_values_are_those_of_the_tolerances(tmp_path, tolerance, used):
 
 
 def test_accuracy_compares_errors_and_deviations_with_the_required_accuracy(record):
-    largest = max(row["errors"]["von_mises"] for row in record["matrix"])
+    bars = [(row["numbers"]["max_pressure"], row["bars"]["max_pressure"]) for row in record["matrix"]]
+    largest = max(max(value - low, high - value) / value for value, (low, high) in bars)
+    assert largest > max(row["errors"]["von_mises"] for row in record["matrix"])
     assert largest > max(value for piece in record["calculation"] for value in piece["deviation"].values())
     for required, holds in ((0.05, True), (1e-6, False)):
         record["required"]["accuracy"] = required
         assert pack_module._accuracy(record) == {"largest": largest, "required": required, "holds": holds}
     record["matrix"][0]["errors"]["max_pressure"] = 0.04
     assert pack_module._accuracy(record)["largest"] == 0.04
+    record["matrix"][0]["bars"]["max_pressure"][1] = None  # without a bound above
+    assert pack_module._accuracy(record) == {"largest": None, "required": 1e-6, "holds": False}
 
 
 @pytest.mark.parametrize("largest", [0.1, pytest.param(0.15, marks=pytest.mark.long)])  # a linear, a circular gap

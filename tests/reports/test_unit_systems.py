@@ -51,7 +51,7 @@ def test_orientations_print_and_draw_in_inches_and_pounds(tmp_path):
     limit = ("--limit", "max_pressure<=10 MPa", "--figure", "orient.svg")
     text = printed("orient", "hip-36", "--force", "2 kN", *angles, *limit, "--units", "imperial", folder=tmp_path)
     assert re.findall(METRIC, text) == []
-    assert re.search(r"limit: max_pressure <= 1450\S* psi", text)
+    assert "limit: max_pressure <= 1450.38 psi" in text
     assert (tmp_path / "orient.svg").stat().st_size > 1000
 
 

@@ -47,7 +47,9 @@ class OrientationOptions:
     ] = "0..30 deg"
     step: Annotated[
         str | None,
-        typer.Option(help="Step of both angles in degrees: '5 deg'. Default: a round step, at most 13 values."),
+        typer.Option(
+            help="Step of both angles in degrees: '5 deg' for its multiples and both ends. Default: at most 13 values."
+        ),
     ] = None
     points: Annotated[
         int | None, typer.Option(min=1, max=91, help="Number of equally spaced values of each angle. Not with --step.")
@@ -72,6 +74,8 @@ class OrientationOptions:
             for end in ends:
                 CUP[name].check(end)
         (low, high), step = sorted(ends), self._step_degrees()
+        if self.points == 1 and low != high:
+            raise ValueError(f"--points 1 is not possible for the range {text}: give at least 2, or one angle")
         if self.points is not None:
             return numpy.unique(numpy.linspace(low, high, self.points))
         return numpy.radians(_even_degrees(round(degrees(low), 9), round(degrees(high), 9), step))

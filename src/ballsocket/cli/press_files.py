@@ -12,7 +12,6 @@ import typer
 
 from ..comparison import Comparison, successful_contacts
 from ..core.checks import check_names
-from ..core.storage.atomic_files import check_ending
 from ..core.unit_systems import Units
 from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
@@ -47,6 +46,8 @@ class FigureOptions:
         """Raise ValueError for a file format that cannot be written."""
         check_format(self.figure, self.section)
         if self.view is not None:
+            from ..core.storage.atomic_files import check_ending
+
             check_ending("view", self.view, ".png")
         if self.vtk is not None:
             from ..elasticity.finite_elements.section import check_vtk_path

@@ -267,7 +267,9 @@ def _allowed_text(check: Mapping[str, Any]) -> str:
         if name in limits:
             return f"{text} {limits[name]}"
     kinds = {"int": "a whole number", "float": "a number", "bool": "true or false"}
-    own_text: str = check["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    own_text: str = check["msg"].removeprefix("Value error, ").removeprefix("Input should be ").rstrip(".")
+    if " is not one of " in own_text:
+        own_text = f"one of {own_text.partition(' is not one of ')[2]}"
     return kinds.get(kind.partition("_")[0], own_text)
 
 

@@ -53,6 +53,17 @@ def _code_level(record: Record) -> ReachedLevel:
     return ReachedLevel("d", supported, "; ".join(missing))
 
 
+def absolute_error(row: Record, key: str) -> float | None:
+    """Return the error of a number of a case, the larger of its error and its error bar; None if neither is known."""
+    value = row["numbers"].get(key)
+    if value is None:
+        return None
+    known = [abs(value) * row["errors"][key]] if key in row["errors"] else []
+    for low, high in [row["bars"][key]] if key in row["bars"] else ():
+        known += [value - low, inf if high is None else high - value]
+    return max(known, default=None)
+
+
 def error_margins(record: Record) -> list[dict[str, Any]]:
     """Compute the largest error bar of each limited number as a share of its margin to the limit.
 
@@ -62,12 +73,12 @@ def error_margins(record: Record) -> list[dict[str, Any]]:
     for limit in (limit for limit in record["limits"] if limit["name"] in NAMES):
         key, ratios = NAMES[limit["name"]].key, []
         for row in record["matrix"]:
-            value, error = row["numbers"].get(key), row["errors"].get(key)
+            value, error = row["numbers"].get(key), absolute_error(row, key)
             if value is None or error is None:
                 ratios = [inf]
                 break
             margin = min(abs(value - end) for end in (limit["low"], limit["high"]) if end is not None)
-            ratios.append(error * abs(value) / margin if margin else inf)
+            ratios.append(error / margin if margin else inf)
         share = max(ratios, default=inf)
         margins.append({"limit": limit_text(limit), "name": limit["name"], "share": None if share == inf else share})
     return margins

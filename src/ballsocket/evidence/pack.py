@@ -17,6 +17,7 @@ from shutil import rmtree
 from typing import Any
 
 from ..contact.strength import unchecked_strength_reason
+from ..contact.verdict import EDGE_DISTANCE
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.pieces import Piece, Plan, Results, Summary, fingerprint
@@ -26,8 +27,8 @@ from ..studies.parameters import hold, press_arguments
 from .code_checks import CHECKS
 from .comparators import CLAIMS, PUBLISHED, applicability, claim, question_ranges
 from .credibility import assess, model_risk
-from .credibility_levels import Record
-from .matrix import WEAR, Case, MatrixRow, check_limit, compute_rows, list_cases, worst_rows
+from .credibility_levels import Record, absolute_error
+from .matrix import NAMES, WEAR, Case, MatrixRow, check_limit, compute_rows, list_cases, worst_rows
 from .question import Question
 from .worst_case import (
     compare_methods,
@@ -221,10 +222,14 @@ def _drawn_joint(question: Question, worst: Mapping[str, MatrixRow]) -> dict[str
 def _accuracy(record: Record) -> dict[str, Any]:
     """Compare error bars and deviations of methods with the required accuracy."""
     errors = [error for row in record["matrix"] for error in row["errors"].values()]
+    limited = {NAMES[limit["name"]].key for limit in record["limits"] if limit["name"] in NAMES} - {EDGE_DISTANCE}
+    for key in limited:  # a distance may be 0: its error is compared with the margin to its limit
+        bars = [(row["numbers"][key], absolute_error(row, key)) for row in record["matrix"]]
+        errors += [error / abs(value) for value, error in bars if value and error is not None]
     deviations = [value for calculation in record["calculation"] for value in calculation["deviation"].values()]
-    largest = max([*errors, *deviations], default=None)
+    largest = max([*errors, *deviations], default=inf)
     required = record["required"]["accuracy"]
-    return {"largest": largest, "required": required, "holds": largest is not None and largest <= required}
+    return {"largest": largest if largest < inf else None, "required": required, "holds": largest <= required}
 
 
 def list_inputs(question: Question) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from math import isinf, radians
 from typing import Any
@@ -69,9 +69,10 @@ _SIGNS = {
 """Names of units by their signs, and by the signs that keyboards have in place of them."""
 
 _SPELLINGS = {
-    **{unit.lower(): unit for unit in ("um", "mm", "cm", "N", "kN", "Pa", "kPa", "GPa", "mg", "kg", "Hz", "kHz")},
+    **{unit.lower(): unit for unit in ("um", "mm", "cm", "N", "kN", "Pa", "kPa", "GPa", "kg", "Hz", "kHz")},
     "mpa": "MPa or mPa",
     "mn": "MN or mN",
+    "mg": "Mg or mg",
     "grad": "deg or gon",
     "mikrometer": "um",
     "sekunden": "s",
@@ -332,7 +333,8 @@ def _refusal(name: str, value: Any, kind: str) -> str:
     if _MARKED.match(str(value)):
         hint = "; write a decimal point, and nothing between thousands"
     elif percent is not None:
-        hint = f"; {percent} % is {parse(name, percent, kind) / 100:g}"
+        with suppress(ValueError):
+            hint = f"; {percent} % is {parse(name, percent, kind) / 100:g}"
     elif respelled and not hint:
         hint = "".join(f"; write {right}, not {word}" for word, right in respelled.items())
     return f"{name} = {shown(value)} is not {Kind(kind).example}{hint}"

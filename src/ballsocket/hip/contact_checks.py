@@ -127,7 +127,7 @@ class ContactCheck:
             "utilisation": self.utilisation,
             "utilisation_low": finite_or_none(self.utilisation_bar.low),
             "utilisation_high": finite_or_none(self.utilisation_bar.high),
-            "pressure_ratio": None if self.pressure_ratio is None else self.pressure_ratio.value,
+            "pressure_ratio": None if self.pressure_ratio is None else finite_or_none(self.pressure_ratio.value),
             "verdict": self.verdict.word,
             "utilisation_note": self.utilisation_note or None,
             "valid": self.valid,

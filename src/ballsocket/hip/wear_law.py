@@ -158,8 +158,11 @@ def plausibility_notes(*factors: float) -> tuple[str, ...]:
     unusual_factor = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
     if unusual_factor is None:
         return ()
-    factors_in_text = (Amount(factor, Unit(_WEAR_FACTOR), 6) for factor in (unusual_factor, low, high))
-    text = "a wear factor of {} is out of the usual range of {} to {}; one in mm^3/(N mm) is 1000 times smaller"
+    factors_in_text = (Amount(factor, Unit(_WEAR_FACTOR)) for factor in (unusual_factor, low, high))
+    text = (
+        "a wear factor of {} is out of the usual range of {} to {}; numbers in mm^3/(N mm) are 1000 times smaller than "
+        "in mm^3/(N m)"
+    )
     return (Sentence(text, *factors_in_text),)
 
 

@@ -124,7 +124,7 @@ class WornBore:
             *self.reading_notes,
             Sentence(
                 "{}: the original bore is the sphere through the unworn {} of the points' surface; creep counts as "
-                "wear, and {} that this bore was out of round adds about {} to the error",
+                "wear, and each {} that this bore was out of round adds about {} to the error",
                 self.name,
                 Amount(self.unworn, PERCENT, decimals=0),
                 Amount(1e-3, MICROMETRES),
@@ -205,8 +205,6 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
     spheres = _find_unworn(local, name)
     bores = [_integrate(cloud, local, sphere) for sphere in spheres]
     unworn = bores[0]
-    if unworn.radius - bores[-1].radius > hypot(unworn.radius_error, bores[-1].radius_error):
-        del bores[1]
     if head_radius is not None and not 0.0 < head_radius <= unworn.radius + unworn.radius_error:
         raise ValueError(
             f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
@@ -248,7 +246,7 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
         depth=deepest_depth,
         depth_error=_SIGMAS * errors.of_sum(weights) + _FORM_FACTOR * form + _SMOOTHED_AWAY * abs(deepest_depth),
         radius=sphere.radius,
-        radius_error=_SIGMAS * errors.of_radius() + _FORM_FACTOR * form,
+        radius_error=errors.of_radius(),
         centre=sphere.centre,
         pole=pole,
         deepest=deepest,
@@ -359,7 +357,9 @@ def _find_unworn(local: _Neighbourhoods, name: str) -> list[_Unworn]:
     inside = local.depth(other.centre, other.radius) < -max(2.0 * other.limit, _SMOOTHED_EDGE)
     if same or rough or inside.mean() > _MAX_INSIDE or other.mask.sum() < _MIN_SPHERE_POINTS / 2:
         return [sphere]
-    return sorted((sphere, other), key=lambda part: -part.radius)
+    larger, smaller = sorted((sphere, other), key=lambda part: -part.radius)
+    errors = (_Errors.of(local, part).of_radius() for part in (larger, smaller))
+    return [larger] if larger.radius - smaller.radius > hypot(*errors) else [larger, smaller]
 
 
 def _trimmed_sphere(points: Numbers) -> tuple[Numbers, float, float]:
@@ -522,8 +522,9 @@ class _Errors:
         return self._scatter(weights - self.mask * (self.jacobian @ (self.inverse @ (weights @ self.jacobian))))
 
     def of_radius(self) -> float:
-        """Return the standard error of the radius in mm."""
-        return self._scatter(self.mask * (self.jacobian @ self.inverse[:, 3]))
+        """Return the error of the radius in mm: two standard errors, and the error of form."""
+        scatter = self._scatter(self.mask * (self.jacobian @ self.inverse[:, 3]))
+        return _SIGMAS * scatter + _FORM_FACTOR * (self.form + _RESOLUTION)
 
     def _scatter(self, factors: Numbers) -> float:
         """Return the standard deviation of a sum of errors with factors (n,): of points, and the same in a patch."""

@@ -60,7 +60,8 @@ Rows = list[tuple[str, ...]]
 def evidence_page(record: Record, digest: str = "", units: Units = Units.SI) -> str:
     """Return the page of a pack as HTML, from the record of `evidence.pack.gather_evidence`.
 
-    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty. Published numbers keep their units.
+    The digest of the pack, see `evidence.folder.digest`, is omitted if it is empty. Published numbers, and
+    requirements, whose texts are those of the record, keep their units.
     """
     with default_style():
         context = {
@@ -68,7 +69,7 @@ def evidence_page(record: Record, digest: str = "", units: Units = Units.SI) -> 
             **_matrix(record, units),
             **_verification(record, units),
             **_validation(record),
-            **_credibility(record, units),
+            **_credibility(record),
             "uncertainty": _uncertainty(record, units),
             "wear": _wear(record, units),
         }
@@ -295,7 +296,7 @@ def _wear(record: Record, units: Units) -> dict[str, Any] | None:
     }
 
 
-def _credibility(record: Record, units: Units) -> dict[str, Any]:
+def _credibility(record: Record) -> dict[str, Any]:
     """Return the credibility factors with their gradations, and the requirements with gaps first."""
     requirements = sorted(record["requirements"], key=lambda row: _STATUS_ORDER.index(row["status"]))
     factors = record["credibility"]
@@ -313,7 +314,7 @@ def _credibility(record: Record, units: Units) -> dict[str, Any]:
             (factor["factor"], letter, text) for factor in factors for letter, text in factor["gradation"].items()
         ],
         "requirements": [
-            tuple(units.sentence(row[key]) for key in ("id", "requirement", "status", "evidence", "gap", "where"))
+            tuple(row[key] for key in ("id", "requirement", "status", "evidence", "gap", "where"))
             for row in requirements
         ],
         "gaps": sum(row["status"] != MET for row in requirements),

@@ -24,9 +24,9 @@ def check_format(*paths: Path | None) -> None:
     ValueError
         Another ending, or a folder that does not exist.
     """
-    from ..core.storage.atomic_files import check_ending
-
     for path in filter(None, paths):
+        from ..core.storage.atomic_files import check_ending  # a press without a figure does without it
+
         check_ending("figure", path, *FORMATS)
 
 

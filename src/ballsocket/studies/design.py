@@ -144,11 +144,11 @@ def is_number(value: Any) -> bool:
 
 
 def _create_axis(name: str, value: Any) -> Axis:
+    if name in MATERIAL_PARTS:
+        return _create_material_axis(name, value)
     if isinstance(value, Span):
         check_allowed(name, numpy.array([value.low, value.high]))
         return SpanAxis(name, value)
-    if name in MATERIAL_PARTS:
-        return _create_material_axis(name, value)
     column = parameter_values(name, numpy.asarray(value))
     values, counts = numpy.unique(column, return_counts=True)
     if counts.max() > 1:

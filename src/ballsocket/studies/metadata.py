@@ -120,7 +120,7 @@ def joint_dimension(study: xarray.Dataset, name: str) -> Any:
 
 def derived_lengths(study: xarray.Dataset) -> dict[str, Any]:
     """Compute the lengths in mm that follow from the varied and held ones, by name."""
-    return {name: joint_dimension(study, name) for name in json.loads(study.attrs[_DERIVED])}
+    return {name: joint_dimension(study, name) for name in json.loads(study.attrs.get(_DERIVED, "[]"))}
 
 
 def held_in(result: xarray.Dataset) -> dict[str, float]:

@@ -29,11 +29,9 @@ def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = 
     """
     codes = verdicts(orientations, limits)
     tables = []
-    for quantity, digits in ((DERIVED["edge_distance"], 2), (CONTACT["max_pressure"], 3)):
+    for quantity in (DERIVED["edge_distance"], CONTACT["max_pressure"]):
         heads = [angle_text(angle) for angle in orientations.inclination]
-        columns = [
-            replace(Column.of(quantity, digits=digits), key=head, name=head, head=head, title="") for head in heads
-        ]
+        columns = [replace(Column.of(quantity, digits=3), key=head, name=head, head=head, title="") for head in heads]
         values = numpy.where(orientations.held, getattr(orientations, quantity.name), numpy.nan)
         rows = [
             Row([angle_text(angle), *(Judged(float(number), Verdict(code)) for number, code in pairs)])
@@ -60,8 +58,13 @@ def load_sentence(orientations: Orientations) -> Sentence:
 
 
 def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
-    """Return the code of the `Verdict` on all limits for each orientation; exceeded where the ball is not held."""
+    """Return the code of the `Verdict` on all limits for each orientation.
+
+    They are exceeded where the ball is not held, and limits are at best undecided where the model is not valid.
+    """
     codes = numpy.where(orientations.held, int(Verdict.KEPT), int(Verdict.EXCEEDED))
+    if limits:
+        codes = numpy.where(orientations.held & ~orientations.valid, int(Verdict.UNDECIDED), codes)
     for limit in limits:
         codes = numpy.maximum(codes, orientations.error_bar(limit.name).decide(**limit.ends))
     return codes
@@ -120,13 +123,13 @@ def _limit_sentences(orientations: Orientations, limits: Sequence[Limit]) -> Ite
     texts = Sentence(" and ".join("{}" for _ in limits), *map(limit_sentence, limits))
     yield Sentence("limit: {}; {}", texts, f"kept in {kept} of {codes.size} orientations, exceeded where *")
     if undecided:
-        yield f"undecided in {undecided} orientations with ?: their error bar contains the limit"
+        yield f"undecided in {undecided} orientations with ?: by the error bar, or outside the range of the model"
     ranges = inclination_ranges(orientations, limits)
     starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
     for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
         angles = [angle_text(orientations.anteversion[row]) for row in (first, following - 1)]
         rows = angles[0] if following == first + 1 else f"{angles[0]} to {angles[1]}"
-        yield f"at {rows} anteversion the limit holds {_range_text(orientations, ranges[first])}"
+        yield f"at {rows} anteversion the limit is kept for certain {_range_text(orientations, ranges[first])}"
 
 
 def _range_text(orientations: Orientations, ends: tuple[float, float] | None) -> str:
@@ -157,6 +160,7 @@ def _sentences(orientations: Orientations) -> Iterator[str]:
         yield f"{loaded} of {size} orientations load the rim (below 0: how far beyond first touch)"
     if numpy.isposinf(pressure).any():
         yield "inf: the end of the bore digs in, where the pressure is unbounded"
+    yield from orientations.notes
     for status in Status:
         count = int((orientations.status == int(status)).sum())
         if status.failed and count:

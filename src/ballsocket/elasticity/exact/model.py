@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
@@ -18,11 +18,13 @@ from ...core.sources import Source
 from ...core.validity import SMALL_STRAIN, Range, Status
 from ...problem import Joint, Support
 from ...problem.gaps import CircularGap, GapKind, LinearGap, check_gap, gap_remarks, gap_validity, select_gap
-from .chebyshev_curve import ChebyshevCurve, fit_curve
 from .contact import ElasticContact, NearHemisphere
 from .kernel import Kernel
 from .load_curve import LoadCurve
 from .modes import ball_of, socket_of
+
+if TYPE_CHECKING:
+    from .chebyshev_curve import ChebyshevCurve
 
 
 def _effective_poisson(contact: Any) -> Array:
@@ -165,5 +167,7 @@ def chebyshev_curve_of(model: Exact, joint: Joint) -> LoadCurve | ChebyshevCurve
 
     A joint with a circular gap has the load curve itself.
     """
+    from .chebyshev_curve import fit_curve  # presses do without it
+
     curve = curve_of(model, joint)
     return fit_curve(curve) if isinstance(curve.gap, LinearGap) else curve

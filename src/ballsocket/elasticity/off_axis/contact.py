@@ -150,7 +150,8 @@ class OffAxisContact(SolvedContact):
         """
         from .load_cases import edge_margins  # slow to import
 
-        return self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
+        margin = self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
+        return arrays.where(self.half_angle == 0, self.rim_distance / self.joint.socket_radius, margin)
 
     @cached_array
     def error(self) -> dict[str, Array]:

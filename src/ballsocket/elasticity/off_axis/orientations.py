@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +24,8 @@ from ...version import __version__
 from ..finite_elements.progress import report_progress
 from .contact import OffAxisContact
 from .model import Sphere, check_sphere
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,6 +88,14 @@ class Orientations:
         """True where the bore holds the ball and there is a solution."""
         return ~numpy.asarray(is_missing(self.status))
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes of the contacts; one with the largest numbers stands for all that differ in numbers alone."""
+        outcomes = {status.sentence for status in Status}
+        texts = {re.sub(r"^\d+ of \d+: ", "", note) for contact in self.contacts for note in contact.notes} - outcomes
+        ordered = sorted(texts, key=lambda text: list(map(float, _NUMBER.findall(text))))
+        return tuple({_NUMBER.sub("", text): text for text in ordered}.values())
+
     def best(self, field: Numbers) -> tuple[float, float, int]:
         """Return the inclination and anteversion in rad at which a field is largest, and its flat index."""
         index = int(numpy.where(self.held & numpy.isfinite(field), field, -inf).argmax())
@@ -118,6 +129,7 @@ class Orientations:
             ],
             "status": [[Status(int(number)).name for number in row] for row in self.status],
             "valid": self.valid.tolist(),
+            "notes": list(self.notes),
             "seconds": self.seconds,
         }
 
