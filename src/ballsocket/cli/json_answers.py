@@ -204,7 +204,7 @@ _LINER_PARAMETERS = ("liner_young", "liner_poisson")
 
 def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     load = _load_options(arguments)
-    yield ("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model"
+    yield ("press", *_joint_arguments(arguments), *load, "--all"), "the stated joint, without scatter, by every model"
 
 
 def _after_study(answer: Answer, arguments: Arguments) -> Iterator[Step]:
