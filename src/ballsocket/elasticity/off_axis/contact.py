@@ -146,12 +146,11 @@ class OffAxisContact(SolvedContact):
     def edge_margin(self) -> Array:
         """Angle in rad from the edge of the contact to the end of the bore, negative for edge loading.
 
-        It is `edge_distance` over the bore's radius.
+        It is `edge_distance` over the radius of the bore, and 0 without a contact.
         """
         from .load_cases import edge_margins  # slow to import
 
-        margin = self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
-        return arrays.where(self.half_angle == 0, self.rim_distance / self.joint.socket_radius, margin)
+        return self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
 
     @cached_array
     def error(self) -> dict[str, Array]:
