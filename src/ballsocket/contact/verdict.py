@@ -9,7 +9,7 @@ Every comparison of a contact's number with a limit takes its error bar::
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, nextafter
+from math import inf, nan, nextafter
 from math import isfinite as is_finite_number
 
 from ..core.arrays import isfinite, where
@@ -59,6 +59,7 @@ def error_bar(contact: Contact, name: str) -> Bounded:
         return bar._replace(high=bar.high * (1 + contact._rim_error))
     if name == EDGE_DISTANCE:
         error = errors["edge_margin"] * contact.joint.socket_radius
+        error = where(contact.half_angle > 0, error, nan)  # nothing is known without a contact
     elif name == "area":
         error = _AREA_ERRORS * errors.get("half_angle", 0.0) * value
     else:
@@ -69,8 +70,6 @@ def error_bar(contact: Contact, name: str) -> Bounded:
 
 def rim_verdict(contact: Contact) -> Verdict:
     """Decide if a single contact ends before the rim; undecided if its error bar contains the rim, or without load."""
-    if not contact.half_angle > 0:
-        return Verdict.UNDECIDED
     return error_bar(contact, EDGE_DISTANCE).verdict(low=nextafter(0.0, 1.0))  # at the rim it is edge loaded
 
 

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.core.bounded import Verdict
 from ballsocket.reports.orientation_plots import orientation_figure
 from ballsocket.studies.expressions import parse_limit
+from ballsocket.studies.orientation_answer import verdicts
 
 from ...joints import HIP
 
@@ -67,6 +69,11 @@ def test_map_states_why_an_orientation_has_no_number(oriented):
     assert shown == ["the contact reaches the rim", "the rim digs in: unbounded pressure"]
     with pytest.raises(ValueError, match="two values of an angle, got one orientation"):
         orientation_figure(orient(0.2, 0.1))
+
+
+def test_a_limit_of_the_distance_is_undecided_without_a_contact():
+    unloaded = bs.orient(HIP, model=SPHERE, force=0.0, inclination=0.4, anteversion=0.1)
+    assert verdicts(unloaded, [parse_limit("edge_distance>=1 mm")]) == Verdict.UNDECIDED
 
 
 def test_figure_of_one_changing_angle_is_a_curve_with_its_limits(oriented):
