@@ -208,7 +208,11 @@ def expected_numbers(row, table, units, most_rank):
         for end in value if isinstance(value, list) else [value]:
             if end is not None and end == end:
                 number = end if metric == shown else converted(end, metric, shown)
-                yield pytest.approx(number, rel=0.6 * 10 ** (1 - digits), abs=1e-12)
+                tolerance = {"rel": 0.6 * 10 ** (1 - digits), "abs": 1e-12}
+                if column.decimals is not None:
+                    factor = 1.0 if metric == shown else converted(1.0, metric, shown)
+                    tolerance = {"abs": 0.6 * 10 ** (np.floor(np.log10(factor)) - column.decimals)}
+                yield pytest.approx(number, **tolerance)
 
 
 def printed(answer, units):

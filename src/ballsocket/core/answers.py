@@ -21,7 +21,7 @@ from .checks import needs
 from .display import html_table, plain_number
 from .kinds import PLAIN, Unit
 from .quantities import Quantity
-from .unit_systems import Amount, Units
+from .unit_systems import Amount, Units, fixed_text
 
 PAGE, QUIET = 18, 19
 """Ranks of what a terminal leaves out, and of what only data have: JSON, CSV and data frames."""
@@ -50,6 +50,7 @@ class Column:
     unit: Unit | None = None  # metric unit for readers, also of a plain number; None for a column of words
     written: Unit = PLAIN  # unit in data
     digits: int = 4  # significant, for readers
+    decimals: int | None = None  # in the metric unit, in place of significant digits
     rank: int = 0  # the highest ranks leave a narrow terminal first; 0 stays, `QUIET` is in data only
 
     @classmethod
@@ -196,7 +197,13 @@ def _text(cell: Cell, column: Column, factor: float, units: Units) -> str:
         mark = "" if cell.value != cell.value else _MARKS[cell.verdict]
         return f"{_text(cell.value, column, factor, units)}{mark}"
     ends = cell if isinstance(cell, tuple) else (cell,)
-    return " to ".join("-" if end != end else plain_number(end * factor, column.digits) for end in ends)
+    return " to ".join("-" if end != end else _number_text(end, column, factor) for end in ends)
+
+
+def _number_text(number: float, column: Column, factor: float) -> str:
+    if column.decimals is None or not isfinite(number):
+        return plain_number(number * factor, column.digits)
+    return fixed_text(number, factor, (column.unit or PLAIN).factor, column.decimals)
 
 
 def records(table: Table) -> list[dict[str, Any]]:

@@ -120,8 +120,7 @@ class Units(StrEnum):
         unit = self.written(amount.unit)
         if amount.decimals is None:
             return _written(amount.value, unit, amount.digits)
-        decimals = amount.decimals - floor(log10(unit.factor / amount.unit.factor))
-        text = f"{round(amount.value * unit.factor, decimals) + 0.0:.{max(decimals, 0)}f}"
+        text = fixed_text(amount.value, unit.factor, amount.unit.factor, amount.decimals)
         return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"
 
     def of_text(self, unit: str) -> Unit:
@@ -185,6 +184,15 @@ class Sentence(str):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Sentence, (self.template, *self.parts)
+
+
+def fixed_text(number: float, factor: float, metric_factor: float, decimals: int) -> str:
+    """Write a number with fixed decimals in its metric unit, or with those that leave as much in another one.
+
+    The factors lead from the internal unit to the shown one and to the metric one.
+    """
+    shown_decimals = decimals - floor(log10(factor / metric_factor))
+    return f"{round(number * factor, shown_decimals) + 0.0:.{max(shown_decimals, 0)}f}"
 
 
 def _written(number: float, unit: Unit, digits: int = 4) -> str:

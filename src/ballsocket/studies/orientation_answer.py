@@ -31,7 +31,8 @@ def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = 
     tables = []
     for quantity in (DERIVED["edge_distance"], CONTACT["max_pressure"]):
         heads = [angle_text(angle) for angle in orientations.inclination]
-        columns = [replace(Column.of(quantity, digits=3), key=head, name=head, head=head, title="") for head in heads]
+        column = replace(Column.of(quantity), decimals=1, title="")  # known to about 0.1 mm and 0.1 MPa
+        columns = [replace(column, key=head, name=head, head=head) for head in heads]
         values = numpy.where(orientations.held, getattr(orientations, quantity.name), numpy.nan)
         rows = [
             Row([angle_text(angle), *(Judged(float(number), Verdict(code)) for number, code in pairs)])
