@@ -55,7 +55,7 @@ press {sizes} --force 1 => the liner needs a material, or young and poisson
 press {sizes} --young 1GPa --poisson 0.5 --force 1 --model bonded-layer => bonded-layer has no answer for ν = 0.5
 evidence => a question file is needed, or --check with the folder of a pack
 evidence --check . => holds no pack of evidence: checksums.txt is missing
-press {hip} --units inch => --units must be one of 'si', 'imperial', got 'inch'
+press {hip} --units inch => 'si', 'imperial'
 press 'C:\\Users\\me\\hip.toml' => ballsocket: 'C:\\Users\\me\\hip.toml'
 pres => No such command 'pres'.
 study => file is missing: Study file
