@@ -137,7 +137,8 @@ class Material(OneLine, ByValue):
     @property
     def stress_limits(self) -> dict[str, Array]:
         """Known strengths and proportional limit in MPa, by name."""
-        return {name: limit for name in STRESS_LIMITS if (limit := getattr(self, name)) is not None}
+        limits = {name: getattr(self, name) for name in STRESS_LIMITS}
+        return {name: limit for name, limit in limits.items() if limit is not None}
 
     def without_strengths(self) -> Material:
         """Return a copy of the material without strengths and proportional limit."""
