@@ -97,7 +97,7 @@ def design_map(
     load, model = _load(joint_options, file, ends), press_options.choose_model(file, {**ends, **sizes})
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **stated, **load), quantities=_quantities((), limits, model))
-    output.print(map_summary(result, limits), describe_map(result, limits))
+    output.print(lambda: map_summary(result, limits), lambda: describe_map(result, limits))
     output.draw(lambda: study_plots.design_map(result, limits, units=output.units))
 
 
@@ -150,13 +150,13 @@ def optimise(
     if len(goals) == 2:
         result, both = study_ranges(file.joint, choices), (goals[0], goals[1])
         front = pareto(result, both, limits)
-        output.print(front_summary(front), describe_front(front))
+        output.print(lambda: front_summary(front), lambda: describe_front(front))
         output.draw(lambda: study_plots.front_figure(result, front, both, limits))
         return
     if len(goals) != 1:
         raise ValueError(f"one result or two are minimised, got {len(goals)}")
     best = find_optimum(model, file.joint, ranges, choices=choices, minimise=goals[0], limits=limits, load=load)
-    output.print({"model": model.name, **best.summary()}, describe_optimum(best))
+    output.print(lambda: {"model": model.name, **best.summary()}, lambda: describe_optimum(best))
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
     output.draw(
@@ -246,7 +246,9 @@ def sensitivity(
         second_order=second_order,
         correlation=parse_correlations(correlation or ()),
     )
-    output.print({"model": result.attrs["model"], **sensitivity_summary(result)}, describe_sensitivity(result))
+    output.print(
+        lambda: {"model": result.attrs["model"], **sensitivity_summary(result)}, lambda: describe_sensitivity(result)
+    )
     output.draw(lambda: study_plots.sensitivity_figure(result))
     if csv is not None:
         table = index_table(result)

@@ -104,8 +104,10 @@ def film(
         compute_film(contact, spin=inputs.spin_of(contact), lubricant=inputs.lubricant(), method=inputs.method)
         for contact in _contacts(model, gap, file, rings)
     ]
-    results = [film.summary() for film in films]
-    output.print({"joint": file.joint.summary(), "results": results}, describe_films(films))
+    output.print(
+        lambda: {"joint": file.joint.summary(), "results": [film.summary() for film in films]},
+        lambda: describe_films(films),
+    )
     output.draw(lambda: film_figure(films[0]))
     failed = [film for film in films if film.status.failed]
     if failed:

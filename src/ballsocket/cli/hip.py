@@ -202,8 +202,12 @@ def _simulate_cohort(
             progress=progress,
             method=method,
         )
-    summary = {"valid": bands.valid, **bands.summary(), "notes": [*bands.nominal_notes, *bands.notes]}
-    print_result(summary, describe_cohort(bands), units, as_json)
+    print_result(
+        lambda: {"valid": bands.valid, **bands.summary(), "notes": [*bands.nominal_notes, *bands.notes]},
+        lambda: describe_cohort(bands),
+        units,
+        as_json,
+    )
     if store is not None:
         path = write_csv(store / "patients.csv", cohort, bands.cohort)
         if not as_json:

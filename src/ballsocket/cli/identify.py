@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy
 import typer
@@ -70,13 +70,16 @@ def identify(
         return
     result = read_identify(file).identify_unknowns()
     posterior = None if samples is None else result.posterior(samples)
-    summary = {
-        "joint": result.joint.summary(),
-        **result.summary(),
-        "posterior": None if posterior is None else posterior.summary(),
-        "experiment": result.next.summary(),
-    }
-    print_result(summary, describe_identification(result, posterior), units, as_json)
+
+    def summarise() -> dict[str, Any]:
+        return {
+            "joint": result.joint.summary(),
+            **result.summary(),
+            "posterior": None if posterior is None else posterior.summary(),
+            "experiment": result.next.summary(),
+        }
+
+    print_result(summarise, lambda: describe_identification(result, posterior), units, as_json)
     write_figure(figure, lambda: identify_results.fit_figure(result), units)
     write_figure(corner, lambda: identify_results.corner_figure(result, posterior), units)
     write_figure(experiment, lambda: identify_results.experiment_figure(result.next), units)
@@ -104,8 +107,13 @@ def _fit_wear(file: Path, figure: Path | None, units: Units, as_json: bool) -> N
     hip_file = read_wear_test(file)
     fit = fit_wear_coefficient(hip_file.use, hip_file.data)
     valid = all(check.valid for check in fit.simulation.unworn_checks)
-    summary = {"joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()}
-    print_result(summary, describe_wear_fit(fit), units, as_json)
+    joint = fit.simulation.joint
+    print_result(
+        lambda: {"joint": joint.summary(), "valid": valid, **fit.summary()},
+        lambda: describe_wear_fit(fit),
+        units,
+        as_json,
+    )
     write_figure(figure, lambda: wear_fit_figure(fit, hip_file.cycles), units)
 
 
@@ -146,7 +154,12 @@ def calibrate(
         fitted_joint = dataclasses.replace(fitted_joint, liner_thickness=numpy.array(lengths))
     loads = [parse("force", text, Kind.FORCE) for text in force or []] or FORCES
     fit = fit_modulus(fitted_joint, force=loads, form=_FORMS[form])
-    print_result({"joint": fitted_joint.summary(), **fit.summary()}, describe_calibration(fit), units, as_json)
+    print_result(
+        lambda: {"joint": fitted_joint.summary(), **fit.summary()},
+        lambda: describe_calibration(fit),
+        units,
+        as_json,
+    )
 
 
 @app.command(hidden=True)  # for developers of the tables

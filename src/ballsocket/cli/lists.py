@@ -38,8 +38,12 @@ def models(
 ) -> None:
     """List contact models with their ranges and sources."""
     chosen = list(listed_models.values()) if name is None else [listed_models[known_name("model", name, listed_models)]]
-    description = _describe_models(chosen) if name is None else _describe_model(chosen[0])
-    print_result({"models": list(map(_model_summary, chosen))}, description, Units.SI, as_json)
+    print_result(
+        lambda: {"models": list(map(_model_summary, chosen))},
+        lambda: _describe_models(chosen) if name is None else _describe_model(chosen[0]),
+        Units.SI,
+        as_json,
+    )
 
 
 @app.command()
@@ -54,11 +58,15 @@ def presets(
     """List materials and joints by name, with their sources."""
     known = [*materials, *joints]
     names = known if name is None else [find_material(name) or known_name("preset", name, known)]
-    summary = {
-        title: {key: _preset_summary(preset) for key, preset in presets.items() if key in names}
-        for title, presets in _PRESETS.items()
-    }
-    print_result(summary, _describe_presets() if name is None else _describe_preset(names[0]), units, as_json)
+    print_result(
+        lambda: {
+            title: {key: _preset_summary(preset) for key, preset in presets.items() if key in names}
+            for title, presets in _PRESETS.items()
+        },
+        lambda: _describe_presets() if name is None else _describe_preset(names[0]),
+        units,
+        as_json,
+    )
 
 
 @app.command()

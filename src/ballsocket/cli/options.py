@@ -124,12 +124,14 @@ def needed_load(file: JointFile) -> dict[str, float]:
     return file.load
 
 
-def print_result(summary: Mapping[str, Any], description: Answer, units: Units, as_json: bool) -> None:
-    """Print the summary of a result as JSON, or its description."""
+def print_result(
+    summarise: Callable[[], Mapping[str, Any]], describe: Callable[[], Answer], units: Units, as_json: bool
+) -> None:
+    """Print the summary of a result as JSON, or its description; only the printed one is made."""
     if as_json:
-        echo_json(summary)
+        echo_json(summarise())
     else:
-        print_answer(description, units)
+        print_answer(describe(), units)
 
 
 def write_figure(path: Path | None, draw: Callable[[], Figure], units: Units) -> None:
@@ -150,9 +152,9 @@ class OutputOptions:
         """Raise ValueError for a figure format that cannot be written."""
         check_format(self.figure)
 
-    def print(self, summary: Mapping[str, Any], description: Answer) -> None:
-        """Print the result as JSON, or its description."""
-        print_result(summary, description, self.units, self.as_json)
+    def print(self, summarise: Callable[[], Mapping[str, Any]], describe: Callable[[], Answer]) -> None:
+        """Print the result as JSON, or its description; see `print_result`."""
+        print_result(summarise, describe, self.units, self.as_json)
 
     def draw(self, draw: Callable[[], Figure]) -> None:
         """Draw and write the figure if there is a file for it."""

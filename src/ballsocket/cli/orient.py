@@ -154,8 +154,10 @@ def orient(
     model = replace(with_gap(rings.model() or Sphere(), orientation.gap), cup=file.cup).with_direction(**file.aim)
     with solver_progress("sphere"):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **needed_load(file))
-    summary = {**orientations.summary(), **limits_summary(orientations, limits)}
-    output.print(summary, describe_orientations(orientations, limits))
+    output.print(
+        lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
+        lambda: describe_orientations(orientations, limits),
+    )
     output.draw(lambda: orientation_figure(orientations, output.units, limits))
     if not orientations.held.any():
         fail("no orientation has an answer (see the statuses)")

@@ -148,7 +148,11 @@ def planning(*, files: PlanFiles, inputs: PlanInputs, units: UnitSystem = Units.
     if inputs.clearance is not None:
         ball = inputs.head_material or "rigid"
         remarks.append(f"materials: liner {inputs.liner_material}, head {ball}")
-    summary = {**plan.summary(), "orientation": orientation or None, "file": path}
-    print_result(summary, describe_plan(plan, remarks), units, as_json)
+    print_result(
+        lambda: {**plan.summary(), "orientation": orientation or None, "file": path},
+        lambda: describe_plan(plan, remarks),
+        units,
+        as_json,
+    )
     if files.out is not None and not as_json:
         echo_path(files.out)

@@ -299,8 +299,12 @@ def curve(
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
     contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
-    summary: Any = contact.summary()
-    valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
-    print_result({"joint": file.joint.summary(), **summary, **valid}, describe_curve(contact), units, as_json)
+
+    def summarise() -> dict[str, Any]:
+        summary = contact.summary()
+        valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
+        return {"joint": file.joint.summary(), **summary, **valid}
+
+    print_result(summarise, lambda: describe_curve(contact), units, as_json)
     if not numpy.isfinite(contact.indentation[1:]).any():
         fail(f"no answer from {named.name} at any load (see the notes)")

@@ -79,8 +79,12 @@ def study(
             engine=choose_executor(workers, scheduler, study_file.engine),
             listen=progress,
         )
-    summary = {"joint": study_file.joint.summary(), **study_summary(result)}
-    print_result(summary, describe_study(result), units, as_json)
+    print_result(
+        lambda: {"joint": study_file.joint.summary(), **study_summary(result)},
+        lambda: describe_study(result),
+        units,
+        as_json,
+    )
     if out is not None:
         export(result, out)
     if draw is not None and figure is not None:
