@@ -24,9 +24,12 @@ def check_format(*paths: Path | None) -> None:
     ValueError
         Another ending, or a folder that does not exist.
     """
-    for path in filter(None, paths):
-        from ..core.storage.atomic_files import check_ending  # a press without a figure does without it
+    given = [path for path in paths if path is not None]
+    if not given:
+        return
+    from ..core.storage.atomic_files import check_ending  # a press without a figure does without it
 
+    for path in given:
         check_ending("figure", path, *FORMATS)
 
 

@@ -84,7 +84,7 @@ def _draw_limits(axes: Axes, orientations: Orientations, limits: Sequence[Limit]
             axes.plot([], [], label=units.sentence(limit_sentence(limit)), **_LIMIT_LINE)
     across, up = numpy.nonzero(verdicts(orientations, limits) == Verdict.UNDECIDED)
     if len(across):
-        label = "undecided: the error bar contains a limit"
+        label = "undecided: by the error bar, or outside the range of the model"
         axes.plot(x[across], y[up], linestyle="", marker="$?$", color=VERMILLION, markersize=8, label=label)
 
 

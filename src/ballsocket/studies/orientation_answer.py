@@ -45,7 +45,7 @@ def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = 
         title=str(orientations.joint),
         lines=[load_sentence(orientations)],
         tables=tables,
-        notes=[*(_limit_sentences(orientations, limits) if limits else ()), *_sentences(orientations)],
+        notes=[*(_limit_sentences(orientations, limits, codes) if limits else ()), *_sentences(orientations)],
     )
 
 
@@ -71,8 +71,8 @@ def verdicts(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
     return codes
 
 
-def inclination_ranges(orientations: Orientations, limits: Sequence[Limit]) -> list[tuple[float, float] | None]:
-    """Find the inclinations that keep all limits by their whole error bars, for each anteversion.
+def inclination_ranges(orientations: Orientations, codes: Numbers) -> list[tuple[float, float] | None]:
+    """Find the inclinations whose `verdicts` are kept, for each anteversion.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def inclination_ranges(orientations: Orientations, limits: Sequence[Limit]) -> l
         Ends in rad of the longest row of neighbouring inclinations within the limits; None without one.
     """
     ranges: list[tuple[float, float] | None] = []
-    for within in (verdicts(orientations, limits) == Verdict.KEPT).T:
+    for within in (codes == Verdict.KEPT).T:
         edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[False], within, [False]]).astype(int)))
         pairs = list(zip(edges[::2], edges[1::2] - 1, strict=True))
         first, last = max(pairs, key=lambda pair: pair[1] - pair[0], default=(0, -1))
@@ -93,8 +93,8 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     """Return the limits and the orientations within them for JSON; empty without limits."""
     if not limits:
         return {}
-    rows = zip(orientations.anteversion, inclination_ranges(orientations, limits), strict=True)
     codes = verdicts(orientations, limits)
+    rows = zip(orientations.anteversion, inclination_ranges(orientations, codes), strict=True)
     return {
         "limits": [str(limit_sentence(limit)) for limit in limits],
         "within_limits": (codes == Verdict.KEPT).tolist(),
@@ -117,15 +117,14 @@ def limit_sentence(limit: Limit) -> Sentence:
     return Sentence(" and ".join(f"{limit.name} {sign} {{}}" for sign, _ in ends), *amounts)
 
 
-def _limit_sentences(orientations: Orientations, limits: Sequence[Limit]) -> Iterator[str]:
+def _limit_sentences(orientations: Orientations, limits: Sequence[Limit], codes: Numbers) -> Iterator[str]:
     """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
-    codes = verdicts(orientations, limits)
     kept, undecided, _ = (int((codes == verdict).sum()) for verdict in Verdict)
     texts = Sentence(" and ".join("{}" for _ in limits), *map(limit_sentence, limits))
     yield Sentence("limit: {}; {}", texts, f"kept in {kept} of {codes.size} orientations, exceeded where *")
     if undecided:
         yield f"undecided in {undecided} orientations with ?: by the error bar, or outside the range of the model"
-    ranges = inclination_ranges(orientations, limits)
+    ranges = inclination_ranges(orientations, codes)
     starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
     for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
         angles = [angle_text(orientations.anteversion[row]) for row in (first, following - 1)]
