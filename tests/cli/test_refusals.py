@@ -147,7 +147,7 @@ press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coef
 press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1
 press hip-28 --force 9 --friction -1 => coefficient = -1 is not allowed
 
-export adams {export} => target 'adams' is not known; known: c, opensim, mujoco, drake, exudyn, modelica
+export ansys {export} => target 'ansys' is not known; known: c, opensim, mujoco, drake, exudyn, adams, modelica
 export table hip-28 --out file => 'file' is a file; a folder is needed
 export table hip-28 --out file/new/hip => 'file' is a file; a folder is needed
 export table {export} --model fem => finite elements are too noisy for a law

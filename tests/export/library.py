@@ -3,7 +3,7 @@
 import ctypes as c
 import sys
 import zipfile
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree.ElementTree import fromstring
@@ -55,6 +55,14 @@ def python_header():
     if header[:4] == b"\xca\xfe\xba\xbe":
         pytest.skip("this Python is built for several processors")
     return header
+
+
+def load_module(folder, name):
+    """Load a module of a folder."""
+    spec = spec_from_file_location(name, folder / f"{name}.py")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def table(path):

@@ -16,7 +16,7 @@ from ..core.checks import known_name
 from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
-from ..export.targets import TARGETS, ExportJob
+from ..export import TARGETS, ExportJob
 from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
 from ..files.schema import Length, PlainNumber, Speed, Table, Viscosity, meaning
@@ -127,6 +127,9 @@ Beyond = Annotated[
 ]
 Mass = Annotated[float, typer.Option(help="Mass of the ball in kg, for the advice on time steps.")]
 
+_LOAD = ("load.force", "load.indentation", "load.tilt")
+"""Keys of the load up to which a law is exported."""
+
 _FILE_ENDINGS = {".c", ".csv", ".fmu", ".h", ".inp", ".mo", ".osim", ".py", ".txt", ".xml"}
 """Endings of files: a path with one of them is a file, and any other a folder."""
 
@@ -137,7 +140,7 @@ def export(
     *,
     target: Annotated[str, typer.Argument(help=f"Program: {', '.join(TARGETS)}.")],
     joint: JointName = None,
-    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover")],
+    joint_options: Annotated[JointOptions, (*JOINT, "cup.arc_of_cover", *_LOAD)],
     model: ModelName = None,
     gap: GapName = None,
     inputs: ForceElementInputs,
@@ -162,7 +165,7 @@ def export(
     chosen.check(file.joint)
     element = inputs.element(file, model, gap)
     depth = fit_depth(element, file.load)
-    job = ExportJob(element=element, name=identifier(out), depth=depth, beyond=beyond, mass=mass)
+    job = ExportJob(element=element, name=identifier(out), depth=depth, beyond=beyond, mass=mass, tilt=file.tilt)
     if folder != out and out.name not in (names := tuple(chosen.texts(job))):
         raise ValueError(f"out {str(out)!r}: {target} writes {', '.join(names)}; give one of them, or a folder")
     paths, notes = chosen.write(job, folder)

@@ -1,6 +1,7 @@
 """Force elements for other programs: C sources, FMUs, and files for multibody codes."""
 
 from .c_element import CElement
-from .targets import TARGETS, ExportJob, Target
+from .job import ExportJob
+from .targets import TARGETS, Target
 
 __all__ = ["TARGETS", "CElement", "ExportJob", "Target"]

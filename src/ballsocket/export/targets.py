@@ -1,106 +1,20 @@
-"""Export targets: the job of an export, the files of each target program, and their registry."""
+"""Export targets: the files of each target program, and their registry."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
 
-import numpy
-
-from ..core.arrays import Numbers
-from ..core.checks import known_name, require
 from ..core.storage.atomic_files import make_folder, write_text
-from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
 from ..problem import Joint
-from ..version import __version__
-from .c_element import BEYOND, CElement, fill_template
+from .c_element import BEYOND, fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
-from .law_fit import ExpressionFit, PowerFit, expression_fit, power_fit
-from .time_steps import TimeStepAdvice, time_step_advice
+from .job import NOT_CENTRAL, ExportJob, Texts
+from .law_tables import pivot_texts, table_texts, two_axes_note
 from .tunable import TUNABLES
-
-_NOT_CENTRAL = (
-    "the force of a preloaded joint depends on the direction, which this target cannot represent: "
-    "export c, drake, modelica or mujoco, or table for splines along two axes, or use `ballsocket fmu`"
-)
-
-Texts = Mapping[str, str]  # contents of files by their names
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ExportJob:
-    """Export of one force element: the element, the name of its files, and the largest fitted indentation in mm.
-
-    `beyond` says what follows an indentation beyond the range of the law, see `CElement`. The ball of `mass` in kg is
-    for the advice on time steps.
-    """
-
-    element: ForceElement | PreloadedElement
-    name: str
-    depth: float
-    beyond: str = "extend"
-    mass: float = 1.0
-
-    def __post_init__(self) -> None:
-        require("mass", self.mass, self.mass > 0.0, "it must be above 0 kg")
-        object.__setattr__(self, "beyond", known_name("beyond", self.beyond, BEYOND))
-
-    @cached_property
-    def c_program(self) -> CElement:
-        """C source and header of the force element."""
-        return CElement(element=self.element, name=self.name, beyond=self.beyond)
-
-    @cached_property
-    def fitted_power_law(self) -> PowerFit:
-        """Fitted power law F = k d^n of the force element."""
-        return power_fit(self.central_element, self.depth)
-
-    @cached_property
-    def fitted_expression(self) -> ExpressionFit:
-        """Force law fitted as one expression of the distance."""
-        return expression_fit(self.central_element, self.depth)
-
-    @cached_property
-    def time_steps(self) -> TimeStepAdvice:
-        """Time steps for a host program."""
-        return time_step_advice(self.element, self.depth or self.element.wall, self.mass)
-
-    @property
-    def central_element(self) -> ForceElement:
-        """Element whose force depends on the distance of the centres alone.
-
-        Raises
-        ------
-        ValueError
-            A preloaded joint.
-        """
-        if isinstance(self.element, PreloadedElement):
-            raise ValueError(_NOT_CENTRAL)
-        return self.element
-
-    @property
-    def template_context(self) -> dict[str, str]:
-        """Values for the placeholders of file templates, by name."""
-        return {
-            **self.c_program.about,
-            "name": self.name,
-            "NAME": self.name.upper(),
-            "library": f"_{self.name}{LIBRARY_ENDING}",
-            "plugin": f"_{self.name}_plugin{LIBRARY_ENDING}",
-            "parameters": str(len(TUNABLES)),
-            "units": ", ".join(repr(parameter.si) for parameter in TUNABLES),
-            "tunables": ", ".join(parameter.name for parameter in TUNABLES),
-            "through_wall": f"{ContactState.THROUGH_WALL.value}: {BEYOND[self.beyond]}",
-            "failed": str(self.c_program.first_failure.value),
-        }
-
-    def program_texts(self) -> dict[str, str]:
-        """Return the texts of the C header and source, by file name."""
-        return {f"{self.name}.h": self.c_program.header, f"{self.name}.c": self.c_program.source}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +50,7 @@ class Target:
     def check(self, joint: Joint) -> None:
         """Raise ValueError for a preloaded joint whose force the program cannot represent, before it is solved."""
         if self.central and joint.clearance < 0:
-            raise ValueError(_NOT_CENTRAL)
+            raise ValueError(NOT_CENTRAL)
 
     def write(self, job: ExportJob, folder: Path) -> tuple[list[Path], str]:
         """Write the files of an export job into a folder; return their paths, and notes on omitted features.
@@ -186,11 +100,6 @@ _LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
 """Features that one force along the line of centres cannot represent."""
 
 
-def _python_module_texts(job: ExportJob) -> dict[str, str]:
-    """Return the texts of the C program and of the Python module that loads it, by file name."""
-    return {**job.program_texts(), f"{job.name}.py": fill_template("module.py.txt", **job.template_context)}
-
-
 def _compile_library(job: ExportJob, folder: Path) -> str:
     """Compile the C library that the Python module loads; return a note if the compilation fails."""
     try:
@@ -218,7 +127,7 @@ def _mujoco_texts(job: ExportJob) -> Texts:
     """Return the texts of the MuJoCo plug-in, callback and model, by file name."""
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
-        **_python_module_texts(job),
+        **job.python_module_texts(),
         f"{job.name}_mujoco.c": fill_template(
             "mujoco.c", stiffness=repr(1e3 * job.time_steps.stiffness), **job.template_context
         ),
@@ -255,7 +164,7 @@ def _exudyn_texts(job: ExportJob) -> Texts:
         "socket_radius": repr(1e-3 * constants.socket_radius),
     }
     return {
-        **_python_module_texts(job),
+        **job.python_module_texts(),
         f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context),
     }
 
@@ -280,87 +189,6 @@ def _modelica_texts(job: ExportJob) -> Texts:
     }
 
 
-def _table_texts(job: ExportJob) -> Texts:
-    """Return the texts of the table of the force law and of the fitted power law, by file name.
-
-    The force of a preloaded joint is no power law: it has a table with both signs along two axes.
-    """
-    if isinstance(job.element, PreloadedElement):
-        return {f"{job.name}_law.csv": _preloaded_table(job.element)}
-    return {
-        f"{job.name}_law.csv": _law_table(job.central_element, job.depth),
-        f"{job.name}_power.txt": _power_law_text(job.central_element, job.fitted_power_law, __version__),
-    }
-
-
-_TABLE_ROWS = 201  # number of indentations in a table of the law
-
-_COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_angle_deg", "max_pressure_MPa")
-
-
-def _law_table(element: ForceElement, depth: float) -> str:
-    """Return a CSV table of force, stiffness, energy, half angle and pressure up to an indentation in mm."""
-    depths = numpy.linspace(0.0, depth, _TABLE_ROWS)
-    energy, force, stiffness = element.potential(depths)
-    angle = numpy.degrees(element.half_angle(depths))
-    columns = (depths, force, stiffness, energy, angle, element.max_pressure(depths))
-    return _csv_text(_COLUMNS, columns)
-
-
-_PRELOADED_COLUMNS = (
-    "displacement_mm",
-    *(f"{name}_{axis}" for axis in ("along", "across") for name in ("force_N", "max_pressure_MPa")),
-)
-
-
-def _preloaded_table(element: PreloadedElement) -> str:
-    """Return a CSV table over the displacement from rest in mm, along the axis of the dome and across it.
-
-    The force on the ball is in the direction of the displacement, negative for a positive one.
-    """
-    distances = numpy.linspace(-element.wall, element.wall, _TABLE_ROWS) * (1 - 1e-9)
-    constants, columns = element.constants, [distances]
-    dome = numpy.array([constants.dome_x, constants.dome_y, constants.dome_z])
-    across = numpy.cross(dome, numpy.eye(3)[numpy.argmin(abs(dome))])
-    for axis in (dome, across / numpy.linalg.norm(across)):
-        load = element(element.rest_position + distances[:, None] * axis)
-        columns += [load.force @ axis, load.max_pressure]
-    return _csv_text(_PRELOADED_COLUMNS, columns)
-
-
-def _csv_text(heads: Sequence[str], columns: Sequence[Numbers]) -> str:
-    """Return a CSV table with nine digits."""
-    rows = numpy.stack(columns, axis=1).tolist()
-    return "\n".join([",".join(heads), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
-
-
-def _two_axes_note(job: ExportJob) -> str:
-    """Return the note on the directions of the table of a preloaded joint; empty for other joints."""
-    if not isinstance(job.element, PreloadedElement):
-        return ""
-    return (
-        "force on the ball over its displacement from rest, along the cup's axis (positive to the dome) and across it; "
-        "for other directions export c, drake, modelica or mujoco, or use `ballsocket fmu`"
-    )
-
-
-def _power_law_text(element: ForceElement, fit: PowerFit, version: str) -> str:
-    """Return the fitted power law as text, with expressions for Adams, MotionSolve and Simpack in mm, N and s."""
-    c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
-    return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
-# {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth
-k = {k!r}
-n = {n!r}
-clearance = {c!r}
-
-# Adams and MotionSolve: a force along the line of centres of two markers, ball on socket; mm, N
--{k!r} * MAX(DM(ball, socket) - {c!r}, 0)**{n!r}
-
-# Simpack: an expression, x the distance of the markers
--{k!r} * MAX(x - {c!r}, 0)^{n!r}
-"""
-
-
 TARGETS: Mapping[str, Target] = {
     target.name: target
     for target in (
@@ -379,7 +207,7 @@ TARGETS: Mapping[str, Target] = {
             name="drake",
             title="a LeafSystem",
             texts=lambda job: {
-                **_python_module_texts(job),
+                **job.python_module_texts(),
                 f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context),
             },
             compiled=_compile_library,
@@ -391,14 +219,30 @@ TARGETS: Mapping[str, Target] = {
             compiled=_compile_library,
             central=True,
         ),
+        Target(
+            name="adams",
+            title="a user subroutine GFOSUB in C",
+            texts=lambda job: {
+                **job.program_texts(),
+                f"{job.name}_adams.c": fill_template("adams.c", **job.template_context),
+            },
+        ),
         Target(name="modelica", title="a package around the law in C", texts=_modelica_texts),
         Target(
             name="table",
             title="a table, and k and n for Adams, MotionSolve and Simpack",
-            texts=_table_texts,
+            texts=table_texts,
             beyond_range="the table ends at the range of the law",
-            note=_two_axes_note,
+            note=two_axes_note,
+            without=tuple(name for name in FEATURES if name != "the rim of the cup"),
+        ),
+        Target(
+            name="ross",
+            title="force, indentation and stiffness of a pivot, for ROSS",
+            texts=pivot_texts,
+            beyond_range="the table ends at the range of the law",
             without=tuple(FEATURES),
+            central=True,
         ),
     )
 }
