@@ -18,55 +18,30 @@ from ..core.display import load_plot
 from ..core.lazy import imported_names
 
 if TYPE_CHECKING:
-    from .axes import Span
-    from .derivatives import elasticities
-    from .design import Design, grid, sample, table
-    from .distributions import LogNormal, Normal, Rectangular, tolerance
-    from .expressions import parse_limit
-    from .file import read_study
-    from .file_formats import export
-    from .limits import Limit, allowed
-    from .optimisation import Optimum, optimise, pareto
-    from .parameters import PARAMETERS
-    from .run import Progress, study
-    from .sampling import Method
-    from .store import read
-    from .variance_shares import sensitivity
-
-__all__ = [  # noqa: RUF022, grouped as they are used
-    # designs
-    "PARAMETERS",
-    "Design",
-    "LogNormal",
-    "Method",
-    "Normal",
-    "Rectangular",
-    "Span",
-    "grid",
-    "sample",
-    "table",
-    "tolerance",
-    # presses
-    "Progress",
-    "export",
-    "read",
-    "read_study",
-    "study",
-    # questions
-    "Limit",
-    "Optimum",
-    "allowed",
-    "elasticities",
-    "optimise",
-    "pareto",
-    "parse_limit",
-    "sensitivity",
-    # plots
-    "band_figure",
-    "design_map",
-    "front_figure",
-    "sensitivity_figure",
-]
+    from .axes import Span as Span
+    from .derivatives import elasticities as elasticities
+    from .design import Design as Design
+    from .design import grid as grid
+    from .design import sample as sample
+    from .design import table as table
+    from .distributions import LogNormal as LogNormal
+    from .distributions import Normal as Normal
+    from .distributions import Rectangular as Rectangular
+    from .distributions import tolerance as tolerance
+    from .expressions import parse_limit as parse_limit
+    from .file import read_study as read_study
+    from .file_formats import export as export
+    from .limits import Limit as Limit
+    from .limits import allowed as allowed
+    from .optimisation import Optimum as Optimum
+    from .optimisation import optimise as optimise
+    from .optimisation import pareto as pareto
+    from .parameters import PARAMETERS as PARAMETERS
+    from .run import Progress as Progress
+    from .run import study as study
+    from .sampling import Method as Method
+    from .store import read as read
+    from .variance_shares import sensitivity as sensitivity
 
 _PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
 band_figure: Callable[..., Any]
@@ -91,6 +66,8 @@ _NAMES_BY_MODULE = {
     "variance_shares": "sensitivity",
 }
 """Names for users by module. A module is imported on the first use of one of its names."""
+
+__all__ = [*(name for names in _NAMES_BY_MODULE.values() for name in names.split()), *_PLOTS]
 
 _import_name = imported_names(__name__, _NAMES_BY_MODULE)
 
