@@ -11,6 +11,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..elasticity.finite_elements.mesh import graded_points
+from ..elasticity.off_axis.directions import tangents as surface_tangents
 from ..elasticity.off_axis.directions import unit_vectors
 
 _NO_OFFSET = 1e-9  # angle in rad between two normals of a face that counts as none
@@ -76,7 +78,7 @@ class FilmMesh:
         """
         from scipy.sparse import csr_matrix, diags_array  # slow to import
 
-        tangents = _tangent_bases(self.direction)
+        tangents = numpy.stack(surface_tangents(self.direction.T)).transpose(2, 0, 1)
         rows, columns = numpy.concatenate([self.first, self.second]), numpy.concatenate([self.second, self.first])
         steps = self.direction[columns] - self.direction[rows]
         local = numpy.einsum("ij,ikj->ik", steps, tangents[rows])
@@ -151,7 +153,7 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
     ring = numpy.repeat(numpy.arange(rings), counts)
     column = numpy.arange(starts[-1]) - starts[ring]
     step = 2 * pi / counts
-    phi = (column + 0.5) * step[ring]
+    phi, between = (column + 0.5) * step[ring], (column + 1) * step[ring]
     across = [_ring_faces(radius, ring_edges, theta, starts, counts, index) for index in range(rings - 1)]
     half_width = radius * numpy.sin(theta[ring]) * step[ring] / 2
     rows = [
@@ -162,8 +164,8 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
             radius * numpy.diff(ring_edges)[ring],
             half_width,
             half_width,
-            # Velocity of the surface is R ω × n, its part along a tangent t is R ω · (n × t), and n × e_φ = -e_θ.
-            -_meridian_tangents(theta[ring], (column + 1) * step[ring]),
+            # Velocity of the surface is R ω × n, its part along a tangent t is R ω · (n × t), and here t = e_φ.
+            numpy.cross(unit_vectors(theta[ring], between).T, _east(between)),
         ),
     ]
     first, second, width, first_distance, second_distance, axis = (
@@ -232,38 +234,13 @@ def graded_rings(
     require("edge", edge, 0 < edge < rim, "the contact ends between the pole and the rim")
     last = max(edge, last_edge)
     require("last_edge", last, last < rim, "the contact ends between the pole and the rim")
-    inward = edge - _graded_line(edge, finest, coarsest, growth)
-    outward = last + _graded_line(rim - last, finest, coarsest, growth)
+    inward = graded_points(edge, 0.0, finest, growth, coarsest)
+    outward = graded_points(last, rim, finest, growth, coarsest)
     between = numpy.linspace(edge, last, max(ceil((last - edge) / finest), 1) + 1)[1:-1]
     ends = outward if last > edge else outward[1:]
     return numpy.concatenate([inward[::-1], between, ends])
 
 
-def _graded_line(length: float, finest: float, coarsest: float, growth: float) -> Numbers:
-    """Divide a length into steps that grow from `finest` at 0 to `coarsest`."""
-    steps = [finest]
-    while sum(steps) < length:
-        steps.append(min(steps[-1] * growth, coarsest))
-    points = numpy.concatenate([[0.0], numpy.cumsum(steps)])
-    return points * (length / points[-1])
-
-
-def _tangent_bases(directions: Numbers) -> Numbers:
-    """Make two orthogonal unit tangents at each direction: (cells, 2, 3)."""
-    helper = numpy.where(numpy.abs(directions[:, [2]]) < 0.8, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
-    second = numpy.cross(directions, helper)
-    second = second / numpy.linalg.norm(second, axis=1)[:, None]
-    return numpy.stack([numpy.cross(second, directions), second], axis=1)
-
-
 def _east(phi: Numbers) -> Numbers:
     """Compute the unit tangents (..., 3) towards growing azimuth."""
     return numpy.stack([-numpy.sin(phi), numpy.cos(phi), numpy.zeros_like(phi)], axis=-1)
-
-
-def _meridian_tangents(theta: Numbers, phi: Numbers) -> Numbers:
-    """Compute the unit tangents (..., 3) towards growing polar angle."""
-    return numpy.stack(
-        numpy.broadcast_arrays(numpy.cos(theta) * numpy.cos(phi), numpy.cos(theta) * numpy.sin(phi), -numpy.sin(theta)),
-        axis=-1,
-    )
