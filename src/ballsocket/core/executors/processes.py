@@ -34,7 +34,7 @@ _QUEUED_PER_WORKER = 2  # submitted pieces per worker: one is computed while the
 _PARENT_CHECK_INTERVAL = 0.5  # seconds between two checks that the parent process still runs
 _PARENT_ENDED = 1  # exit status of a process whose parent process has ended
 
-_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Environment variables that limit the threads of linear algebra."""
 
 _WORKER_DIED: Any = object()  # result of a piece whose worker process died

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -19,6 +18,7 @@ import numpy
 from ....contact.coordinates import half_angle_at
 from ....core.arrays import Numbers
 from ....core.chebyshev import chebyshev_coefficients, chebyshev_points
+from ....core.executors.processes import limit_threads
 from ....core.storage.atomic_files import write_atomically
 from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
@@ -40,7 +40,6 @@ _BALLS = (0.15, 0.27, 0.38)  # ν of the tabulated balls
 _SHARE_POINTS = 5  # of the ball's share of the compliance
 _PROFILE_POINTS = 11  # along the contact
 _CLEARANCE = 0.005  # over the socket's radius in the checks; results scale with it
-_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 _LinerParameters = tuple[float, float]  # ν and R2/L
 
 
@@ -99,17 +98,8 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
 @contextmanager
 def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Open a pool of processes with one thread each, so that sums have the same order for any number of them."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            yield pool
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    with limit_threads(), ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        yield pool
 
 
 # Sampled functions: each takes ν, R2/L and returns an array (points of the ball ..., functions, angles)
