@@ -18,8 +18,8 @@ from ballsocket.identification.information import (
     QUANTILE_95,
     QUANTILE_99,
     Information,
-    Interval,
     ProfileEnd,
+    ProfileInterval,
 )
 from ballsocket.identification.misfit import FitResult, Misfit, by_differences
 from ballsocket.identification.scatter import HeavyTailed, NormalScatter
@@ -389,7 +389,7 @@ def information_of(
     transform = ParameterTransform(tuple(unknowns))
     middle = (transform.low + transform.high) / 2
     intervals = tuple(
-        Interval(
+        ProfileInterval(
             *(ProfileEnd(middle + side * half * np.array(direction), is_closed, limited) for side in (-1, 1)), is_closed
         )
         for direction, half, is_closed, limited in zip(directions, half_widths, closed, limits, strict=True)

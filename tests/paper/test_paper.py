@@ -11,7 +11,16 @@ import ballsocket as bs
 from ballsocket.core.storage.pieces import Plan
 from ballsocket.paper import cases, claims, curves
 from ballsocket.paper.accuracy import accuracies, edge_joints, paper_joints
-from ballsocket.paper.claims.evaluation import ACCEPTABLY, EXACTLY, STATED, VERY_WELL, Claim, Evaluation, Verdict, judge
+from ballsocket.paper.claims.evaluation import (
+    ACCEPTABLY,
+    EXACTLY,
+    STATED,
+    VERY_WELL,
+    Claim,
+    Evaluation,
+    Judgement,
+    judge,
+)
 from ballsocket.paper.curves import Figure
 from ballsocket.paper.plan import full_plan, quick_plan
 from ballsocket.reports import accuracy_results
@@ -40,9 +49,9 @@ def test_the_code_of_a_finding_is_its_claim(ledger):
 
 
 def test_verdicts_of_the_claims_are_known(ledger):
-    holding = {name for name, finding in ledger.items() if finding.verdict is Verdict.HOLDS}
+    holding = {name for name, finding in ledger.items() if finding.verdict is Judgement.HOLDS}
     assert holding >= {"hertz-is-inadequate", "stiffness-and-geometry", "unbounded-moduli", "lowest-pressure"}
-    failed = {name for name, finding in ledger.items() if finding.verdict is Verdict.FAILS}
+    failed = {name for name, finding in ledger.items() if finding.verdict is Judgement.FAILS}
     confined = {"quality-of-the-fit-on-thin-liners", "varies-below-one-kilonewton-above-0.4", "usable-above-0.45"}
     assert failed == {"constant-at-0.49", "independent-of-clearance-at-0.49", *confined}
     assert all(ledger[name].comment for name in failed)
@@ -82,7 +91,7 @@ def test_claims_of_other_authors_hold(ledger):
     exact = ledger["exact-agrees-with-calculix"].numbers
     assert exact["peak pressure off by, %"] < 0.2
     assert exact["half angle off by, °"] < 0.1
-    assert ledger["ordering-of-plank"].verdict is Verdict.HOLDS
+    assert ledger["ordering-of-plank"].verdict is Judgement.HOLDS
     angles = ledger["half-angles-of-jin"].numbers.values()
     assert 35 < min(angles) < max(angles) < 55
 
@@ -96,7 +105,7 @@ def test_calculix_table_is_the_reference_file():
 @pytest.mark.long
 def test_elements_agree_with_a_finer_mesh_and_with_calculix():
     findings = [claim(EXACT) for claim in claims.MESHED_CLAIMS + claims.MESHED_ELSEWHERE]
-    assert [finding.verdict for finding in findings] == [Verdict.HOLDS] * 2
+    assert [finding.verdict for finding in findings] == [Judgement.HOLDS] * 2
     elements = findings[0].numbers
     assert 66_000 < elements["elements"] < 73_000  # the paper: 27 000 in the head, 40 000 in the liner
     assert elements["twice as many"] / elements["elements"] == pytest.approx(2.0, abs=0.05)

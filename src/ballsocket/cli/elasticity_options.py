@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 import typer
 
 from ..core.checks import require
-from ..files.schema import Angle, Length, Table, Word, meaning
+from ..files.schema import Angle, FileTable, Length, Word, meaning
 from ..files.units import as_given
 from ..model_catalogue import JUDGE, OFF_AXIS
 from ..problem.cup import AngleDefinition, Cup
@@ -48,7 +48,7 @@ class ElementName(Word):
     choices = ("biquadratic", "bilinear")
 
 
-class MeshTable(Table, frozen=True, kw_only=True):
+class MeshTable(FileTable, frozen=True, kw_only=True):
     """Finite-element mesh."""
 
     element_size: Annotated[
@@ -85,7 +85,7 @@ def solver_progress(name: str) -> Iterator[None]:
         yield
 
 
-class RingTable(Table, frozen=True, kw_only=True):
+class RingTable(FileTable, frozen=True, kw_only=True):
     """Rings of the model `sphere`."""
 
     ring_width: Annotated[

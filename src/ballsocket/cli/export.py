@@ -19,7 +19,7 @@ from ..elasticity.off_axis.model import Sphere
 from ..export import TARGETS, ExportJob
 from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
-from ..files.schema import Length, PlainNumber, Speed, Table, Viscosity, meaning
+from ..files.schema import FileTable, Length, PlainNumber, Speed, Viscosity, meaning
 from ..files.tables import written_in
 from ..files.units import as_given
 from ..lubrication import Lubricant
@@ -37,7 +37,7 @@ _RING_WIDTH = radians(3.0)  # width of the rings that tabulate a preloaded joint
 _NOTED_ERROR = 0.02  # relative error of the force of a preloaded element above which a message states it
 
 
-class ForceElementInputs(Table, frozen=True, kw_only=True):
+class ForceElementInputs(FileTable, frozen=True, kw_only=True):
     """Inputs of a force element, in addition to its joint and model."""
 
     hysteresis: Annotated[

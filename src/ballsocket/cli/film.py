@@ -13,7 +13,7 @@ from ..core.checks import require
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.inputs import PARTS
 from ..files.joint_file import Direction, JointFile
-from ..files.schema import Length, RotationRate, Table, Viscosity, Word, meaning
+from ..files.schema import FileTable, Length, RotationRate, Viscosity, Word, meaning
 from ..files.tables import quantities_of, written_in
 from ..files.units import as_given
 from ..lubrication.film import METHODS
@@ -35,7 +35,7 @@ class FilmMethod(Word):
     choices = tuple(METHODS)
 
 
-class FilmInputs(Table, frozen=True, kw_only=True):
+class FilmInputs(FileTable, frozen=True, kw_only=True):
     """Motion of the ball, lubricant and method."""
 
     spin: Annotated[RotationRate, meaning("rotation rate of the ball", example="90 deg/s")] = RotationRate.stating(

@@ -15,7 +15,7 @@ from ..core.quantities import LOADS
 from ..core.unit_systems import Units
 from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
 from ..files.joint_file import JointFile, joint_of, named_joint, varied
-from ..files.schema import Table
+from ..files.schema import FileTable
 from ..files.tables import read_table
 from ..model_catalogue import listed_models
 from ..problem.dimensions import fit_beside
@@ -209,13 +209,13 @@ def _group_of(parameter: Parameter) -> tuple[Any, Any] | None:
     kind, annotation = parameter.annotation, ""
     if get_origin(kind) is Annotated:
         kind, annotation = get_args(kind)
-    is_group = isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, Table))
+    is_group = isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, FileTable))
     return (kind, annotation) if is_group else None
 
 
 def _built(group: Any, annotation: Any, options: dict[str, Any]) -> Any:
     """Take the values of a group out of the options of a command, and return the group."""
-    if not (group is JointOptions or issubclass(group, Table)):
+    if not (group is JointOptions or issubclass(group, FileTable)):
         return group(**{field.name: options.pop(field.name) for field in fields(group)})
     tables: dict[str, dict[str, str]] = {}
     for entry in inputs_in(annotation) if group is JointOptions else inputs_of(group):
@@ -228,7 +228,7 @@ def _group_options(group: Any, annotation: Any) -> Iterator[Parameter]:
     """Return the options of a group as single parameters."""
     if group is JointOptions:
         yield from (_parameter(entry, entry.help, None) for entry in inputs_in(annotation))
-    elif issubclass(group, Table):
+    elif issubclass(group, FileTable):
         for entry in inputs_of(group):
             text = f"{annotation}: {entry.help[0].lower()}{entry.help[1:]}" if annotation else entry.help
             yield _parameter(entry, text, plain_default(entry.field))

@@ -12,7 +12,7 @@ from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..core.unit_systems import Units
 from ..files.joint_file import Direction
 from ..files.joint_toml import toml_of
-from ..files.schema import Angle, Force, Length, Table, Text, Word, meaning
+from ..files.schema import Angle, FileTable, Force, Length, Text, Word, meaning
 from ..files.tables import quantities_of
 from ..planning.clouds import read_points
 from ..planning.implants import fit_head, fit_liner
@@ -67,7 +67,7 @@ class PlanFiles:
         check_parent_folder(self.out)
 
 
-class PlanInputs(Table, frozen=True, kw_only=True):
+class PlanInputs(FileTable, frozen=True, kw_only=True):
     """Pelvis, scans and joint of a plan."""
 
     coordinates: Annotated[

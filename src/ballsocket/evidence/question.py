@@ -18,9 +18,9 @@ from ..files.joint_file import JointFile, JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
+    FileTable,
     Parsed,
     PlainNumber,
-    Table,
     Text,
     Value,
     Word,
@@ -82,39 +82,39 @@ class Level(Word):
     choices = LEVELS
 
 
-class RiskTable(Table, frozen=True, kw_only=True):
+class RiskTable(FileTable, frozen=True, kw_only=True):
     """Risk of a wrong decision."""
 
     influence: Annotated[Level, meaning("influence of the model on the decision")]
     consequence: Annotated[Level, meaning("consequence of a wrong decision")]
 
 
-class RequiredTable(Table, frozen=True, kw_only=True):
+class RequiredTable(FileTable, frozen=True, kw_only=True):
     """Requirements on the numbers."""
 
     accuracy: Annotated[Share, meaning('largest relative error of the numbers, such as "10 %"')]
     limits: Annotated[list[Text] | None, meaning("limits, such as 'max_pressure <= 20 MPa'")] = None
 
 
-class FrictionTable(Table, frozen=True, kw_only=True):
+class FrictionTable(FileTable, frozen=True, kw_only=True):
     """Friction of the joint."""
 
     coefficient: Annotated[PlainNumber | None, meaning("coefficient of friction, 0 to 2")] = None
 
 
-class WearFileTable(Table, frozen=True, kw_only=True):
+class WearFileTable(FileTable, frozen=True, kw_only=True):
     """Wear of the joint."""
 
     file: Annotated[Text | None, meaning("hip file whose wear belongs to the evidence")] = None
 
 
 @with_keys(quantity_keys(PARAMETERS, MatrixValues))
-class MatrixTable(Table, frozen=True, kw_only=True):
+class MatrixTable(FileTable, frozen=True, kw_only=True):
     """Values of the matrix of cases, by parameter."""
 
 
 @with_keys(quantity_keys(PARAMETERS, Text))
-class TolerancesTable(Table, frozen=True, kw_only=True):
+class TolerancesTable(FileTable, frozen=True, kw_only=True):
     """Tolerances or ranges of inputs, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45', by parameter."""
 
 

@@ -33,7 +33,7 @@ from .cells import (
     split_text,
 )
 from .head_names import UNCERTAINTY, count_factor, known_head, plain_name
-from .schema import HeadMap, Table, Texts, meaning
+from .schema import FileTable, HeadMap, Texts, meaning
 from .units import Units, parse, parse_units
 
 _MAX_BYTES = 10_000_000  # largest size in bytes of a table that is not Parquet
@@ -58,7 +58,7 @@ _LABEL = re.compile(r"[\s_#-]*+\w[\s\w.#-]*+[\[(][^\])]*+[\])]\s*+")
 _UNIT_CELL = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°µμ][A-Za-z%°µμ²³·*/^0-9. -]{0,14}[\])]?\s*+")
 
 
-class HeadKeys(Table, frozen=True, kw_only=True):
+class HeadKeys(FileTable, frozen=True, kw_only=True):
     """Keys of a table that names a file with columns."""
 
     columns: Annotated[HeadMap | None, meaning("names of columns of the file by their heads")] = None

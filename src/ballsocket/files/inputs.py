@@ -22,7 +22,7 @@ from ..core.quantities import LOADS, QUANTITIES, Quantity
 from ..problem.dimensions import LENGTHS, canonical
 from .joint_file import JointFileTable
 from .refusals import choices_in, customs_in, expected, meaning_of, parts_of, tables_of
-from .schema import QuantityValue, Table, Value, choices_schema
+from .schema import FileTable, QuantityValue, Value, choices_schema
 
 
 class Typical(NamedTuple):
@@ -240,7 +240,7 @@ class Input:
 
 
 @cache
-def inputs_of(table: type[Table]) -> tuple[Input, ...]:
+def inputs_of(table: type[FileTable]) -> tuple[Input, ...]:
     """List the keys of a file, table by table, those at the top first."""
     root = inspect.type_info(table)
     tables: list[tuple[str, Any]] = [("", root), *tables_of(root)]
@@ -268,7 +268,7 @@ def inputs_in(parts: Sequence[str]) -> list[Input]:
     return [entry for entry in inputs if {entry.part, f"{entry.part}.{entry.key}"} & {*parts}]
 
 
-def json_schema(table: type[Table]) -> dict[str, Any]:
+def json_schema(table: type[FileTable]) -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs."""
     definitions: dict[str, Any] = {}
     root = inspect.type_info(table)

@@ -19,7 +19,7 @@ from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import DEFAULT_CUP, AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, canonical, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
-from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
+from .schema import Angle, FileTable, Force, Length, PlainNumber, Pressure, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
@@ -27,7 +27,7 @@ from .units import as_given, parse
 _MAX_LAYERS = 20  # largest number of layers behind the liner
 
 
-class LengthsTable(Table, frozen=True, kw_only=True):
+class LengthsTable(FileTable, frozen=True, kw_only=True):
     """Lengths of a joint: two of radii and clearance, and the thickness of the liner or an outer dimension."""
 
     ball_radius: Length | None = None
@@ -52,7 +52,7 @@ class MaterialName(Text):
         return choices_schema((*materials, *MATERIAL_ALIASES))
 
 
-class MaterialTable(Table, frozen=True, kw_only=True):
+class MaterialTable(FileTable, frozen=True, kw_only=True):
     """Material: a preset by name, numbers, or both; numbers win over those of the preset."""
 
     qualified: ClassVar[bool] = True
@@ -78,7 +78,7 @@ class ShellTable(MaterialTable, frozen=True, kw_only=True):
     thickness: Annotated[Length | None, meaning("thickness of the shell")] = None
 
 
-class CupTable(Table, frozen=True, kw_only=True):
+class CupTable(FileTable, frozen=True, kw_only=True):
     """Cup: its rim, its interface with the liner, and its orientation in the body."""
 
     arc_of_cover: Annotated[Angle | None, meaning(default="180 deg")] = None
@@ -115,7 +115,7 @@ class Direction(Value, tuple[float, ...]):
         return numbers
 
 
-class LoadTable(Table, frozen=True, kw_only=True):
+class LoadTable(FileTable, frozen=True, kw_only=True):
     """Load: one of force, indentation and half angle; a tilt from the cup's axis, or a direction in the body."""
 
     force: Force | None = None
@@ -125,7 +125,7 @@ class LoadTable(Table, frozen=True, kw_only=True):
     direction: Annotated[Direction | None, meaning("direction of the load: to the right, to the front, upwards")] = None
 
 
-class JointTables(Table, frozen=True, kw_only=True):
+class JointTables(FileTable, frozen=True, kw_only=True):
     """Tables that describe a joint in every kind of file."""
 
     joint: Annotated[LengthsTable | str | None, meaning("name of a preset, or path of a joint file")] = None
@@ -136,7 +136,7 @@ class JointTables(Table, frozen=True, kw_only=True):
     cup: CupTable | None = None
 
 
-class ReportDetails(Table, frozen=True, kw_only=True):
+class ReportDetails(FileTable, frozen=True, kw_only=True):
     """Head of the report: names, and a picture beside them."""
 
     qualified: ClassVar[bool] = True

@@ -13,7 +13,7 @@ from msgspec import inspect
 
 from ..core.checks import nearest, shown
 from ..core.quantities import QUANTITIES
-from .schema import KEY, Table, Text, Value, read_value
+from .schema import KEY, FileTable, Text, Value, read_value
 
 _PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
 _STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
@@ -37,9 +37,9 @@ class _Location:
         return f"{self.table}.{self.key}" if self.qualified and self.table else self.key
 
 
-def format_refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: type[Table], name: str) -> str:
-    """Format the sentence for what a file has and its schema does not allow; `name` is that of the table."""
-    root = location = _Location(content, inspect.type_info(table), table=name)
+def format_refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: type[FileTable]) -> str:
+    """Format the sentence for what a file has and its schema does not allow."""
+    root = location = _Location(content, inspect.type_info(table))
     path = _PATH.search(str(error))
     for step in _STEP.finditer(path["path"] if path else ""):
         location = _step_into(location, step)
@@ -58,8 +58,8 @@ def _step_into(location: _Location, step: re.Match[str]) -> _Location:
         key, struct = step["key"], struct_in(location.type)
         assert struct is not None
         kind = next(field.type for field in struct.fields if field.encode_name == key)
-        qualified = issubclass(struct.cls, Table) and struct.cls.qualified
-        return _Location(location.value[key], kind, location.key or location.table, key, qualified)
+        qualified = issubclass(struct.cls, FileTable) and struct.cls.qualified
+        return _Location(location.value[key], kind, location.key, key, qualified)
     if step["index"] == "...":
         return _step_into_named_entry(location)
     key = f"{location.key}[{step['index']}]"
@@ -134,7 +134,7 @@ def meaning_of(key: str, kind: inspect.Type) -> str:
 
 def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, root: _Location) -> str:
     keys = {field.encode_name: field for field in struct.fields}
-    table = location.key or root.table
+    table = location.key
     for key in location.value:
         if key not in keys:
             where = f"in {table if '[' in table else f'[{table}]'}" if table else "at the top"

@@ -1,8 +1,8 @@
 """Schemas of input files: each key of a table is declared once, with its type, unit and meaning.
 
-A table of a file is a subclass of `Table`, a key of the table is a field of the class:
+A table of a file is a subclass of `FileTable`, a key of the table is a field of the class:
 
-    class FilmTable(Table, frozen=True, kw_only=True):
+    class FilmTable(FileTable, frozen=True, kw_only=True):
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
 The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
@@ -239,7 +239,7 @@ class Angle(QuantityValue, kind=Kind.ANGLE):
     """Angle in rad; a bare number of a file is in degrees."""
 
 
-class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class FileTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """Base class of the tables of a file: keys that are not fields are refused."""
 
     qualified: ClassVar[bool] = False
@@ -252,7 +252,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return {key: value for key, value, default in values if value is not default}
 
 
-TableType = TypeVar("TableType", bound=Table)
+TableType = TypeVar("TableType", bound=FileTable)
 
 
 def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[TableType]]:
@@ -262,7 +262,7 @@ def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[Table
     --------
     >>> from ballsocket.files.tables import read_table
     >>> @with_keys({"gap": Annotated[Length, meaning("gap of the test")]})
-    ... class TestTable(Table, frozen=True, kw_only=True):
+    ... class TestTable(FileTable, frozen=True, kw_only=True):
     ...     name: Text | None = None
     >>> read_table({"gap": "1 cm"}, TestTable).gap
     10.0

@@ -8,36 +8,29 @@ from typing import Any
 
 import msgspec
 
-from .schema import Parsed, QuantityValue, Table, TableType, read_value
+from .schema import FileTable, Parsed, QuantityValue, TableType, read_value
 
 
-def parsed_values(table: Table | None, content: Mapping[str, Any]) -> dict[str, Any]:
+def parsed_values(table: FileTable | None, content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the objects of the `Parsed` values of a table, in the order of the file's `content`; empty without one."""
     values = {} if table is None else {name: getattr(table, name, None) for name in content}
     return {name: value.value for name, value in values.items() if isinstance(value, Parsed)}
 
 
-def quantities_of(table: Table, *names: str) -> dict[str, float]:
+def quantities_of(table: FileTable, *names: str) -> dict[str, float]:
     """Return the numbers of a table that the file states, by key; all quantities without names."""
     values = {name: getattr(table, name) for name in names or table.__struct_fields__}
     return {name: float(value) for name, value in values.items() if isinstance(value, QuantityValue)}
 
 
-def written_in(table: Table) -> dict[str, Any]:
+def written_in(table: FileTable) -> dict[str, Any]:
     """Return the quantities of a table as the file writes them, by key."""
     values = {name: getattr(table, name) for name in table.__struct_fields__}
     return {name: value.written for name, value in values.items() if isinstance(value, QuantityValue)}
 
 
-def read_table(content: Mapping[str, Any], table: type[TableType], name: str = "") -> TableType:
-    """Convert the content of a file, or of one of its tables.
-
-    Parameters
-    ----------
-    content : mapping
-    table : class
-    name : str
-        Name of the table in messages, such as "machine.frame"; empty for a whole file.
+def read_table(content: Mapping[str, Any], table: type[TableType]) -> TableType:
+    """Convert the content of a file.
 
     Raises
     ------
@@ -49,10 +42,10 @@ def read_table(content: Mapping[str, Any], table: type[TableType], name: str = "
     except msgspec.ValidationError as error:
         from .refusals import format_refusal  # not loaded for files without faults
 
-        raise ValueError(format_refusal(error, content, table, name)) from error
+        raise ValueError(format_refusal(error, content, table)) from error
 
 
-def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
+def write_table(table: FileTable, with_units: bool = False) -> dict[str, Any]:
     """Return a table as the content of a file, without defaults.
 
     Parameters
@@ -65,7 +58,7 @@ def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
 
 
 def _write(value: Any, with_units: bool) -> Any:
-    if isinstance(value, Table):
+    if isinstance(value, FileTable):
         return write_table(value, with_units)
     if isinstance(value, QuantityValue):
         return value.write(with_units)

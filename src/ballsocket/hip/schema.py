@@ -14,12 +14,12 @@ from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
     Duration,
+    FileTable,
     Force,
     Length,
     Parsed,
     PlainNumber,
     QuantityValue,
-    Table,
     Text,
     Texts,
     Value,
@@ -241,7 +241,7 @@ class HipCupTable(CupTable, frozen=True, kw_only=True):
         BALL_COEFFICIENT: Annotated[LawNumber, meaning("wear coefficient of the ball, if it wears too")],
     }
 )
-class WearTable(Table, frozen=True, kw_only=True):
+class WearTable(FileTable, frozen=True, kw_only=True):
     """Wear law, with the numbers of all registered laws, and the foundation of the contacts."""
 
     law: Annotated[WearLawName | None, meaning("wear law")] = None
@@ -257,7 +257,7 @@ class WearTable(Table, frozen=True, kw_only=True):
 
 
 @with_keys(_law_keys(CREEP_LAWS))
-class CreepTable(Table, frozen=True, kw_only=True):
+class CreepTable(FileTable, frozen=True, kw_only=True):
     """Creep law of the liner, with the numbers of all registered laws."""
 
     law: Annotated[CreepLawName | None, meaning("creep law")] = None
@@ -265,7 +265,7 @@ class CreepTable(Table, frozen=True, kw_only=True):
     seconds_per_cycle: Annotated[Duration | None, meaning("time that a cycle stands for")] = None
 
 
-class FilmTable(Table, frozen=True, kw_only=True):
+class FilmTable(FileTable, frozen=True, kw_only=True):
     """Fluid film and friction; without this table no film is computed."""
 
     viscosity: Annotated[Viscosity | None, meaning("dynamic viscosity")] = None
@@ -283,7 +283,7 @@ class FilmTable(Table, frozen=True, kw_only=True):
         for name in SAMPLED_QUANTITIES
     }
 )
-class UncertaintyTable(Table, frozen=True, kw_only=True):
+class UncertaintyTable(FileTable, frozen=True, kw_only=True):
     """Quantities that differ between patients, with their distributions."""
 
     contact: Annotated[

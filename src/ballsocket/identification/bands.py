@@ -10,7 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from .fit import minimise_misfit
-from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
+from .information import QUANTILE_95, QUANTILE_99, Information, ProfileEnd, ProfileInterval
 from .misfit import FitResult, Misfit
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
@@ -57,7 +57,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
         ends_95, ends_99 = (pairs[index] for pairs in profiles.ends)
         ends_and_sides = zip(ends_99, (-1, 1), strict=True)
         closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends_and_sides)
-        intervals.append(Interval(*ends_95, closed))
+        intervals.append(ProfileInterval(*ends_95, closed))
     slopes, weighted = misfit.weighted_slopes(best.theta)
     return misfit, best, Information(misfit.transform, best.theta, weighted @ slopes, tuple(intervals), quantile)
 

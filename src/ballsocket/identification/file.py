@@ -17,10 +17,10 @@ from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
+    FileTable,
     Parsed,
     Pressure,
     QuantityValue,
-    Table,
     Text,
     Texts,
     Word,
@@ -131,17 +131,17 @@ _LINER_NUMBERS, _BALL_NUMBERS = (
 
 
 @with_keys(quantity_keys(_LINER_NUMBERS, PriorValue))
-class FreeLinerTable(Table, frozen=True, kw_only=True):
+class FreeLinerTable(FileTable, frozen=True, kw_only=True):
     """Unknowns of the liner with their priors."""
 
 
 @with_keys(quantity_keys(_BALL_NUMBERS, PriorValue))
-class FreeBallTable(Table, frozen=True, kw_only=True):
+class FreeBallTable(FileTable, frozen=True, kw_only=True):
     """Unknowns of the ball with their priors."""
 
 
 @with_keys(quantity_keys(FREE_NUMBERS, PriorValue))
-class FreeTable(Table, frozen=True, kw_only=True):
+class FreeTable(FileTable, frozen=True, kw_only=True):
     """Unknowns with their priors."""
 
     liner: FreeLinerTable | None = None
@@ -149,7 +149,7 @@ class FreeTable(Table, frozen=True, kw_only=True):
 
 
 @with_keys(quantity_keys({name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize))
-class MachineTable(Table, frozen=True, kw_only=True):
+class MachineTable(FileTable, frozen=True, kw_only=True):
     """Errors of a machine."""
 
     qualified: ClassVar[bool] = True

@@ -112,7 +112,7 @@ class ProfileEnd:
 
 
 @dataclass(frozen=True, eq=False)
-class Interval:
+class ProfileInterval:
     """Profile likelihood interval of an unknown."""
 
     # ends of the band of 95 %
@@ -137,7 +137,7 @@ class Information:
         Best point, in standard deviations of the priors.
     matrix : array (unknowns, unknowns)
         Fisher information of the data there; 1 is the information of the prior.
-    intervals : tuple of Interval
+    intervals : tuple of ProfileInterval
         Profile intervals over the ranges of the unknowns; `matrix` is local.
     quantile : float
         Standard deviations to either side of a band of 95 %; more than 1.96 where the scatter is too large.
@@ -146,7 +146,7 @@ class Information:
     transform: ParameterTransform
     theta: Numbers
     matrix: Numbers
-    intervals: tuple[Interval, ...]
+    intervals: tuple[ProfileInterval, ...]
     quantile: float = QUANTILE_95
 
     @cached_property

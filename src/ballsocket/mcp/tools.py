@@ -13,7 +13,7 @@ from typing import Any, get_args, get_origin
 
 from ..core.checks import known_name
 from ..files.inputs import json_schema
-from ..files.schema import Table
+from ..files.schema import FileTable
 from ..model_catalogue import OFF_AXIS
 
 FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -28,10 +28,10 @@ FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
 """Module and class of the tables of each kind of input file, by the name of its command."""
 
 
-def file_table(kind: str) -> type[Table]:
+def file_table(kind: str) -> type[FileTable]:
     """Return the tables of a kind of input file; raise ValueError with the nearest kind for an unknown one."""
     module, name = FILE_TABLES[known_name("kind of file", kind, FILE_TABLES)]
-    tables: type[Table] = getattr(import_module(f"ballsocket.{module}"), name)
+    tables: type[FileTable] = getattr(import_module(f"ballsocket.{module}"), name)
     return tables
 
 

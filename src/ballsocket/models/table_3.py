@@ -13,7 +13,7 @@ from ..core.arrays import Array, Numbers, clip
 Constants = tuple[float, ...]  # three numbers, one for each of C1, C2 and C3 in Eq. (18)
 
 
-class Interval(NamedTuple):
+class CubicPiece(NamedTuple):
     """Growth of the constants between two columns of Table 3: a cubic of t, the distance in ν to the first one."""
 
     poisson: float
@@ -44,7 +44,7 @@ def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     return E / R2 * scaled
 
 
-def _interpolate() -> tuple[Constants, tuple[Interval, ...]]:
+def _interpolate() -> tuple[Constants, tuple[CubicPiece, ...]]:
     """Return the constants in the first column of Table 3, and their growth between the columns."""
     table = table_3()
     poisson, columns = numpy.array(table["poisson"]), numpy.array([table["C1"], table["C2"], table["C3"]])
@@ -54,7 +54,7 @@ def _interpolate() -> tuple[Constants, tuple[Interval, ...]]:
     first, last = slopes[:, :-1], slopes[:, 1:]
     square, cube = (3 * rise - 2 * first - last) / width, (first + last - 2 * rise) / width**2
     rows = zip(poisson.tolist(), width.tolist(), *(part.T.tolist() for part in (first, square, cube)), strict=False)
-    return tuple(columns[:, 0].tolist()), tuple(Interval(nu, h, *map(tuple, cubic)) for nu, h, *cubic in rows)
+    return tuple(columns[:, 0].tolist()), tuple(CubicPiece(nu, h, *map(tuple, cubic)) for nu, h, *cubic in rows)
 
 
 def _monotone_slopes(width: Numbers, rise: Numbers) -> Numbers:

@@ -17,8 +17,8 @@ from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
+    FileTable,
     Parsed,
-    Table,
     Text,
     WholeNumber,
     Word,
@@ -132,7 +132,7 @@ class EngineKind(Word):
 
 
 @with_keys(quantity_keys(PARAMETERS, AxisValues))
-class AxesTable(Table, frozen=True, kw_only=True):
+class AxesTable(FileTable, frozen=True, kw_only=True):
     """Axes of a grid: values of parameters, and materials."""
 
     liner: Annotated[AxisMaterials | None, meaning("materials of the liner")] = None
@@ -140,7 +140,7 @@ class AxesTable(Table, frozen=True, kw_only=True):
 
 
 @with_keys(quantity_keys(PARAMETERS, ScatteredNumber))
-class SamplesTable(Table, frozen=True, kw_only=True):
+class SamplesTable(FileTable, frozen=True, kw_only=True):
     """Samples: their number, and a distribution for each parameter that varies."""
 
     count: Annotated[WholeNumber, meaning("number of samples")]
@@ -157,7 +157,7 @@ class RowsTable(HeadKeys, frozen=True, kw_only=True):
     path: Annotated[Text, meaning("table in a file with a column for each parameter")]
 
 
-class EngineTable(Table, frozen=True, kw_only=True):
+class EngineTable(FileTable, frozen=True, kw_only=True):
     """Executor of a study."""
 
     qualified: ClassVar[bool] = True

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from ...contact import Model
 from ...core.checks import nearest, shown
-from .evaluation import SCALE, Claim, Finding, Verdict, judge
+from .evaluation import SCALE, Claim, Finding, Judgement, judge
 from .table import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE
 
 _BY_NAME = {claim.name: claim for claim in (*CLAIMS, *MESHED_CLAIMS, *ELSEWHERE, *MESHED_ELSEWHERE)}
@@ -39,7 +39,7 @@ __all__ = [
     "SCALE",
     "Claim",
     "Finding",
-    "Verdict",
+    "Judgement",
     "claim",
     "judge",
     "ledger",

@@ -46,7 +46,7 @@ EXACTLY = (0.0, 0.0)
 """Tolerances of a claim that is true or false."""
 
 
-class Verdict(Enum):
+class Judgement(Enum):
     """Verdict on a claim."""
 
     HOLDS = "holds"
@@ -62,7 +62,7 @@ class Finding:
     where: str  # section or figure of the paper, or source of the numbers
     sentence: str  # statement in our words
     numbers: Computed
-    verdict: Verdict
+    verdict: Judgement
     miss: float = 0.0  # largest deviation from the expected values, in `unit`
     unit: str = "%"
     comment: str = ""  # reason of the verdict, or conditions of the computation
@@ -71,9 +71,9 @@ class Finding:
     @property
     def text(self) -> str:
         """Verdict in words: "holds", "holds within 3.3 %", "does not hold: 11 %"."""
-        if self.verdict is Verdict.HOLDS or self.miss == inf:
+        if self.verdict is Judgement.HOLDS or self.miss == inf:
             return self.verdict.value
-        separator = "" if self.verdict is Verdict.WITHIN else ":"
+        separator = "" if self.verdict is Judgement.WITHIN else ":"
         return f"{self.verdict.value}{separator} {self.miss:.2g} {self.unit}"
 
     def summary(self) -> dict[str, Any]:
@@ -143,7 +143,7 @@ def judge(claim: Claim, reference: Model) -> Finding:
         where=claim.source,
         sentence=claim.statement,
         numbers=evaluation.numbers,
-        verdict=Verdict.HOLDS if miss <= close else Verdict.WITHIN if miss <= wide else Verdict.FAILS,
+        verdict=Judgement.HOLDS if miss <= close else Judgement.WITHIN if miss <= wide else Judgement.FAILS,
         miss=miss,
         unit=claim.unit,
         comment=comment,
