@@ -10,7 +10,7 @@ import numpy
 from ..contact.verdict import bar_text, ratio_text
 from ..core.answers import PAGE, Answer, Cell, Column, Row, Table
 from ..core.arrays import Numbers
-from ..core.display import plain_number
+from ..core.display import holders_of, plain_number
 from ..core.kinds import (
     CUBIC_MILLIMETRES,
     MEGAPASCALS,
@@ -229,10 +229,7 @@ def _band(run: HipRun, name: str, report: int) -> Cell:
 
 def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[Sentence]:
     """Yield the notes of all hips, each with the names of the hips that have it, unless all have it."""
-    holders: dict[str, list[str]] = {}
-    for run in runs:
-        for note in dict.fromkeys((*run.history.notes, *(run.bands.notes if run.bands else ()))):
-            holders.setdefault(note, []).append(run.name)
-    for note, names in holders.items():
+    notes = ((run.name, (*run.history.notes, *(run.bands.notes if run.bands else ()))) for run in runs)
+    for note, names in holders_of(notes).items():
         written = Sentence(note)
         yield written if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), written)

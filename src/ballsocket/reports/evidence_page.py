@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from itertools import starmap
 from types import MappingProxyType
 from typing import Any
 
+from ..core.display import holders_of
 from ..core.unit_systems import Units
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
@@ -201,12 +201,13 @@ def _methods(piece: Record, units: Units) -> dict[str, Any]:
         (method["name"], *(_with_error(method, key, units) for key in keys), "yes" if method["valid"] else "no")
         for method in piece["methods"]
     ]
+    notes = holders_of((method["name"], method["notes"]) for method in piece["methods"])
     deviations = (percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys)
     return {
         "title": ", ".join(NAMES[name].title for name in piece["worst_of"]),
         "heads": ["method", *(column_head(key, units) for key in keys), "valid"],
         "rows": [*rows, ("largest deviation", *deviations, "")],
-        "notes": list(map(units.sentence, _grouped_notes(piece["methods"]))),
+        "notes": [units.sentence(f"{', '.join(names)}: {note}") for note, names in notes.items()],
         "call": piece["call"],
     }
 
@@ -216,15 +217,6 @@ def _with_error(method: Record, key: str, units: Units) -> str:
     if key not in method["numbers"]:
         return ""
     return bare_number(key, method["numbers"][key], units) + error_text(method["errors"].get(key))
-
-
-def _grouped_notes(methods: Iterable[Record]) -> list[str]:
-    """List each note once, after the names of its methods."""
-    holders: dict[str, list[str]] = {}
-    for method in methods:
-        for note in method["notes"]:
-            holders.setdefault(note, []).append(method["name"])
-    return [f"{', '.join(names)}: {note}" for note, names in holders.items()]
 
 
 def _validation(record: Record) -> dict[str, Any]:
