@@ -113,8 +113,11 @@ class Model(PressModel):
         types = {*map(type, (*joint.numbers(), value))}
         all_plain = all(issubclass(number_type, int | float) for number_type in types)
         if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
-            try:
-                return self._press_with_floats(joint, kind, float(value))
+            float_joint, load = joint.with_floats(), float(value)
+            try:  # Python floats are faster than arrays
+                check_domain((*self.fits, *self.domain), float_joint, self.name)
+                result = self._solve(float_joint, kind, load)
+                return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
             except ArithmeticError:
                 pass  # where Python floats raise, NumPy numbers become infinite or NaN
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
@@ -123,13 +126,6 @@ class Model(PressModel):
             result = self._solve_by_curve(joint, kind, load) or self._solve(array_joint, kind, load)
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
-
-    def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact:
-        """Compute the contact of a joint of Python floats, which is faster than arrays."""
-        float_joint = joint.with_floats()
-        check_domain((*self.fits, *self.domain), float_joint, self.name)
-        result = self._solve(float_joint, kind, load)
-        return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
         _, array_joint, d = as_arrays(joint, indentation)
