@@ -296,6 +296,8 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
+        sentences = {state: state.sentence for state in ContactState}
+        sentences[ContactState.THROUGH_WALL] = BEYOND[self.beyond]
         return fill_template(
             "element.c",
             name=self.name,
@@ -309,7 +311,7 @@ class CElement:
             pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
-            sentences="\n".join(f'    case {state.value}: return "{self._sentence(state)}";' for state in ContactState),
+            sentences="\n".join(f'    case {state.value}: return "{text}";' for state, text in sentences.items()),
             **self.about,
         )
 
@@ -317,9 +319,6 @@ class CElement:
     def first_failure(self) -> ContactState:
         """First status without a load; the statuses after it have none either."""
         return ContactState.NO_NUMBER if self.beyond == "extend" else ContactState.THROUGH_WALL
-
-    def _sentence(self, state: ContactState) -> str:
-        return BEYOND[self.beyond] if state is ContactState.THROUGH_WALL else state.sentence
 
     def write(self, folder: Path) -> tuple[Path, Path]:
         """Write the header and source files into a folder, and return their paths.

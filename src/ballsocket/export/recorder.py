@@ -224,13 +224,10 @@ def _record_chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
         return step.tape.record("slope", step.parts, step.about + 1) * slopes[0]
     total: Slope = None
     for rate, slope in zip(_PARTIAL_DERIVATIVES[step.step](step, *step.parts), slopes, strict=True):
-        total = total if slope is None else _record_sum(total, _record_product(rate, slope))
+        if slope is not None:
+            term = _record_product(rate, slope)
+            total = term if total is None else total + term
     return total
-
-
-def _record_sum(total: Slope, term: Part) -> Part:
-    """Record the sum of a total and a term; a missing total counts as 0."""
-    return term if total is None else total + term
 
 
 def _record_product(rate: Part, slope: Part) -> Part:

@@ -122,9 +122,10 @@ def write_cross_check(element: ForceElement | PreloadedElement, path: Path) -> t
     fmu_variables = variables(element)
     stem = path.with_suffix("")
     tables = (("in", "input", states_in_si(state)), ("ref", "output", reference_loads(element, state)))
+    names = {kind: [variable.name for variable in fmu_variables if variable.causality == kind] for _, kind, _ in tables}
     inputs, reference = (
-        write_text(Path(f"{stem}_{ending}.csv"), _csv_text(_names_of_kind(fmu_variables, causality), time, values))
-        for ending, causality, values in tables
+        write_text(Path(f"{stem}_{ending}.csv"), _csv_text(names[kind], time, values))
+        for ending, kind, values in tables
     )
     options = f"StartTime, 0\nStopTime, {STOP}\nStepSize, {STEP}\nRelTol, 1e-6\n"
     return inputs, reference, write_text(Path(f"{stem}_ref.opt"), options)
@@ -158,11 +159,6 @@ def reference_loads(element: ForceElement | PreloadedElement, state: Numbers) ->
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
     scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
     return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
-
-
-def _names_of_kind(fmu_variables: tuple[Variable, ...], causality: str) -> list[str]:
-    """List the names of the variables of one kind: "input", "output" or "parameter"."""
-    return [variable.name for variable in fmu_variables if variable.causality == causality]
 
 
 def _csv_text(names: list[str], time: Numbers, values: Numbers) -> str:
