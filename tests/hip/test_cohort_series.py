@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.core.chebyshev import chebyshev_points
 from ballsocket.core.executors import Serial, processes
 from ballsocket.hip import Archard, FilmLimit, iso_14242_4, logarithmic, population
 from ballsocket.hip import cohort_series as module
-from ballsocket.hip.chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
+from ballsocket.hip.chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
 from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
@@ -71,7 +72,7 @@ def test_polynomials_of_the_degree_are_fitted_and_interpolated_exactly():
     other = {"x": np.array([0.3, 2.9]), "constant": np.full(2, 2.0), "y": np.array([0.1, 0.4])}
     np.testing.assert_allclose(basis(box.scale(other), exponents) @ coefficients, polynomial(other["x"], other["y"]))
     assert [point["x"] for point in box.sample(7)] == [point["x"] for point in points[:7]]
-    nodes, at = chebyshev_points(2.0, 5.0, 6), np.array([2.0, 3.3, 5.0])
+    nodes, at = 3.5 + 1.5 * chebyshev_points(6), np.array([2.0, 3.3, 5.0])
     np.testing.assert_allclose(interpolation_weights(at, 2.0, 5.0, 6) @ nodes**5, at**5, rtol=1e-12)
     np.testing.assert_array_equal(interpolation_weights(at, 2.0, 2.0, 1), np.ones((3, 1)))
 

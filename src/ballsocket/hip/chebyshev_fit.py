@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +11,8 @@ import numpy
 from numpy.polynomial.chebyshev import chebvander
 
 from ..core.arrays import Numbers
+from ..core.chebyshev import chebyshev_coefficients
+from ..studies.sampling import draw_points
 
 _ROUNDING = 1e-9  # margin of the ends of a box, whose numbers are logarithms and angles
 
@@ -54,9 +55,7 @@ class Box:
 
         if not self.axes:
             return [{name: low for name, (low, _) in self.ranges.items()}][:count]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
-            scaled = -numpy.cos(numpy.pi * Sobol(len(self.axes), rng=0).random(count))
+        scaled = -numpy.cos(numpy.pi * draw_points(Sobol(len(self.axes), rng=0), count))
         points = [{name: low for name, (low, _) in self.ranges.items()} for _ in range(count)]
         for column, name in zip(scaled.T, self.axes, strict=True):
             low, high = self.ranges[name]
@@ -80,16 +79,10 @@ def basis(scaled: Numbers, exponents: Numbers) -> Numbers:
     return columns.T
 
 
-def chebyshev_points(low: float, high: float, count: int) -> Numbers:
-    """Return the zeros of the Chebyshev polynomial of degree `count`, mapped to a range, in ascending order."""
-    return (low + high) / 2 - (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(count) + 0.5) / count)
-
-
 def interpolation_weights(points: Numbers, low: float, high: float, count: int) -> Numbers:
-    """Compute weights (points, count) that interpolate values at `chebyshev_points` to other points."""
+    """Compute weights (points, count) that interpolate values at Chebyshev points of a range to other points."""
     if count == 1:
         return numpy.ones((len(points), 1))
     scaled = numpy.clip((2 * points - low - high) / (high - low), -1.0, 1.0)
-    nodes = chebvander(chebyshev_points(-1.0, 1.0, count), count - 1)
-    weights: Numbers = chebvander(scaled, count - 1) @ numpy.linalg.inv(nodes)
+    weights: Numbers = chebvander(scaled, count - 1) @ chebyshev_coefficients(numpy.eye(count), 0)
     return weights

@@ -49,19 +49,13 @@ def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
     matrices = numpy.broadcast_to(numpy.eye(3), (*angles.shape[:-1], 3, 3))
     for letter in order:
         axis = "xyz".index(letter)
-        matrices = matrices @ _axis_rotation_matrices(axis, angles[..., axis])
+        cross = numpy.cross(numpy.eye(3)[axis], numpy.eye(3)).T  # cross @ r is the product of the axis and r
+        sine, versine = numpy.sin(angles[..., axis]), 1 - numpy.cos(angles[..., axis])
+        # Rodrigues' formula
+        matrices = matrices @ (
+            numpy.eye(3) + numpy.multiply.outer(sine, cross) + numpy.multiply.outer(versine, cross @ cross)
+        )
     return matrices
-
-
-def _axis_rotation_matrices(axis: int, angle: Numbers) -> Numbers:
-    """Compute rotation matrices (..., 3, 3) about one coordinate axis from angles in rad."""
-    second, third = (axis + 1) % 3, (axis + 2) % 3
-    matrix = numpy.zeros((*angle.shape, 3, 3))
-    matrix[..., axis, axis] = 1.0
-    matrix[..., second, second] = matrix[..., third, third] = numpy.cos(angle)
-    matrix[..., third, second] = numpy.sin(angle)
-    matrix[..., second, third] = -numpy.sin(angle)
-    return matrix
 
 
 def rotation_vectors(matrices: Numbers) -> Numbers:

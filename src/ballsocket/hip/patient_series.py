@@ -10,8 +10,9 @@ from math import ceil, log
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.chebyshev import chebyshev_points
 from ..core.storage.pieces import check_worker_code, fingerprint
-from .chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
+from .chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from .contact_checks import check_rows
 from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
 from .simulation import MAX_WORN_LINERS
@@ -59,8 +60,10 @@ class FamilyRun:
     def _simulate(self, numbers: Mapping[str, float]) -> tuple[Numbers, Numbers]:
         """Simulate one member; return its numbers of the unworn and of the worn bore."""
         contacts = _CONTACT_FIELDS * len(self.similarity.setup.frame.activities)
+        low, high = self.log_exposures
+        exposures = (low + high) / 2 + (high - low) / 2 * chebyshev_points(self.n_nodes)
         try:
-            return self.similarity.simulate(numbers, chebyshev_points(*self.log_exposures, self.n_nodes).tolist())
+            return self.similarity.simulate(numbers, exposures.tolist())
         except ValueError:
             n_numbers = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
             unworn = numpy.full(len(UNWORN_NUMBERS) + contacts, numpy.nan)
