@@ -127,10 +127,7 @@ class Comparison(Mapping[str, Contact]):
 
         Column names end in units; the last column has the notes.
 
-        Raises
-        ------
-        ImportError
-            pandas is not installed.
+        Raises ImportError: pandas is not installed.
         """
         needs("study", "pandas")
         import pandas
@@ -143,10 +140,7 @@ class Comparison(Mapping[str, Contact]):
     def plot(self) -> Figure:
         """Plot pressure over angle and force over indentation of all models that have a result.
 
-        Raises
-        ------
-        ValueError
-            More than one contact per model, or no model with a result.
+        Raises ValueError: more than one contact per model, or no model with a result.
         """
         figure: Figure = load_plot("contacts")(self.contacts)
         return figure

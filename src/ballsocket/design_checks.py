@@ -196,10 +196,6 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     contact : Contact
         Contact of one joint under one load.
 
-    Returns
-    -------
-    StrengthVerdict
-
     Examples
     --------
     >>> import ballsocket as bs

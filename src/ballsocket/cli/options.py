@@ -92,10 +92,7 @@ class JointOptions:
     def read(self, name: str | None) -> JointFile:
         """Read a joint from a file, a preset or the options alone; options replace single values.
 
-        Raises
-        ------
-        ValueError
-            Neither a name nor options, or a value that is not allowed.
+        Raises ValueError: neither a name nor options, or a value that is not allowed.
         """
         if name is not None:
             return varied(named_joint(name), self.tables)

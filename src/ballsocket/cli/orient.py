@@ -92,10 +92,7 @@ class OrientationOptions:
     def read_limits(self) -> list[Limit]:
         """Read the limits.
 
-        Raises
-        ------
-        ValueError
-            A limit of a quantity that orientations do not have.
+        Raises ValueError: a limit of a quantity that orientations do not have.
         """
         limits = [parse_limit(text) for text in self.limit or ()]
         for limit in limits:
@@ -104,8 +101,7 @@ class OrientationOptions:
         return limits
 
 
-_ROUND_STEPS = (0.5, 1.0, 2.0, 2.5, 5.0, 10.0, 15.0)
-"""Steps in degrees that are used without a request."""
+_ROUND_STEPS = (0.5, 1.0, 2.0, 2.5, 5.0, 10.0, 15.0)  # steps in degrees that are used without a request
 
 _USUAL_VALUES, _MAX_VALUES = 13, 91
 """Largest number of values of an angle, without a requested step and with one."""
@@ -114,10 +110,7 @@ _USUAL_VALUES, _MAX_VALUES = 13, 91
 def _even_degrees(low: float, high: float, step: float | None) -> Numbers:
     """Return the ends of a range in degrees and the multiples of a step between them.
 
-    Raises
-    ------
-    ValueError
-        More than 91 values.
+    Raises ValueError: more than 91 values.
     """
     chosen = step or next(size for size in _ROUND_STEPS if (high - low) / size <= _USUAL_VALUES - 1)
     if (high - low) / chosen > _MAX_VALUES - 1:

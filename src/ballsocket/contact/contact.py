@@ -141,7 +141,7 @@ class Contact(Outcome):
         It is NaN if neither has a yield stress.
 
         From 1 on the material yields somewhere. A linear result is invalid above 1.38
-        (`strength.MAXELASTIC_UTILISATION`).
+        (`strength.MAX_ELASTIC_UTILISATION`).
         """
         is_liner_checked = self.joint.liner.yield_stress is not None
         return self._compute_utilisation(self.von_mises if is_liner_checked else self.max_pressure)
@@ -403,10 +403,7 @@ class Contact(Outcome):
 
         Column names end in units, such as "half_angle_deg".
 
-        Raises
-        ------
-        ImportError
-            pandas is not installed.
+        Raises ImportError: pandas is not installed.
         """
         return describe.to_frame(self)
 

@@ -219,10 +219,7 @@ def named_records(table: Table) -> list[dict[str, Any]]:
 def to_frame(table: Table) -> Any:
     """Return a table as a pandas DataFrame; heads have units: "volume_mm3".
 
-    Raises
-    ------
-    ImportError
-        Pandas is not installed; the message has the command.
+    Raises ImportError: pandas is not installed; the message has the command.
     """
     needs("study", "pandas")
     import pandas

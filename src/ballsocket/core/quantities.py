@@ -148,12 +148,8 @@ class Quantity:
     def check(self, value: Any) -> Array:
         """Check that a number or array has only allowed values, and return it.
 
-        Raises
-        ------
-        ValueError
-            A number that is not allowed; the message has its value.
-        TypeError
-            A value that is neither a number nor an array of numbers.
+        Raises ValueError: a number that is not allowed; the message has its value.
+        Raises TypeError: a value that is neither a number nor an array of numbers.
         """
         if isinstance(value, float) and self.allows(value):
             return value

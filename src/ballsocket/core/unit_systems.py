@@ -20,8 +20,7 @@ from .display import plain_number
 from .kinds import MILLIMETRES, PLAIN, Unit
 from .quantities import Quantity
 
-_KSI_FROM = 1e4
-"""Pressure in psi from which it is written in ksi."""
+_KSI_FROM = 1e4  # pressure in psi from which it is written in ksi
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND

@@ -465,10 +465,7 @@ class PreloadedElement(OneLine):
 
         Position (mm), velocity (mm/s) and spin (rad/s) are (3,) or arrays (..., 3), as in `ForceElement`.
 
-        Raises
-        ------
-        ValueError
-            A vector without three components.
+        Raises ValueError: a vector without three components.
         """
         if type(position) in (tuple, list):
             return self._load(tuple, components(position), components(velocity), components(spin))

@@ -41,10 +41,7 @@ class Relation:
     def damping(self, restitution: float) -> float:
         """Compute the dimensionless damping h = χ v (hysteresis times impact speed) from a restitution.
 
-        Raises
-        ------
-        ValueError
-            A coefficient that is not above 0 and at most 1.
+        Raises ValueError: a coefficient that is not above 0 and at most 1.
         """
         allowed = "a coefficient of restitution must be above 0 and at most 1"
         require("restitution", restitution, 0.0 < restitution <= 1.0, allowed)

@@ -28,12 +28,8 @@ def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder
 
     Signatures of an earlier pack in the folder are removed.
 
-    Raises
-    ------
-    ValueError
-        A named file with the name of a file of the pack.
-    OSError
-        A folder that cannot be written to.
+    Raises ValueError: a named file with the name of a file of the pack.
+    Raises OSError: a folder that cannot be written to.
     """
     contents = {name: path.read_bytes() for name, path in source_files(question).items()}
     contents[RECORD] = (json.dumps(record, indent=1, allow_nan=False) + "\n").encode()

@@ -221,12 +221,8 @@ def read_question(path: str | Path) -> Question:
     The joint is described as in joint files, or named. The page "Keys of files" of the reference lists all tables and
     keys. Paths are relative to the folder of the file.
 
-    Raises
-    ------
-    ValueError
-        One sentence: what is wrong or missing.
-    OSError
-        A file cannot be read.
+    Raises ValueError: one sentence: what is wrong or missing.
+    Raises OSError: a file cannot be read.
     """
     path = Path(path)
     with record_inputs() as opened:

@@ -323,10 +323,7 @@ class CElement:
     def write(self, folder: Path) -> tuple[Path, Path]:
         """Write the header and source files into a folder, and return their paths.
 
-        Raises
-        ------
-        OSError
-            A folder that cannot be written to.
+        Raises OSError: a folder that cannot be written to.
         """
         folder = Path(folder)
         header = write_text(folder / f"{self.name}.h", self.header)

@@ -12,8 +12,7 @@ from ..dynamics import ForceElement, PreloadedElement
 _ALLOWED_ENERGY_ERROR = 0.01  # energy that a bounce may gain or lose, relative to its energy
 _PHASES = 24  # number of bounces that differ in the part of a step before the first touch
 
-_MAX_STEPS = 10_000
-"""Largest number of steps of a bounce."""
+_MAX_STEPS = 10_000  # largest number of steps of a bounce
 
 _SHARES = numpy.geomspace(1.0, 0.01, 60)
 """Time steps that are tried, as shares of the largest stable one, in falling order."""

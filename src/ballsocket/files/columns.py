@@ -191,10 +191,7 @@ class NumberTable:
     ) -> dict[str, Numbers]:
         """Return the columns by name in mm, N, MPa or rad; `units` are the units of heads without one.
 
-        Raises
-        ------
-        ValueError
-            A missing unit, or the unit of another quantity.
+        Raises ValueError: a missing unit, or the unit of another quantity.
         """
         try:
             heads = [replace(head, unit=head.unit or units.get(head.name, "")) for head in self.heads]
@@ -206,10 +203,7 @@ class NumberTable:
     def numbers(self, name: str) -> Numbers:
         """Return the numbers of a column without gaps.
 
-        Raises
-        ------
-        ValueError
-            A row has no finite number; the message has its line.
+        Raises ValueError: a row has no finite number; the message has its line.
         """
         if name in self.gaps:
             line, cell = self.gaps[name]

@@ -32,10 +32,7 @@ def written_in(table: FileTable) -> dict[str, Any]:
 def read_table(content: Mapping[str, Any], table: type[TableType]) -> TableType:
     """Convert the content of a file.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the table, the key, the value and what is allowed.
+    Raises ValueError: one sentence: the table, the key, the value and what is allowed.
     """
     try:
         return msgspec.convert(dict(content), table, dec_hook=read_value)

@@ -293,10 +293,7 @@ def _pint_name(symbol: str) -> str:
 def convert(number: float, units: Units, target: Units) -> float:
     """Convert a number from one product of units to another of the same dimension.
 
-    Raises
-    ------
-    ValueError
-        Units of another dimension, or a number out of range.
+    Raises ValueError: units of another dimension, or a number out of range.
     """
     factor = 1.0 if units == target else _COMMON_FACTORS.get((*units.items(), *target.items()))
     if factor is not None:

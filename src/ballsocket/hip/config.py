@@ -64,12 +64,9 @@ def read_hip(path: str | Path) -> HipFile:
     The joint is described as in joint files, or named: a preset, or a joint file in the same folder. The page "Keys of
     files" of the reference lists all tables and keys. Paths are relative to the folder of the file.
 
-    Raises
-    ------
-    ValueError
-        A wrong key or value. The message is one sentence, with the nearest known name or the allowed values.
-    OSError
-        A file cannot be read.
+    Raises ValueError: a wrong key or value. The message is one sentence, with the nearest known name or the allowed
+    values.
+    Raises OSError: a file cannot be read.
     """
     path = Path(path)
     return read_toml(path, "hip", lambda content: _parse_hip(content, path.parent))
@@ -78,12 +75,8 @@ def read_hip(path: str | Path) -> HipFile:
 def read_wear_test(path: str | Path) -> HipFile:
     """Read a hip file with measured wear in [[data]]; its wear coefficient is fitted and may be missing.
 
-    Raises
-    ------
-    ValueError
-        As `read_hip`, or a file without [[data]].
-    OSError
-        A file cannot be read.
+    Raises ValueError: as `read_hip`, or a file without [[data]].
+    Raises OSError: a file cannot be read.
     """
     path = Path(path)
     hip_file = read_toml(path, "wear test", lambda content: _parse_hip(_with_coefficient(content), path.parent))

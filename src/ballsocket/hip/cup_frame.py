@@ -32,10 +32,7 @@ class CupFrame:
 
     The axis x points upwards along the rim's plane, z to the dome's pole.
 
-    Raises
-    ------
-    ValueError
-        A load that pushes the ball over the rim, unless a spring balances the load there.
+    Raises ValueError: a load that pushes the ball over the rim, unless a spring balances the load there.
     """
 
     joint: Joint  # joint of single numbers

@@ -248,10 +248,7 @@ def film(
 
     `depth` (cells,) is the worn depth in mm.
 
-    Raises
-    ------
-    ValueError
-        An unknown method; a number of cycles below 1.
+    Raises ValueError: an unknown method; a number of cycles below 1.
     """
     name = known_name("method", method, METHODS)
     require("cycles", cycles, cycles >= 1 and cycles == int(cycles), "a number of cycles is a whole number from 1")

@@ -29,12 +29,8 @@ class PatientEquilibria(NamedTuple):
 def join_contacts(contacts: list[SpringContact]) -> SpringContact:
     """Join the contacts of several patients to one with arrays (patients, ...), as `solve_patients` takes.
 
-    Raises
-    ------
-    ValueError
-        No contact, or contacts with different numbers of loads or cells.
-    TypeError
-        Another type than a list of `SpringContact`.
+    Raises ValueError: no contact, or contacts with different numbers of loads or cells.
+    Raises TypeError: another type than a list of `SpringContact`.
     """
     if not isinstance(contacts, list) or not all(isinstance(contact, SpringContact) for contact in contacts):
         raise TypeError(f"contacts must be a list of SpringContact, got {shown(contacts)}")

@@ -78,10 +78,7 @@ WEAR_FACTORS: Mapping[str, WearFactor] = NamedItems("wear factor", {item.materia
 def wear_factor_of(material: str) -> WearFactor:
     """Return the published wear factor of a material.
 
-    Raises
-    ------
-    ValueError
-        A material that is not known, or without a published wear factor in this package.
+    Raises ValueError: a material that is not known, or without a published wear factor in this package.
     """
     preset = materials[known_name("material", material, materials)]
     for name, factor in WEAR_FACTORS.items():

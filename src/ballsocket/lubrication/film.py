@@ -186,10 +186,6 @@ def film(
     cell_width : float
         Width of the cells of the wave in rad; 2° by default.
 
-    Returns
-    -------
-    FilmResult
-
     Raises
     ------
     TypeError

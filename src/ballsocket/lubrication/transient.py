@@ -183,10 +183,6 @@ def film_over_steps(
         Number of time steps in each step of load and motion, in which both change linearly from the step before. The
         edge of the contact should move by less than an inlet length in each; `resolved` states it.
 
-    Returns
-    -------
-    FilmSteps
-
     Raises
     ------
     ValueError

@@ -60,10 +60,7 @@ class Modulus:
     def __call__(self, joint: Joint) -> Array:
         """Compute the foundation modulus K of a joint in MPa/mm.
 
-        Raises
-        ------
-        OutsideDomainError
-            A ValueError: no point of the joint lies in the domain of the formula.
+        Raises OutsideDomainError, a ValueError: no point of the joint lies in the domain of the formula.
         """
         check_domain(self.domain, joint, self.name)
         with numpy.errstate(all="ignore"):

@@ -16,8 +16,7 @@ from .worn_bores import WornBore
 
 _Cells = tuple[str, Cell, str]
 
-_MESH_ERROR = 0.005
-"""Smallest error of a radius in mm from a mesh."""
+_MESH_ERROR = 0.005  # smallest error of a radius in mm from a mesh
 
 
 def describe_plan(plan: HipPlan, remarks: Iterable[str] = ()) -> Answer:

@@ -20,17 +20,14 @@ DIAMETERS = MappingProxyType(
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
 
-_ROUNDING = 1e-9
-"""Relative difference of two lengths below which they agree."""
+_ROUNDING = 1e-9  # relative difference of two lengths below which they agree
 
 STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 """Lengths that a joint stores; the others are derived."""
 
-_RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")
-"""Lengths of which any two determine the third."""
+_RADIAL_LENGTHS = ("ball_radius", "socket_radius", "clearance")  # lengths of which any two determine the third
 
-_WALLS = ("liner_thickness", "outer_radius")
-"""Lengths of which one determines the wall behind a socket."""
+_WALLS = ("liner_thickness", "outer_radius")  # lengths of which one determines the wall behind a socket
 
 _BASES = (
     *(frozenset({*pair, wall}) for pair in combinations(_RADIAL_LENGTHS, 2) for wall in _WALLS),

@@ -234,8 +234,7 @@ def gap_remarks(gap: GapKind | None) -> tuple[Range, ...]:
 
 _NODES, _WEIGHTS = (numpy.array(values) for values in gauss_legendre(24))
 
-_SINES = numpy.sin(pi / 2 * _NODES)
-"""sin θ at the nodes of a quadrature over [0, π/2]."""
+_SINES = numpy.sin(pi / 2 * _NODES)  # sin θ at the nodes of a quadrature over [0, π/2]
 
 Derivatives = Callable[[Numbers], tuple[Numbers, ...]]
 """Function of w that returns u and its derivatives with respect to w."""

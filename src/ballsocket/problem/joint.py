@@ -378,11 +378,9 @@ class Joint(OneLine, ByValue):
         return Sentence("{}" * len(parts), *parts)
 
 
-_PARTS = ("liner", "ball", "backing", "support", "name", "source")
-"""Fields of a joint beside its lengths."""
+_PARTS = ("liner", "ball", "backing", "support", "name", "source")  # fields of a joint beside its lengths
 
-_VARIED = ", varied"
-"""End of the name of a changed joint."""
+_VARIED = ", varied"  # end of the name of a changed joint
 
 
 def _shell_thickness(backing: Sequence[Layer]) -> Array:

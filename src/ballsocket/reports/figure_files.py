@@ -19,10 +19,7 @@ FORMATS = (".png", ".svg", ".pdf")  # endings of the files that `save` writes
 def check_format(*paths: Path | None) -> None:
     """Check that each path ends in .png, .svg or .pdf and that its folder exists; None is no figure.
 
-    Raises
-    ------
-    ValueError
-        Another ending, or a folder that does not exist.
+    Raises ValueError: another ending, or a folder that does not exist.
     """
     given = [path for path in paths if path is not None]
     if not given:
@@ -36,12 +33,8 @@ def check_format(*paths: Path | None) -> None:
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG, SVG or PDF, according to the ending of `path`; after an error there is no file.
 
-    Raises
-    ------
-    ValueError
-        Another ending, or a folder that does not exist.
-    OSError
-        The path cannot be written to.
+    Raises ValueError: another ending, or a folder that does not exist.
+    Raises OSError: the path cannot be written to.
     """
     from ..core.storage.atomic_files import write_atomically
 

@@ -109,10 +109,7 @@ def _draw_fit(axes: Axes, fit: WearFit, runs: Sequence[History], quantity: str) 
 def write_table(path: Path, runs: Sequence[HipRun]) -> Path:
     """Write a CSV file with a row for each hip and report, and return its path; heads have units.
 
-    Raises
-    ------
-    OSError
-        The file cannot be written.
+    Raises OSError: the file cannot be written.
     """
     rows: list[dict[str, Any]] = []
     for run in runs:

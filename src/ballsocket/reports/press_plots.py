@@ -127,10 +127,7 @@ def plot(contacts: Mapping[str, Contact], units: Units = Units.SI) -> Figure:
     A contact off the cup's axis that is alone is drawn in its cup. Of many models at most `MAX_CURVES` are drawn, and
     the others are named.
 
-    Raises
-    ------
-    ValueError
-        More than one contact of a model, or only failed contacts.
+    Raises ValueError: more than one contact of a model, or only failed contacts.
     """
     for contact in contacts.values():
         shape = tuple(getattr(contact.indentation, "shape", ()))

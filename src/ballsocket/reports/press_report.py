@@ -43,17 +43,14 @@ from .pages import (
 from .section_plots import joint_section
 
 _TEMPLATE = "press.html"
-_ROUNDING = 1e-7
-"""Relative size of a component of a force that is the rounding error of zero."""
+_ROUNDING = 1e-7  # relative size of a component of a force that is the rounding error of zero
 
 _VERDICT_STYLES = {Verdict.KEPT: "holds", Verdict.UNDECIDED: "nearly", Verdict.EXCEEDED: "fails"}
 """Style of a verdict on the checks."""
 
-_MAX_COLUMNS = 3
-"""Designs beside each other in one table, which fits a printed page."""
+_MAX_COLUMNS = 3  # designs beside each other in one table, which fits a printed page
 
-_MAX_MODELS = 3
-"""Models beside each other in one table, each with its deviations."""
+_MAX_MODELS = 3  # models beside each other in one table, each with its deviations
 
 TitledHtml = dict[str, tuple[str, str]]
 """Title and HTML of each section by its id."""
@@ -102,12 +99,8 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
 
     Customer, project and author that differ are stated for each design.
 
-    Raises
-    ------
-    ValueError
-        A logo that cannot be shown, or two designs with different logos.
-    OSError
-        A logo that cannot be read.
+    Raises ValueError: a logo that cannot be shown, or two designs with different logos.
+    Raises OSError: a logo that cannot be read.
     """
     details = _common_details(designs)
     if len(designs) == 1:
@@ -125,10 +118,7 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
 def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
     """Return the head of the page of several designs; texts that differ stand with the name of their design.
 
-    Raises
-    ------
-    ValueError
-        A logo that cannot be shown, or two designs with different logos.
+    Raises ValueError: a logo that cannot be shown, or two designs with different logos.
     """
 
     def text_of(name: str) -> str:
@@ -224,8 +214,7 @@ def _inputs(file: JointFile, units: Units) -> Iterator[tuple[str, str, str]]:
         yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(value)), ""
 
 
-_DIRECTION = "in which the ball pushes into the cup, in the body"
-"""Meaning of the direction of a load."""
+_DIRECTION = "in which the ball pushes into the cup, in the body"  # meaning of the direction of a load
 
 
 def _material(material: Material, units: Units) -> str:
@@ -235,8 +224,7 @@ def _material(material: Material, units: Units) -> str:
     return f"{material.name or 'a material'}: {', '.join(numbers)}"
 
 
-_ORIENTATION = ("inclination", "anteversion")
-"""Angles of a cup in the body."""
+_ORIENTATION = ("inclination", "anteversion")  # angles of a cup in the body
 
 
 def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:

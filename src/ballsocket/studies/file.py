@@ -199,12 +199,8 @@ def read_study(path: str | Path) -> StudyFile:
     files, or named. A design without a load has that of the joint file. The page "Keys of files" of the reference lists
     all tables and keys. Paths are relative to the folder of the file.
 
-    Raises
-    ------
-    ValueError
-        One sentence: the error, and the nearest allowed name.
-    OSError
-        A file cannot be read.
+    Raises ValueError: one sentence: the error, and the nearest allowed name.
+    Raises OSError: a file cannot be read.
     """
     path = Path(path)
     return read_toml(path, "study", lambda content: _study(content, path.parent))

@@ -85,16 +85,11 @@ class Distributed:
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
         """Compute pieces of work on the workers; yield (number, result) in the order of completion.
 
-        Raises
-        ------
-        ImportError
-            Dask is not installed.
-        ConnectionError
-            The scheduler does not respond, needs certificates, or is not encrypted as the address states.
-        OSError
-            The scheduler ends during the run.
-        RuntimeError
-            The workers of a piece died more often than the scheduler allows.
+        Raises ImportError: dask is not installed.
+        Raises ConnectionError: the scheduler does not respond, needs certificates, or is not encrypted as the address
+        states.
+        Raises OSError: the scheduler ends during the run.
+        Raises RuntimeError: the workers of a piece died more often than the scheduler allows.
         """
         if not len(numbers):
             return

@@ -87,10 +87,7 @@ class Processes:
     def run(self, work: Work, numbers: Sequence[int]) -> Iterator[tuple[int, Any]]:
         """Compute pieces of work in worker processes; yield (number, result) in the order of completion.
 
-        Raises
-        ------
-        RuntimeError
-            The worker process of a piece died more than `retries` times.
+        Raises RuntimeError: the worker process of a piece died more than `retries` times.
         """
         workers = self.workers or available_cores()
         pending, deaths = deque(numbers), Counter[int]()
@@ -164,8 +161,7 @@ def limit_threads() -> Iterator[None]:
                 os.environ[name] = value
 
 
-_work: Work | None = None
-"""Work of this worker process."""
+_work: Work | None = None  # work of this worker process
 
 
 def _initialize_worker(work: Work) -> None:

@@ -83,10 +83,8 @@ class ElasticContact(SolvedContact):
         Outwards is positive, and angles outside the contact are allowed. The result is a NumPy array with the shape of
         `angle`. The sum of modes is accurate to about 1e-5 of the indentation (1e-8 for half angles above 40 degrees).
 
-        Raises
-        ------
-        ValueError
-            More than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`) answers.
+        Raises ValueError: more than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`)
+        answers.
         """
         angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].check(angle)), dtype=float)
         values = surface_displacement(self._interior_state, angles)
@@ -98,11 +96,8 @@ class ElasticContact(SolvedContact):
         Angle and depth broadcast against each other; the results are NumPy arrays. The sum of modes is accurate to
         about 1e-4 of the peak pressure at the surface away from the edge of the contact, and to 1e-8 below it.
 
-        Raises
-        ------
-        ValueError
-            More than one contact, or one that is narrower than 1 degree; a depth above the surface or beyond the
-            outermost layer.
+        Raises ValueError: more than one contact, or one that is narrower than 1 degree; a depth above the surface or
+        beyond the outermost layer.
         """
         angles, depths = (
             numpy.asarray(value, dtype=float)
@@ -179,10 +174,7 @@ class ElasticContact(SolvedContact):
     def peak_stress(self) -> Peak:
         """Largest von Mises stress in the liner in MPa, with its depth in mm and polar angle in rad.
 
-        Raises
-        ------
-        ValueError
-            More than one contact, or one without load or narrower than 1 degree.
+        Raises ValueError: more than one contact, or one without load or narrower than 1 degree.
         """
         return find_peak_stress(self._interior_state, float(self.joint.liner_thickness))
 

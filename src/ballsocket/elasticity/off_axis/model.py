@@ -335,10 +335,8 @@ class Sphere(Model):
     def worn_depth(self, directions: Numbers, socket_radius: float) -> Numbers:
         """Evaluate the depth of the worn bore in mm at unit vectors (3, rings, meridians); 0 of an unworn bore.
 
-        Raises
-        ------
-        ValueError
-            A worn bore of another radius than the socket's; depths of another shape, or that are not finite.
+        Raises ValueError: a worn bore of another radius than the socket's; depths of another shape, or that are not
+        finite.
         """
         if self.worn is None:
             return numpy.zeros(directions.shape[1:])

@@ -162,10 +162,6 @@ def orient(
     force, indentation, half_angle : float
         Exactly one of them, as in `Sphere.press`.
 
-    Returns
-    -------
-    Orientations
-
     Raises
     ------
     ValueError

@@ -311,10 +311,7 @@ class Fmu:
     def write(self, path: Path) -> FmuFile:
         """Write the FMU archive, and return its path with a note if the binary for this platform is missing.
 
-        Raises
-        ------
-        OSError
-            A folder that cannot be written to.
+        Raises OSError: a folder that cannot be written to.
         """
         files: dict[str, bytes] = {
             "modelDescription.xml": self.standard.describe(self.information, variables(self.element))

@@ -112,10 +112,7 @@ _MM, _MPA = 1e-3, 1e6
 def write_cross_check(element: ForceElement | PreloadedElement, path: Path) -> tuple[Path, Path, Path]:
     """Write the files of the FMI cross-check, NAME_in.csv, NAME_ref.csv and NAME_ref.opt, beside NAME.fmu.
 
-    Raises
-    ------
-    OSError
-        A folder that cannot be written to.
+    Raises OSError: a folder that cannot be written to.
     """
     time = numpy.arange(round(STOP / STEP) + 1) * STEP
     state = trajectory(element, time)
