@@ -18,6 +18,7 @@ from .core.checks import nearest, needs, reject_unnamed_loads, select_load, show
 from .core.display import html_table, load_plot
 from .core.quantities import CONTACT, HEADLINE
 from .core.sources import Source
+from .core.unit_systems import Sentence, holders_of
 from .core.validity import OutsideDomainError
 from .model_catalogue import catalogue, reference
 from .problem import Joint
@@ -71,11 +72,9 @@ class Comparison(Mapping[str, Contact]):
 
     def notes(self) -> list[str]:
         """List the notes of all contacts with their models, and the reasons of missing models, without duplicates."""
-        holders: dict[str, list[str]] = {}
-        for name, contact in self.contacts.items():
-            for note in contact.notes:
-                holders.setdefault(note, []).append(name)
-        return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
+        holders = holders_of((name, contact.notes) for name, contact in self.contacts.items())
+        noted = [Sentence("{}: {}", ", ".join(names), note) for note, names in holders.items()]
+        return [*noted, *self.missing.values()]
 
     def deviation(self, name: str) -> dict[str, Array] | None:
         """Compute the relative deviations of a model from the exact solution.
