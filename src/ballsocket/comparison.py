@@ -15,9 +15,10 @@ from .contact import Contact, Model
 from .contact.describe import PRESSURE_RATIO, UTILISATION, UTILISATION_NOTE, count_text, number_text, values_of
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
-from .core.display import holders_of, html_table, load_plot
+from .core.display import html_table, load_plot
 from .core.quantities import CONTACT, HEADLINE
 from .core.sources import Source
+from .core.unit_systems import Sentence, holders_of
 from .core.validity import OutsideDomainError
 from .model_catalogue import catalogue, reference
 from .problem import Joint
@@ -72,7 +73,8 @@ class Comparison(Mapping[str, Contact]):
     def notes(self) -> list[str]:
         """List the notes of all contacts with their models, and the reasons of missing models, without duplicates."""
         holders = holders_of((name, contact.notes) for name, contact in self.contacts.items())
-        return [f"{', '.join(names)}: {note}" for note, names in holders.items()] + list(self.missing.values())
+        noted = [Sentence("{}: {}", ", ".join(names), note) for note, names in holders.items()]
+        return [*noted, *self.missing.values()]
 
     def deviation(self, name: str) -> dict[str, Array] | None:
         """Compute the relative deviations of a model from the exact solution.

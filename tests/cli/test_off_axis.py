@@ -101,7 +101,7 @@ def test_orient_prints_every_orientation_and_the_limits():
     assert said["anteversion_deg"] == pytest.approx([20])
     distances = [row[0] for row in said["edge_distance"]]
     assert said["within_limits"] == [[distance >= 1.0] for distance in distances]
-    assert said["limits"] == ["edge_distance >= 1 mm"]
+    assert said["limits"] == ["edge_distance ≥ 1 mm"]
     (ends,) = said["inclination_ranges"]
     assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
 

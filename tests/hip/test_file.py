@@ -280,7 +280,7 @@ def test_a_material_gives_its_published_factor_with_the_source():
     law = read_wear_law({"material": "crosslinked-pe"})
     assert law == Archard.of_material("crosslinked-pe")
     assert law.coefficient == WEAR_FACTORS["crosslinked-pe"].value == 2e-7
-    assert "range 1e-07 to 4e-07" in law.notes[0]
+    assert "range 1e-07 mm³/(N m) to 4e-07 mm³/(N m)" in law.notes[0]
     assert law.with_coefficient(1e-7) == Archard(coefficient=1e-7)
     for factor in WEAR_FACTORS.values():
         assert factor.low < factor.value < factor.high

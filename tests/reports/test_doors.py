@@ -197,7 +197,7 @@ def expected_numbers(row, table, units, most_rank):
         if column.rank > most_rank:
             continue
         if isinstance(cell, Sentence):
-            yield from (number for part in cell.parts if isinstance(part, Amount) for number in amount(part, units))
+            yield from (number for part in cell.pieces if isinstance(part, Amount) for number in amount(part, units))
         if column.unit is None or isinstance(cell, str):
             continue
         value, metric, digits = keyed[column.key], column.written.text, column.digits

@@ -1,11 +1,24 @@
 """Systems of units, and studies: figures, tables and sentences in the units that stand beside their numbers."""
 
+import json
+import pickle
 import re
 
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.unit_systems import Sentence, Units
+from ballsocket.core.kinds import (
+    CUBIC_MILLIMETRES,
+    MEGAPASCALS,
+    MICROMETRES,
+    MILLIMETRES,
+    NANOMETRES,
+    NEWTON_METRES,
+    NEWTONS,
+    PERCENT,
+    Unit,
+)
+from ballsocket.core.unit_systems import Amount, Sentence, Units, from_json, to_json
 from ballsocket.reports import study_plots
 from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.design import Span, grid, sample
@@ -18,26 +31,36 @@ METRIC = r"\d (?:mm|µm|MPa|kN|N)\b|\[(?:mm|MPa|µm|N)\]"
 
 
 @pytest.mark.parametrize(
-    ("metric", "imperial"),
+    ("amount", "metric", "imperial"),
     [
-        ("25.4 mm from the rim", "1 in from the rim"),
-        ("1 to 2 kN, or 4.4482216 N", "224.8 to 449.6 lbf, or 1 lbf"),
-        ("E 750 MPa, p 1 MPa", "E 108.8 ksi, p 145 psi"),
-        ("25.4 µm, Ra 0.0254 µm, 25.4 nm", "1 mil, Ra 1 µin, 1 µin"),
-        ("16387.064 mm³ after 2 million cycles, 1 N m", "1 in³ after 2 million cycles, 8.851 lbf in"),
-        ("inf mm of a liner, 645.16 mm²", "inf in of a liner, 1 in²"),
-        ("R2/L ≥ 1 at 40°, 3 m, 5 Nm, v1.2 mmx", "R2/L ≥ 1 at 40°, 3 m, 5 Nm, v1.2 mmx"),
+        (Amount(25.4, MILLIMETRES), "25.4 mm", "1 in"),
+        (Amount(4.4482216, NEWTONS), "4.448 N", "1 lbf"),
+        (Amount(2e3, Unit("kN", 1e-3)), "2 kN", "449.6 lbf"),
+        (Amount(750.0, MEGAPASCALS), "750 MPa", "108.8 ksi"),
+        (Amount(1.0, MEGAPASCALS), "1 MPa", "145 psi"),
+        (Amount(0.0254, MICROMETRES), "25.4 µm", "1 mil"),
+        (Amount(2.54e-5, MICROMETRES), "0.0254 µm", "1 µin"),
+        (Amount(2.54e-5, NANOMETRES), "25.4 nm", "1 µin"),
+        (Amount(16387.064, CUBIC_MILLIMETRES), "16387 mm³", "1 in³"),
+        (Amount(1e3, NEWTON_METRES), "1 N m", "8.851 lbf in"),
+        (Amount(0.5, PERCENT), "50 %", "50 %"),
     ],
 )
-def test_numbers_with_units_in_a_sentence_are_converted(metric, imperial):
-    assert Units.IMPERIAL.sentence(metric) == imperial
-    assert Units.SI.sentence(metric) == metric
+def test_amounts_of_a_sentence_are_written_in_the_units_of_the_reader(amount, metric, imperial):
+    """Texts and names stay, whatever numbers they have; a sentence in another one keeps its amounts."""
+    inner = Sentence("at most {} of {}", amount, "the {} 3 mm liner")
+    sentence = Sentence("2 kN: {}!", inner)
+    assert sentence == f"2 kN: at most {metric} of the {{}} 3 mm liner!"
+    assert Units.SI.sentence(sentence) == sentence
+    assert Units.IMPERIAL.sentence(sentence) == f"2 kN: at most {imperial} of the {{}} 3 mm liner!"
+    for copy in (pickle.loads(pickle.dumps(sentence)), from_json(json.loads(json.dumps(to_json(sentence))))):
+        assert [copy, Units.IMPERIAL.sentence(copy)] == [sentence, Units.IMPERIAL.sentence(sentence)]
+    assert [Units.IMPERIAL.sentence(inner.upper()), from_json(to_json("3 mm"))] == [inner.upper(), "3 mm"]
 
 
 def test_the_name_of_a_joint_stays_and_so_do_sources_of_presets():
     joint = bs.joints["hip-36"].replace(name="36 mm, 3 kN")
     assert Units.IMPERIAL.sentence(str(joint)).startswith("36 mm, 3 kN: R1 0.7087 in")
-    assert Units.IMPERIAL.sentence(Sentence(str(joint))) == Units.IMPERIAL.sentence(str(joint))
     title = describe_calibration(bs.calibrate(joint)).title
     assert Units.IMPERIAL.sentence(title) == Units.IMPERIAL.sentence(str(joint))
     text = " ".join(printed("presets", "bone-cement", "--units", "imperial").split())
@@ -51,7 +74,7 @@ def test_orientations_print_and_draw_in_inches_and_pounds(tmp_path):
     limit = ("--limit", "max_pressure<=10 MPa", "--figure", "orient.svg")
     text = printed("orient", "hip-36", "--force", "2 kN", *angles, *limit, "--units", "imperial", folder=tmp_path)
     assert re.findall(METRIC, text) == []
-    assert "limit: max_pressure <= 1450.38 psi" in text
+    assert "limit: max_pressure ≤ 1450.38 psi" in text
     assert (tmp_path / "orient.svg").stat().st_size > 1000
 
 
@@ -69,8 +92,10 @@ def test_a_map_says_what_it_shows_and_names_its_limits():
     assert figure.get_suptitle() == title
     shown = {text.get_text() for text in figure.axes[0].texts}
     assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= shown
-    (alone,) = study_plots.design_map(space, limits, ["max_pressure"]).axes
-    assert alone.get_title() == titles[0]
+    (alone,) = study_plots.design_map(space, limits, ["max_pressure"], units=Units.IMPERIAL).axes
+    assert alone.get_title() == "largest pressure pmax [psi]"
+    assert "outer radius ≤ 1.02362 in" in {text.get_text() for text in alone.texts}
+    assert "; normal force = 674.4 lbf; radial clearance = 0.003937 in; " in alone.figure.get_suptitle()
     with pytest.raises(ValueError, match="bands need samples"):
         study_plots.band_figure(space)
 

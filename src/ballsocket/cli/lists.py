@@ -151,7 +151,7 @@ def _describe_presets() -> Answer:
     tables = []
     for title, presets in _PRESETS.items():
         columns = [Column.of_words(head) for head in (title, "numbers", "source")]
-        rows = [Row((name, _preset_numbers(preset), _quoted(preset.source))) for name, preset in presets.items()]
+        rows = [Row((name, _preset_numbers(preset), preset.source)) for name, preset in presets.items()]
         tables.append(Table(title, title, columns, [*rows[:-1], rows[-1]._replace(below=[("",) * 3])]))
     return Answer(title="presets", tables=tables)
 
@@ -172,20 +172,15 @@ def _describe_model(model: ModelInfo) -> Answer:
 def _describe_preset(name: str) -> Answer:
     """List all numbers of a material or joint, and the wear factor of a material that has one."""
     preset: Material | Joint = materials[name] if name in materials else joints[name]
-    rows, factor = [*_titled_numbers(preset), ("source", _quoted(preset.source))], _wear_factor(preset)
+    rows, factor = [*_titled_numbers(preset), ("source", preset.source)], _wear_factor(preset)
     if factor is not None:
         value, low, high = (Amount(number, _WEAR_FACTOR) for number in (factor.value, factor.low, factor.high))
         rows += [
             ("wear factor", Sentence("{}, range {} to {}", value, low, high)),
-            ("its source", _quoted(factor.source)),
+            ("its source", factor.source),
         ]
     columns = [Column.of_words("quantity"), Column.of_words("value")]
     return Answer(title=name, tables=[Table("preset", "Preset", columns, list(map(Row, rows)))])
-
-
-def _quoted(source: str) -> Sentence:
-    """Return a source whose numbers stay as they are in every system of units."""
-    return Sentence("{}", source)
 
 
 _WEAR_FACTOR = Unit("mm³/(N m)")

@@ -74,15 +74,6 @@ def plain_number(value: float, digits: int = 4) -> str:
     return f"{value:.0f}" if large else f"{value + 0.0:.{digits}g}"
 
 
-def holders_of(notes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]]:
-    """Return each note once, with the names that have it, from names and their notes."""
-    holders: dict[str, list[str]] = {}
-    for name, own_notes in notes:
-        for note in dict.fromkeys(own_notes):
-            holders.setdefault(note, []).append(name)
-    return holders
-
-
 _LEFT = " style='text-align:left'"
 
 

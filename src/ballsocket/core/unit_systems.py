@@ -9,7 +9,7 @@ A sentence keeps its numbers, so that every door writes them in the units of its
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import floor, isinf, log10, prod
@@ -47,15 +47,7 @@ _WRITTEN_UNITS = MappingProxyType(
         "kPa": Unit("psi", 1e-3 * _PSI),
     }
 )
-"""Imperial units by the metric unit, longest first; a mil is a thousandth of an inch."""
-
-_NUMBER = r"(?:[-+]?(?:\d++\.?\d*+|\.\d++)(?:e[-+]?\d++)?|inf|nan)"
-_SEPARATORS = (", ", " to ", " and ", " or ", "..", " ± ", " x ")
-_LIST = rf"{_NUMBER}(?:(?:{'|'.join(map(re.escape, _SEPARATORS))}){_NUMBER})*+"
-_LIST_START = r"(?<![\w.])" + "".join(rf"(?<!\d{re.escape(text)})" for text in _SEPARATORS)
-_UNIT = rf"(?:{'|'.join(map(re.escape, _WRITTEN_UNITS))})(?![\w²³^]|/(?!10|Mc))"
-_QUANTITY = re.compile(rf"{_LIST_START}({_LIST}) ({_UNIT})")
-"""Numbers with a unit behind them, such as "2.7 mm" and "1 to 3 kN"."""
+"""Imperial units by the metric unit; a mil is a thousandth of an inch."""
 
 
 class Units(StrEnum):
@@ -93,21 +85,18 @@ class Units(StrEnum):
         return _written(number, self.unit_of(quantity))
 
     def sentence(self, text: str) -> str:
-        """Write a sentence in this system: the amounts of a `Sentence`, else every number with a unit in the text.
+        """Write a sentence with its amounts in this system; a plain text stays.
 
         Examples
         --------
-        >>> Units.IMPERIAL.sentence("contact 2.7 mm from the rim, 1 to 3 kN")
-        'contact 0.1063 in from the rim, 224.8 to 674.4 lbf'
+        >>> Units.IMPERIAL.sentence(Sentence("contact {} from the rim", Amount(2.7, MILLIMETRES)))
+        'contact 0.1063 in from the rim'
         """
-        if isinstance(text, Sentence) and text.parts:
-            return text.template.format(*(self._part(part) for part in text.parts))
-        return str(text) if self is Units.SI else _QUANTITY.sub(_imperial, text)
+        return self.joined(text.pieces) if isinstance(text, Sentence) else text
 
-    def _part(self, part: Amount | str) -> str:
-        if isinstance(part, Amount):
-            return self.amount(part)
-        return self.sentence(part) if isinstance(part, Sentence) else part
+    def joined(self, pieces: Iterable[Amount | str]) -> str:
+        """Join texts and amounts, which are written in this system."""
+        return "".join(self.amount(piece) if isinstance(piece, Amount) else piece for piece in pieces)
 
     def written(self, unit: Unit) -> Unit:
         """Return the unit of this system for a metric unit with its factor."""
@@ -165,24 +154,66 @@ class Sentence(str):
     template : str
         Text with a gap `{}` for each part.
     *parts : Amount or str
-        Numbers, names, which are written as they are, and other sentences. Without parts, the numbers with units in
-        the text are the amounts.
+        Numbers, names, which are written as they are, and other sentences, whose amounts become those of this one.
+
+    Attributes
+    ----------
+    pieces : tuple of str and Amount
     """
 
-    __slots__ = ("parts", "template")
-    template: str
-    parts: tuple[Amount | str, ...]
+    __slots__ = ("pieces",)
+    pieces: tuple[Amount | str, ...]
 
     def __new__(cls, template: str, *parts: Amount | str) -> Sentence:
-        if isinstance(template, Sentence) and not parts:
-            return template
-        text = template.format(*map(Units.SI._part, parts)) if parts else template
-        sentence = super().__new__(cls, text)
-        sentence.template, sentence.parts = template, parts
+        first, *others = template.split("{}")
+        pieces: list[Amount | str] = [first]
+        for part, text in zip(parts, others, strict=True):
+            pieces += [*(part.pieces if isinstance(part, Sentence) else [part]), text]
+        return cls.of(pieces)
+
+    @classmethod
+    def of(cls, pieces: Iterable[Amount | str]) -> Sentence:
+        """Join texts and amounts to a sentence."""
+        kept = tuple(pieces)
+        sentence = super().__new__(cls, Units.SI.joined(kept))
+        sentence.pieces = kept
         return sentence
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Sentence, (self.template, *self.parts)
+        return Sentence.of, (self.pieces,)
+
+    def __str__(self) -> Sentence:
+        """Return the sentence itself: a figure keeps the amounts of its title."""
+        return self
+
+
+def to_json(text: str) -> Any:
+    """Return a text for JSON: the pieces of a sentence, whose amounts are in their metric unit; a plain text stays."""
+    if not isinstance(text, Sentence):
+        return text
+    return [
+        {**vars(piece), "value": piece.value * piece.unit.factor, "unit": piece.unit.text}
+        if isinstance(piece, Amount)
+        else piece
+        for piece in text.pieces
+    ]
+
+
+def from_json(data: Any) -> str:
+    """Return the sentence, or the plain text, of which `to_json` made the data."""
+    if isinstance(data, str):
+        return data
+    return Sentence.of(
+        Amount(**{**piece, "unit": Unit(piece["unit"])}) if isinstance(piece, dict) else piece for piece in data
+    )
+
+
+def holders_of(notes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]]:
+    """Collect the names that have each note, from pairs of a name and its notes."""
+    holders: dict[str, list[str]] = {}
+    for name, note in ((name, note) for name, own in notes for note in dict.fromkeys(own)):
+        holders.setdefault(note, []).append(name)
+    return holders
 
 
 def fixed_text(number: float, factor: float, metric_factor: float, decimals: int) -> str:
@@ -207,16 +238,3 @@ def _legible(unit: Unit, number: float) -> Unit:
     if unit.text == "psi" and size >= _KSI_FROM:
         return Unit("ksi", 1e-3 * unit.factor)
     return Unit("µin", 1e3 * unit.factor) if unit.text == "mil" and 0 < size < 0.1 else unit
-
-
-def _imperial(match: re.Match[str]) -> str:
-    """Write matched numbers in the imperial unit, with four digits."""
-    numbers, written = match.groups()
-    largest = max(abs(float(number)) for number in re.findall(_NUMBER, numbers))
-    unit = _legible(_WRITTEN_UNITS[written], largest)
-
-    def converted(number: re.Match[str]) -> str:
-        value = float(number[0]) * unit.factor
-        return plain_number(value)
-
-    return f"{re.sub(_NUMBER, converted, numbers)} {unit.text}"

@@ -254,7 +254,7 @@ def list_inputs(question: Question) -> list[dict[str, Any]]:
             "name": name,
             "value": value if abs(value) < inf else "inf",
             "unit": unit,
-            "tolerance": _tolerance_text(question, name),
+            "tolerance": _tolerance(question, name),
             "source": question.sources.get(name)
             or ("nominal value of its tolerance in the question" if name in recentred else "")
             or question.sources.get(body)
@@ -276,16 +276,15 @@ def _material_inputs(body: str, material: Material | None, prefix: str = "") -> 
     ]
 
 
-def _tolerance_text(question: Question, name: str) -> str:
-    """Format the tolerance of an input; empty without one."""
+def _tolerance(question: Question, name: str) -> str | list[float]:
+    """Return the ends of the tolerance of an input, or a remark in its place; empty without one."""
     spreads = {canonical(stated): (stated, spread) for stated, spread in question.tolerances.items()}
     if name not in spreads:
         varied = {canonical(axis) for axis in question.axes}
         return "varied in the matrix" if name in varied else ""
     stated, spread = spreads[name]
     factor = 0.5 if stated in DIAMETERS else 1.0
-    low, high = (factor * float(spread.frozen.ppf(end)) for end in (0.0, 1.0))
-    return f"{low:g} to {high:g}"
+    return [factor * float(spread.frozen.ppf(end)) for end in (0.0, 1.0)]
 
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib")

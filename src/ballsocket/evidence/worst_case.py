@@ -17,6 +17,7 @@ import numpy
 from ..contact import Contact, Model
 from ..core.arrays import Numbers, to_numpy
 from ..core.quantities import CONTACT, QUANTITIES
+from ..core.unit_systems import Amount, Sentence, to_json
 from ..core.validity import OutsideDomainError
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..elasticity.finite_elements.model import FiniteElement
@@ -67,7 +68,7 @@ class CalculationMethod:
             },
             "errors": {CONTACT[name].key: value for name, value in self.errors.items() if isfinite(value)},
             "valid": self.valid,
-            "notes": list(self.notes),
+            "notes": list(map(to_json, self.notes)),
             "aligned": self.aligned,
         }
 
@@ -195,7 +196,7 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
             for name in _BANDED[:2]
         },
         "aligned": any(name in AIMS for name in case),
-        "notes": list(_outside_notes(question, case)),
+        "notes": list(map(to_json, _outside_notes(question, case))),
         "call": "ballsocket.evidence.worst_case.propagate_tolerances(question, case)",
     }
 
@@ -206,12 +207,12 @@ def _outside_notes(question: Question, case: Case) -> Iterator[str]:
         low, high = (float(question.tolerances[name].frozen.ppf(end)) for end in (0.0, 1.0))
         if not low <= case[name] <= high:
             quantity = PARAMETERS[name]
-            value, smallest, largest = (f"{number * quantity.written.factor:g}" for number in (case[name], low, high))
-            unit = f" {quantity.written.text}".rstrip()
-            yield (
-                f"{quantity.title} {value}{unit} of the worst case lies outside its tolerance of {smallest} to "
-                f"{largest}{unit}: the bands cover the tolerance and do not include the worst case"
+            amounts = (Amount(number, quantity.written, 6) for number in (case[name], low, high))
+            text = (
+                "{} {} of the worst case lies outside its tolerance of {} to {}: the bands cover the tolerance and do "
+                "not include the worst case"
             )
+            yield Sentence(text, quantity.title, *amounts)
 
 
 def _band(name: str, values: Numbers) -> Mapping[str, float]:
@@ -257,7 +258,8 @@ def wear_history(question: Question, case: Case) -> dict[str, Any]:
     hip = _simulation(question, file, case)
     history = hip.after(file.cycles, file.report_at, lubricant=file.lubricant)
     call = "ballsocket.evidence.worst_case.wear_history(question, case)"
-    result: dict[str, Any] = {**history.summary(), "file": question.hip.name, "call": call}
+    notes = list(map(to_json, history.notes))
+    result: dict[str, Any] = {**history.summary(), "notes": notes, "file": question.hip.name, "call": call}
     if file.uncertain is not None:
         variability = replace(file.uncertain.variability, use=hip)
         result |= uncertainty(variability, history, count=file.uncertain.count, seed=file.uncertain.seed).summary()

@@ -17,6 +17,7 @@ from ..contact import Contact, Model, strength
 from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
 from ..core.display import finite_or_none
+from ..core.unit_systems import Sentence
 from ..core.validity import RIGID_BACKING, Status
 from ..elasticity.off_axis.grid import Grid
 from ..problem import Joint
@@ -253,4 +254,5 @@ def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> It
                 kind = "".join(letter for letter in note if not letter.isdigit())
                 if kind not in listed_kinds:
                     listed_kinds.add(kind)
-                    yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
+                    everywhere = note == check.utilisation_note
+                    yield note if everywhere else Sentence("{} ({}, at {})", note, stage, check.instant)

@@ -10,7 +10,7 @@ import numpy
 from ..contact.verdict import bar_text, ratio_text
 from ..core.answers import PAGE, Answer, Cell, Column, Row, Table
 from ..core.arrays import Numbers
-from ..core.display import holders_of, plain_number
+from ..core.display import plain_number
 from ..core.kinds import (
     CUBIC_MILLIMETRES,
     MEGAPASCALS,
@@ -24,7 +24,7 @@ from ..core.kinds import (
     Unit,
 )
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, holders_of
 from ..lubrication.friction import Stribeck
 from ..lubrication.lubricant import Lubricant
 from .bands import Bands
@@ -227,9 +227,8 @@ def _band(run: HipRun, name: str, report: int) -> Cell:
     return None if run.bands is None else tuple(float(end[report]) for end in run.bands.band(name))
 
 
-def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[Sentence]:
+def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[str]:
     """Yield the notes of all hips, each with the names of the hips that have it, unless all have it."""
-    notes = ((run.name, (*run.history.notes, *(run.bands.notes if run.bands else ()))) for run in runs)
-    for note, names in holders_of(notes).items():
-        written = Sentence(note)
-        yield written if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), written)
+    noted = ((run.name, (*run.history.notes, *(run.bands.notes if run.bands else ()))) for run in runs)
+    for note, names in holders_of(noted).items():
+        yield note if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), note)

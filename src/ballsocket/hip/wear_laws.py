@@ -10,6 +10,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, known_name, require
+from ..core.kinds import Unit
+from ..core.unit_systems import Amount, Sentence
 from ..problem.presets import materials
 from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law_class
 from .wear_law import (
@@ -47,10 +49,10 @@ class WearFactor:
     source: str
 
     @property
-    def description(self) -> str:
+    def description(self) -> Sentence:
         """Sentence with the factor, its range and its source."""
-        numbers = f"{self.value:g} mm³/(N m), range {self.low:g} to {self.high:g}"
-        return f"wear factor of {self.material}: {numbers}; {self.source}"
+        numbers = (Amount(number, Unit(WEAR_FACTOR.text)) for number in (self.value, self.low, self.high))
+        return Sentence("wear factor of {}: {}, range {} to {}; {}", self.material, *numbers, self.source)
 
 
 _WEAR_FACTORS = (

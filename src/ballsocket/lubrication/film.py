@@ -13,7 +13,9 @@ from ..contact import Contact
 from ..core.arrays import Array, Numbers
 from ..core.checks import check_number, check_vectors, known_name, require
 from ..core.display import finite_or_none, load_plot
+from ..core.kinds import NANOMETRES
 from ..core.records import Record
+from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from .dry_contact import DryContact, check_single_contact, dry_contact
 from .film_problem import check_reynolds, make_contact_film
@@ -40,7 +42,7 @@ _CIRCLING_NOTE = (
     "and the film there is thinner than computed"
 )
 _RIM_NOTE = "the rim cuts the contact: no lubricant enters there, and the film behind it is thinner than computed"
-_MOLECULES_NOTE = "the smallest film is below 1 nm: a few molecules are not a fluid"
+_MOLECULES_NOTE = Sentence("the smallest film is below {}: a few molecules are not a fluid", Amount(1e-6, NANOMETRES))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -35,5 +35,5 @@ def describe_films(films: Sequence[FilmResult]) -> Answer:
         title=str(first.contact.joint),
         lines=[Sentence("film at {}, {}, viscosity {}", *motion, viscosity)],
         tables=[Table("film", "Film", _COLUMNS, rows, ["λ minimum film over the combined roughness of both surfaces"])],
-        notes=[Sentence("{}: {}", one.contact.model.name, Sentence(note)) for one in films for note in one.notes],
+        notes=[Sentence("{}: {}", one.contact.model.name, note) for one in films for note in one.notes],
     )

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy
 from rich.text import Text
 
+from ..core.kinds import MILLIMETRES, Unit
 from ..core.quantities import CONTACT, QUANTITIES
-from ..core.unit_systems import Units
+from ..core.unit_systems import Amount, Sentence, Units
 from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
 from .style import single_axes
@@ -114,6 +115,9 @@ _HEAT_ENDS = (0.1, 300.0)  # %
 _DARK = 0.72  # of the colours
 
 
+_KILONEWTONS, _GIGAPASCALS = Unit("kN", 1e-3), Unit("GPa", 1e-3)
+
+
 def print_table_3(columns: Sequence[TableColumn], units: Units = Units.SI) -> None:
     """Print Table 3 of the paper beside the same fit to the exact solution."""
     terminal = Terminal(units)
@@ -127,14 +131,17 @@ def print_table_3(columns: Sequence[TableColumn], units: Units = Units.SI) -> No
         table.add_row(f"{head}: off by", *(f"{100 * share:+.1f} %" for share in worst))
     residuals = (float(numpy.max(abs(column.calibration.residual))) for column in columns)
     table.add_row("our fit: largest residual", *(f"{100 * share:.1f} %" for share in residuals))
-    table.add_row("K over 1 to 3 kN: spread", *(f"{100 * column.calibration.spread:.1f} %" for column in columns))
+    loads = [Amount(float(force), _KILONEWTONS) for force in columns[0].calibration.force]
+    spread = units.sentence(Sentence("K over {} to {}: spread", loads[0], loads[-1]))
+    table.add_row(spread, *(f"{100 * column.calibration.spread:.1f} %" for column in columns))
     for name in ("indentation", "max_pressure", "half_angle", "force"):
         errors = (100 * column.calibration.error[name] for column in columns)
         table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
     terminal.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
     print_columns(terminal, table)
-    text = f"{len(RATIOS)} joints, outer radius 24 mm, c 0.1 mm, steel head on 1 GPa; mean of p0/d at 1, 2, 3 kN."
-    print_folded(terminal, text, "dim")
+    dimensions = Amount(24.0, MILLIMETRES), Amount(0.1, MILLIMETRES), Amount(1e3, _GIGAPASCALS)
+    text = f"{len(RATIOS)} joints, outer radius {{}}, c {{}}, steel head on {{}}; mean of p0/d at {{}}, {{}}, {{}}."
+    print_folded(terminal, Sentence(text, *dimensions, *loads), "dim")
 
 
 def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:

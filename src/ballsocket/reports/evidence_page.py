@@ -6,8 +6,7 @@ from itertools import starmap
 from types import MappingProxyType
 from typing import Any
 
-from ..core.display import holders_of
-from ..core.unit_systems import Units
+from ..core.unit_systems import Sentence, Units, from_json, holders_of
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
 from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of, verdict_text
@@ -108,12 +107,10 @@ def _inputs(record: Record, units: Units) -> dict[str, Any]:
 
 
 def _input_cells(row: Record, units: Units) -> tuple[str, ...]:
-    unit = units.of_text(row["unit"])
-    value = row["value"] if isinstance(row["value"], str) else unit.factor * row["value"]
-    tolerance, ends = row["tolerance"], row["tolerance"].split(" to ")
-    if len(ends) == 2:  # else words
-        tolerance = " to ".join(number(unit.factor * float(end)) for end in ends)
-    return input_title(row["name"]), number(value), unit.text, tolerance, row["source"] or "none"
+    unit, (value, tolerance) = units.of_text(row["unit"]), (row["value"], row["tolerance"])
+    value = value if isinstance(value, str) else unit.factor * value
+    ends = [tolerance] if isinstance(tolerance, str) else [number(unit.factor * end) for end in tolerance]
+    return input_title(row["name"]), number(value), unit.text, " to ".join(ends), row["source"] or "none"
 
 
 def _matrix(record: Record, units: Units) -> dict[str, Any]:
@@ -197,17 +194,17 @@ def _verification(record: Record, units: Units) -> dict[str, Any]:
 def _methods(piece: Record, units: Units) -> dict[str, Any]:
     """Return one worst case by every method, and the largest deviation of each result."""
     keys = list(piece["methods"][0]["numbers"])
+    holders = holders_of((method["name"], map(from_json, method["notes"])) for method in piece["methods"])
     rows: Rows = [
         (method["name"], *(_with_error(method, key, units) for key in keys), "yes" if method["valid"] else "no")
         for method in piece["methods"]
     ]
-    notes = holders_of((method["name"], method["notes"]) for method in piece["methods"])
     deviations = (percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys)
     return {
         "title": ", ".join(NAMES[name].title for name in piece["worst_of"]),
         "heads": ["method", *(column_head(key, units) for key in keys), "valid"],
         "rows": [*rows, ("largest deviation", *deviations, "")],
-        "notes": [units.sentence(f"{', '.join(names)}: {note}") for note, names in notes.items()],
+        "notes": [units.sentence(Sentence("{}: {}", ", ".join(names), note)) for note, names in holders.items()],
         "call": piece["call"],
     }
 
@@ -217,6 +214,10 @@ def _with_error(method: Record, key: str, units: Units) -> str:
     if key not in method["numbers"]:
         return ""
     return bare_number(key, method["numbers"][key], units) + error_text(method["errors"].get(key))
+
+
+def _notes(piece: Record, units: Units) -> list[str]:
+    return [units.sentence(from_json(note)) for note in piece["notes"]]
 
 
 def _validation(record: Record) -> dict[str, Any]:
@@ -254,6 +255,7 @@ def _uncertainty(record: Record, units: Units) -> dict[str, Any] | None:
     names, indices = next(iter(uncertainty["sobol"].values())), uncertainty["sobol"].values()
     return {
         **uncertainty,
+        "notes": _notes(uncertainty, units),
         "figure": svg_address(in_units(figures.bands_figure(record), units)),
         "bands": [
             (column_head(key, units), *(bare_number(key, band[end], units) for end in ("low", "median", "high")))
@@ -283,7 +285,7 @@ def _wear(record: Record, units: Units) -> dict[str, Any] | None:
             (number(band["cycles"]), *(band_text(band[name], unit.factor) for name, unit in columns[1:4]))
             for band in wear.get("bands", ())
         ],
-        "notes": list(map(units.sentence, wear.get("notes", ()))),
+        "notes": _notes(wear, units),
         "call": wear["call"],
     }
 

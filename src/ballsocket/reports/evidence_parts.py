@@ -11,8 +11,9 @@ import numpy
 
 from ..contact.verdict import Bounded, bar_text
 from ..core.arrays import Numbers
+from ..core.kinds import Unit
 from ..core.quantities import QUANTITIES, Quantity
-from ..core.unit_systems import Units
+from ..core.unit_systems import Amount, Sentence, Units
 from ..evidence.matrix import KEYS, LIMITED, NAMES, amount_text, number, title_of
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup
@@ -253,9 +254,8 @@ def bands_figure(record: Record) -> Figure:
         low, high = (100 * (band[end] / band["median"] - 1) for end in ("low", "high"))
         reach = max(reach, -low, high)
         band_axes.barh(row, high - low, left=low, height=0.55, color=BLUE, edgecolor=INK, linewidth=0.6)
-        band_axes.text(
-            high, row, f"  {band['low']:.4g} to {band['high']:.4g} {_KEYS[key].written.text}", fontsize=8, va="center"
-        )
+        ends = (Amount(band[end], Unit(_KEYS[key].written.text)) for end in ("low", "high"))
+        band_axes.text(high, row, Sentence("  {} to {}", *ends), fontsize=8, va="center")
     band_axes.axvline(0.0, color=INK, linewidth=0.8)
     band_axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
     band_axes.set_xlim(-1.15 * reach, 3.2 * reach)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.display import plain_number
+from ..core.kinds import NANOMETRES, NEWTONS
+from ..core.unit_systems import Amount, Sentence
 from ..hip.film import Film
 from ..hip.film_cycle import CarriedFilm
 from ..lubrication.film import FilmResult
@@ -41,12 +42,11 @@ def film_figure(film: FilmResult) -> Figure:
     return figure
 
 
-def _title(film: FilmResult) -> str:
-    central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
-    return (
-        f"{film.contact.model.name}, {plain_number(film.contact.force)} N, {numpy.linalg.norm(film.spin):g} rad/s, "
-        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.4g} nm, minimum {least:.4g} nm"
-    )
+def _title(film: FilmResult) -> Sentence:
+    run = f"{numpy.linalg.norm(film.spin):g} rad/s, {1e3 * film.lubricant.viscosity:g} mPa s; {film.method}"
+    thicknesses = (Amount(float(thickness), NANOMETRES) for thickness in (film.central, film.minimum))
+    text = f"{film.contact.model.name}, {{}}, {run}: central {{}}, minimum {{}}"
+    return Sentence(text, Amount(float(film.contact.force), NEWTONS), *thicknesses)
 
 
 def _frame(film: FilmResult) -> Numbers:

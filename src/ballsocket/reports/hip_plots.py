@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..core.kinds import CUBIC_MILLIMETRES, MILLIONS
+from ..core.unit_systems import Amount, Sentence
 from ..hip.ball_wear import ball_directions
 from ..hip.bands import Bands
 from ..hip.history import History, Report
@@ -30,10 +32,12 @@ _HEADROOM = 1.2  # height of the axes relative to the largest value, which leave
 def wear_map(history: History, report: Report | None = None) -> Figure:
     """Draw the worn depth over the bore, seen along the cup's axis: the pole in the middle, the rim outside."""
     shown_report = history.last if report is None else report
-    title = (
-        f"{shown_report.volume:.4g} mm³ after {shown_report.cycles / 1e6:g} million cycles; the load leans to the right"
-    )
+    title = Sentence("{} after {} cycles; the load leans to the right", *_worn(shown_report.volume, shown_report))
     return _map(history.use, 1e3 * shown_report.wear, "worn depth [µm]", title)
+
+
+def _worn(volume: float, report: Report) -> tuple[Amount, Amount]:
+    return Amount(volume, CUBIC_MILLIMETRES), Amount(report.cycles, MILLIONS)
 
 
 def cross_shear_map(history: History) -> Figure:
@@ -55,7 +59,7 @@ def ball_map(history: History) -> Figure:
     figure.colorbar(shown, ax=axes, label="worn depth [µm]", shrink=0.8)
     axes.set_aspect("equal")
     finish(axes, "to the side [mm]", "to the front [mm]")
-    title = f"{history.last.ball_volume:.4g} mm³ of the ball after {history.last.cycles / 1e6:g} million cycles"
+    title = Sentence("{} of the ball after {} cycles", *_worn(history.last.ball_volume, history.last))
     axes.set_title(title, fontsize=10)
     return figure
 

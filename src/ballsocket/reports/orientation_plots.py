@@ -14,7 +14,7 @@ from ..core.quantities import CONTACT, CUP, DERIVED, Quantity
 from ..core.unit_systems import Sentence, Units
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
-from ..studies.orientation_answer import angle_text, limit_sentence, load_sentence, verdicts
+from ..studies.orientation_answer import angle_text, load_sentence, verdicts
 from .style import BLUE, INK, LEGEND, VERMILLION, new_figure
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def _draw_limits(axes: Axes, orientations: Orientations, limits: Sequence[Limit]
         levels = [end for end in (limit.low, limit.high) if (values < end).any() and (values > end).any()]
         if levels:
             axes.contour(x, y, values, levels=sorted(set(levels)), colors=VERMILLION, linestyles="--", linewidths=1.6)
-            axes.plot([], [], label=units.sentence(limit_sentence(limit)), **_LIMIT_LINE)
+            axes.plot([], [], label=units.sentence(str(limit)), **_LIMIT_LINE)
     across, up = numpy.nonzero(verdicts(orientations, limits) == Verdict.UNDECIDED)
     if len(across):
         label = "undecided: by the error bar, or outside the range of the model"
@@ -101,7 +101,7 @@ def _draw_curve(
     axes.errorbar(angles, shown, yerr=ends, fmt="o-", color=BLUE, markersize=4)
     for limit in (limit for limit in limits if limit.name == quantity.name):
         for end in filter(isfinite, (limit.low, limit.high)):
-            axes.axhline(factor * end, label=units.sentence(limit_sentence(limit)), **_LIMIT_LINE)
+            axes.axhline(factor * end, label=units.sentence(str(limit)), **_LIMIT_LINE)
     if quantity.name == "edge_distance" and numpy.nanmin(shown, initial=0.0) < 0:
         axes.axhline(0.0, linestyle=":", color=INK, linewidth=1.8, label="the contact reaches the rim")
     axes.set(xlabel=CUP[name].label(), ylabel=label)

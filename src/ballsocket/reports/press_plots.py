@@ -14,7 +14,7 @@ from ..core import arrays
 from ..core.display import plain_number
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, FIELD
-from ..core.unit_systems import Units
+from ..core.unit_systems import Amount, Sentence, Units
 from ..dynamics.motion import Motion
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..model_catalogue import reference
@@ -206,7 +206,7 @@ def loop_figure(depth: Numbers, forces: dict[str, Numbers]) -> Figure:
     """Draw forces over the indentation, each with the energy (N mm) that its loop dissipates."""
     figure, axes = single_axes()
     for dash, (name, force) in zip(_DASHES * len(forces), forces.items(), strict=False):
-        label = f"{name}: {numpy.trapezoid(force, depth):.3g} N mm lost"
+        label = Sentence("{}: {} lost", name, Amount(float(numpy.trapezoid(force, depth)), Unit("N mm"), 3))
         axes.plot(1e3 * numpy.asarray(depth), force, dash, label=label)
     finish(axes, "indentation d [µm]", "force [N]")
     axes.legend(frameon=False, fontsize=8)

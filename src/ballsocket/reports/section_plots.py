@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..contact import Contact
-from ..core.display import plain_number
+from ..core.kinds import NEWTONS
 from ..core.quantities import CONTACT, FIELD
-from ..core.unit_systems import Units
+from ..core.unit_systems import Amount, Sentence, Units
 from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import JUDGE, reference
 from ..problem import Joint
@@ -182,8 +182,8 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, section_axes, contact)
     _draw_pressure(pressure_axes, contact, exact)
-    title = f"{contact.joint.dimensions}; {plain_number(contact.force)} N, {contact.mesh.elements} elements"
-    figure.suptitle(title, fontsize=10)
+    force, elements = Amount(float(contact.force), NEWTONS), str(contact.mesh.elements)
+    figure.suptitle(Sentence("{}; {}, {} elements", contact.joint.dimensions, force, elements), fontsize=10)
     return figure
 
 

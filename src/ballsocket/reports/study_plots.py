@@ -117,14 +117,15 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
     return long[0], long[1]
 
 
-def _title(study: xarray.Dataset) -> str:
+def _title(study: xarray.Dataset) -> Sentence:
     fixed = [
         Sentence("{} = {}", QUANTITIES[str(name)].title, amount_of(str(name), float(coordinate)))
         for name, coordinate in study.coords.items()
         if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
     joint = json.loads(study.attrs["joint"])["name"]
-    return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
+    parts = [*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"]
+    return Sentence("; ".join("{}" for _ in parts), *parts)
 
 
 def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str]) -> None:
@@ -144,7 +145,7 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], nam
             values = margin_on_plane(study, end, across, up).value
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
-                _label_lines(axes, line, f"{QUANTITIES[end.name].title}{str(end).removeprefix(end.name)}")
+                _label_lines(axes, line, end.sentence(QUANTITIES[end.name].title))
 
 
 def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:

@@ -100,7 +100,8 @@ def finish(axes: Axes, x: str, y: str) -> None:
 
 
 def in_units(figure: Figure, units: Units) -> Figure:
-    """Write axes, colour bars and titles of a figure that is drawn in mm, N and MPa in another system of units."""
+    """Write axes, colour bars and sentences of a figure that is drawn in mm, N and MPa in another system of units."""
+    from matplotlib.text import Text
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     class ScaledLocator(MaxNLocator):
@@ -115,11 +116,9 @@ def in_units(figure: Figure, units: Units) -> Figure:
 
     if units is Units.SI:
         return figure
-    figure.suptitle(units.sentence(figure.get_suptitle()), fontsize=10, parse_math=False)
+    for text in figure.findobj(Text):
+        text.set_text(units.sentence(text.get_text()))
     for axes in figure.axes:
-        axes.set_title(units.sentence(axes.get_title()), fontsize=10)
-        for text in axes.texts:
-            text.set_text(units.sentence(text.get_text()))
         for axis in (axes.xaxis, axes.yaxis):
             label, factor = units.axis(axis.get_label_text())
             if label != axis.get_label_text():

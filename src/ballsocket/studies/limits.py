@@ -101,12 +101,16 @@ class Limit:
         return Bounded(distance(bar.value, bar.value), distance(bar.low, bar.high), distance(bar.high, bar.low))
 
     def __str__(self) -> Sentence:
+        return self.sentence(self.name)
+
+    def sentence(self, name: str) -> Sentence:
+        """Write the limit of the quantity with this name or title."""
         low, high = (Amount(end, ALL_QUANTITIES[self.name].shown, 6) for end in (self.low, self.high))
         if self.high == inf:
-            return Sentence("{} ≥ {}", self.name, low)
+            return Sentence("{} ≥ {}", name, low)
         if self.low == -inf:
-            return Sentence("{} ≤ {}", self.name, high)
-        return Sentence("{} ≤ {} ≤ {}", low, self.name, high)
+            return Sentence("{} ≤ {}", name, high)
+        return Sentence("{} ≤ {} ≤ {}", low, name, high)
 
 
 def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> Bounded:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import degrees, isfinite
+from math import degrees
 from typing import Any
 
 import numpy
@@ -13,7 +13,7 @@ from ..core.answers import Answer, Column, Judged, Row, Table
 from ..core.arrays import Numbers
 from ..core.bounded import Verdict
 from ..core.kinds import MILLIMETRES
-from ..core.quantities import CONTACT, DERIVED, QUANTITIES
+from ..core.quantities import CONTACT, DERIVED
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
@@ -96,7 +96,7 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     codes = verdicts(orientations, limits)
     rows = zip(orientations.anteversion, inclination_ranges(orientations, codes), strict=True)
     return {
-        "limits": [str(limit_sentence(limit)) for limit in limits],
+        "limits": [str(limit) for limit in limits],
         "within_limits": (codes == Verdict.KEPT).tolist(),
         "verdicts": [[Verdict(code).word for code in row] for row in codes.tolist()],
         "inclination_ranges": [
@@ -109,18 +109,10 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     }
 
 
-def limit_sentence(limit: Limit) -> Sentence:
-    """Write a limit with its unit, such as "edge_distance >= 1 mm"."""
-    unit = QUANTITIES[limit.name].written
-    ends = [(sign, end) for sign, end in ((">=", limit.low), ("<=", limit.high)) if isfinite(end)]
-    amounts = [Amount(end, unit, digits=6) for _, end in ends]
-    return Sentence(" and ".join(f"{limit.name} {sign} {{}}" for sign, _ in ends), *amounts)
-
-
 def _limit_sentences(orientations: Orientations, limits: Sequence[Limit], codes: Numbers) -> Iterator[str]:
     """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
     kept, undecided, _ = (int((codes == verdict).sum()) for verdict in Verdict)
-    texts = Sentence(" and ".join("{}" for _ in limits), *map(limit_sentence, limits))
+    texts = Sentence(" and ".join("{}" for _ in limits), *map(str, limits))
     yield Sentence("limit: {}; {}", texts, f"kept in {kept} of {codes.size} orientations, exceeded where *")
     if undecided:
         yield f"undecided in {undecided} orientations with ?: by the error bar, or outside the range of the model"

@@ -90,7 +90,7 @@ def test_figure_of_one_changing_angle_is_a_curve_with_its_limits(oriented):
         dashed = [line for line in axes.lines if line.get_linestyle() == "--"]
         assert [list(line.get_ydata()) for line in dashed] == [pytest.approx([bound, bound])]
     for drawn in (figure, orientation_figure(oriented, limits=limits)):
-        assert "edge_distance >= 1 mm" in legend(drawn)
+        assert "edge_distance ≥ 1 mm" in legend(drawn)
 
 
 @pytest.mark.parametrize(

@@ -236,7 +236,7 @@ class Press(LongView):
         contact, units = pressed_in_cup(screen.file), screen.reading.units
         real = Comparison(screen.file.joint, {contact.model.name: contact}, {})
         return Document(
-            picture=lambda form: figure_bytes(cup_figure(contact), form),
+            picture=lambda form: figure_bytes(cup_figure(contact, units), form),
             rows=lambda: _rows(_with_real(contact, comparison), screen),
             sections=lambda: press_sections(real, units),
             lede=lambda: press_lede(contact, screen.file.cup, units),
@@ -268,4 +268,5 @@ def _reason(comparison: Comparison, screen: Screen) -> str:
 
 def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
     heads, *rows = number_rows("model", comparison, screen.reading)
-    return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]
+    units = screen.reading.units
+    return [[*heads, "notes"], *([*row, "; ".join(map(units.sentence, comparison[row[0]].notes))] for row in rows)]

@@ -198,7 +198,7 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
         quantity_cell(CONTACT["force"], contact.force, reading),
     ]
     checks = checked(checks_of(contact, contact.model.cup), reading)
-    notes = f"{trust(contact, contact.notes)}{_hint(contact)}"
+    notes = f"{trust(contact, contact.notes, reading)}{_hint(contact)}"
     return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes}"
 
 

@@ -137,7 +137,7 @@ def _numbers(result: ElementResult, screen: Screen) -> str:
     return (
         f"<div class='narrow'>{table(heads, rows)}</div>"
         f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact solution is that of a "
-        f"complete shell, without a rim.</p>{notes_list(result.notes)}"
+        f"complete shell, without a rim.</p>{notes_list(result.notes, screen.reading)}"
     )
 
 

@@ -144,10 +144,10 @@ class Gait(LongView):
         listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in numbers.items()])
         sections = {
             "checks": ("Checks", f"{rim_sentence(result, reading)}{checked(result.checks, reading)}"),
-            "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes)),
+            "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes, reading)),
         }
         if film is not None:
-            sections["film"] = ("Film", picture(film.figure, "film over the cycle") + notes_list([film.note]))
+            sections["film"] = ("Film", picture(film.figure, "film over the cycle") + notes_list([film.note], reading))
         return Document(
             picture=lambda form: figure_bytes(course_figure(result.phase, courses, result.name), form),
             rows=lambda: [heads, *rows],
@@ -177,12 +177,13 @@ def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str
     if film is not None:
         state = "wave method, valid here" if film.valid else "✗ wave method, not valid here"
         thinnest, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
-        cells.append(number_cell("smallest film thickness", thinnest, "nm", state))
+        unit = reading.units.of_text("nm")
+        cells.append(number_cell("smallest film thickness", thinnest * unit.factor, unit.text, state))
         cells.append(number_cell("smallest film ratio λ", ratio, "", film.regime))
         notes.append(film.note)
     checks = checked(result.checks, reading)
     rim = rim_sentence(result, reading)
-    return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes)}"
+    return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes, reading)}"
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,7 @@ class Course:
     line: LineStyle = _INK
 
     def unit(self, reading: Reading) -> Unit:
-        return self.own_unit if self.quantity is None else reading.unit(self.quantity)
+        return reading.units.written(self.own_unit) if self.quantity is None else reading.unit(self.quantity)
 
     def label(self, reading: Reading) -> str:
         return f"{self.name}{self.unit(reading).text_in_brackets}"

@@ -208,7 +208,7 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
     )
     notes = "".join(
         f"{doubt(entry.summary['contact']['valid'], name)}"
-        f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes)}"
+        f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes, reading)}"
         for name, entry in designs.items()
     )
     return f"{table(['after the last cycle', *designs], rows)}{used}{notes}"

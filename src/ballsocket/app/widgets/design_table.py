@@ -19,7 +19,7 @@ from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
 from ..views.real_cup import is_prepared, pressed_in_cup
-from .reading import number_text
+from .reading import Reading, number_text
 from .words import VERDICT_KINDS, percent
 
 _DIMENSIONS = {
@@ -135,7 +135,7 @@ def design_rows(
     for check in dict.fromkeys((row.title, row.limit) for part in checks for row in part if row.capacity):
         ratios = [{(row.title, row.limit): row for row in part}.get(check) for part in checks]
         rows.append((" / ".join(check), [_ratio(row) for row in ratios]))
-    rows.append(("valid here", [_validity(design) for design in listed]))
+    rows.append(("valid here", [_validity(design, reading) for design in listed]))
     for name in _DIMENSIONS[screen.size]:
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
@@ -171,9 +171,9 @@ def _ratio(check: Check | None) -> Cell:
     return Cell(text=text, difference=bar, kind=VERDICT_KINDS[check.verdict])
 
 
-def _validity(design: ComparedDesign) -> Cell:
+def _validity(design: ComparedDesign, reading: Reading) -> Cell:
     if design.contact is None:
         return Cell(text=design.reason, kind="no")
     notes = [*filter(None, [design.limit]), *design.contact.notes]
     kind, text = ("yes", "✓ yes") if bool(design.contact.valid) and not design.limit else ("no", "✗ no")
-    return Cell(text=text, difference="; ".join(notes), kind=kind)
+    return Cell(text=text, difference="; ".join(map(reading.units.sentence, notes)), kind=kind)

@@ -34,9 +34,9 @@ def alert(sentence: str) -> str:
     return f"<p class='refused' role='alert'>{escape(sentence)}</p>"
 
 
-def notes_list(notes: Iterable[str]) -> str:
+def notes_list(notes: Iterable[str], reading: Reading) -> str:
     """List the notes of a model."""
-    return f"<ul class='notes'>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
+    return f"<ul class='notes'>{''.join(f'<li>{escape(reading.units.sentence(note))}</li>' for note in notes)}</ul>"
 
 
 def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
@@ -56,9 +56,9 @@ def _unit_html(unit: str) -> str:
     return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
 
 
-def trust(contact: Contact, notes: Sequence[str]) -> str:
+def trust(contact: Contact, notes: Sequence[str], reading: Reading) -> str:
     """Return validity and notes of a contact as HTML; words repeat what the colour shows."""
-    return f"{doubt(bool(contact.valid))}{notes_list(notes) if notes else ''}"
+    return f"{doubt(bool(contact.valid))}{notes_list(notes, reading) if notes else ''}"
 
 
 def doubt(valid: bool, name: str = "") -> str:
@@ -95,7 +95,8 @@ def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -
     row = f"<tr class='{kind}'>{head}{cells}<td class='text'>{'yes' if valid else 'no'}</td></tr>"
     if valid:
         return row
-    why = f"<td colspan='{len(HEADLINE) + 2}' class='text'>{escape('; '.join(contact.notes))}</td>"
+    notes = "; ".join(map(reading.units.sentence, contact.notes))
+    why = f"<td colspan='{len(HEADLINE) + 2}' class='text'>{escape(notes)}</td>"
     return f"{row}<tr class='why'>{why}</tr>"
 
 
@@ -175,7 +176,7 @@ def headline(
         notes = tuple(note for note in notes if note != contact.utilisation_note)
     return (
         f"<dl class='first'>{_quantity_cell(first, contact, reading)}</dl>"
-        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes)}"
+        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes, reading)}"
         f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
     )
 

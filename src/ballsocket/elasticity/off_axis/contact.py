@@ -14,7 +14,9 @@ from ...contact.stress_ratio import von_mises_ratio
 from ...contact.verdict import Bounded
 from ...core import arrays
 from ...core.arrays import Array, Numbers
+from ...core.kinds import MILLIMETRES
 from ...core.records import cached_array
+from ...core.unit_systems import Amount, Sentence
 from ...core.validity import RIGID_BACKING, Status
 from .directions import TILT_TOLERANCE, check_direction, polar_angle
 
@@ -246,7 +248,8 @@ class OffAxisContact(SolvedContact):
         (_, contacts), *_ = self.laws.pieces
         centre = contacts.state.displacement[:, 0]
         distance, polar = float(numpy.linalg.norm(centre)), degrees(float(polar_angle(centre)))
-        return f"the ball's centre moved {distance:.3g} mm from the bore's, {polar:.1f}° from the dome's pole"
+        text = f"the ball's centre moved {{}} from the bore's, {polar:.1f}° from the dome's pole"
+        return Sentence(text, Amount(distance, MILLIMETRES, 3))
 
     def _collect_vector(self, name: str) -> Array:
         """Collect a named vector of all contacts: (..., 3), NaN where there is no solution."""
