@@ -88,6 +88,7 @@ if TYPE_CHECKING:
     from .problem.cup import Side as Side
     from .problem.gaps import CircularGap as CircularGap
     from .problem.gaps import LinearGap as LinearGap
+    from .problem.hardening import Hardening as Hardening
     from .problem.presets import ALUMINA as ALUMINA
     from .problem.presets import ALUMINA_COMPOSITE as ALUMINA_COMPOSITE
     from .problem.presets import BONE_CEMENT as BONE_CEMENT
@@ -143,6 +144,7 @@ _NAMES_BY_MODULE = {
     "problem": "Joint Layer Material Support",
     "problem.cup": "AngleDefinition Cup Interface Side",
     "problem.gaps": "CircularGap LinearGap",
+    "problem.hardening": "Hardening",
     "problem.presets": "ALUMINA ALUMINA_COMPOSITE BONE_CEMENT CANCELLOUS_BONE COCR CORTICAL_BONE CROSSLINKED_PE POM "
     "STEEL STRUCTURAL_STEEL TITANIUM UHMWPE joints materials",
     "studies.run": "study",

@@ -328,7 +328,8 @@ def test_each_material_of_an_axis_has_its_own_strength():
 )
 def test_ratios_above_one_are_printed_with_two_digits(ratio, text):
     joint = replace(HIP, liner=replace(BARE, allowable_pressure=10.0), ball=None)
-    contact = SimpleNamespace(joint=joint, max_pressure=10.0 * ratio, quick_von_mises=exact_number(0.0), von_mises=0.0)
+    stresses = {"max_pressure": 10.0 * ratio, "quick_von_mises": exact_number(0.0), "von_mises": 0.0}
+    contact = SimpleNamespace(yields=False, joint=joint, **stresses)
     notes = [note for _, note in strength.strength_remarks(contact)]
     assert notes == [f"pressure {text} the allowable pressure of the liner"]
 

@@ -188,7 +188,12 @@ class Contact(Outcome):
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
         """Ranges of quantities in which a contact is valid, with the elastic limit if a strength is known."""
-        return (*self.model.validity, ELASTIC) if self.joint.strengths() else self.model.validity
+        return (*self.model.validity, ELASTIC) if self.joint.strengths() and not self.yields else self.model.validity
+
+    @property
+    def yields(self) -> bool:
+        """True if the model lets the liner yield, so that no elastic limit applies."""
+        return False
 
     @property
     def quick_notes(self) -> tuple[str, ...]:

@@ -194,13 +194,13 @@ def unchecked_strength_reason(joint: Joint) -> str:
 def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     """Yield a mask and a note for each strength limit; the note applies to points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
-    if joint.liner.proportional_limit is not None:
+    if joint.liner.proportional_limit is not None and not contact.yields:
         bar = contact.quick_von_mises
         name = "estimated von Mises stress" if bar.is_estimate else "von Mises stress"
         yield from _linearity_remarks("liner", joint.liner, bar.value, name)
     if joint.liner.strengths:
         yield from _exceeded_strength_remarks(
-            "liner", joint.liner, contact.quick_von_mises.high, lambda: contact.von_mises, pressure
+            "liner", joint.liner, contact.quick_von_mises.high, lambda: contact.von_mises, pressure, contact.yields
         )
     if joint.ball is not None:
         stress = joint_ball_stress_ratio(joint) * pressure
@@ -212,7 +212,12 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
 
 
 def _exceeded_strength_remarks(
-    body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
+    body: str,
+    material: Material,
+    upper_bound: Array,
+    von_mises: Callable[[], Array],
+    pressure: Array,
+    yields: bool = False,
 ) -> Iterator[tuple[Array, str]]:
     """Yield acceptable points and a note for each exceeded strength; von Mises stresses are at most `upper_bound`."""
     for name, strength in material.strengths.items():
@@ -222,7 +227,9 @@ def _exceeded_strength_remarks(
         ratio = (pressure if is_pressure_limit else von_mises()) / strength
         stress = "pressure" if is_pressure_limit else "von Mises stress"
         limit = (
-            f": results are valid up to {MAX_ELASTIC_UTILISATION:g} times this stress" if name == "yield_stress" else ""
+            f": results are valid up to {MAX_ELASTIC_UTILISATION:g} times this stress"
+            if name == "yield_stress" and not yields
+            else ""
         )
         yield (
             logical_not(ratio > 1),

@@ -13,6 +13,7 @@ from ..core.display import OneLine, html_list
 from ..core.kinds import MEGAPASCALS, MILLIMETRES, PLAIN, Unit
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
 from ..core.unit_systems import Amount, Sentence
+from .hardening import Hardening
 
 
 def make_unchecked(cls: Any, **fields: Any) -> Any:
@@ -101,6 +102,8 @@ class Material(OneLine, ByValue):
         Stress in MPa above which the secant modulus is lower than `young`. None (default) is an unknown limit.
     yield_stress, fatigue_limit, allowable_pressure : float or array, optional
         Strengths in MPa. None (default) is an unknown limit.
+    hardening : Hardening, optional
+        Yield stress over plastic strain, for models whose liner yields. None (default) is perfectly plastic.
 
     Raises
     ------
@@ -123,10 +126,13 @@ class Material(OneLine, ByValue):
     yield_stress: Array | None = None
     fatigue_limit: Array | None = None
     allowable_pressure: Array | None = None
+    hardening: Hardening | None = None
 
     def __post_init__(self) -> None:
         elastic = {name: quantity.check(getattr(self, name)) for name, quantity in MATERIAL.items()}
         limits = {name: STRESS_LIMITS[name].check(limit) for name, limit in self.stress_limits.items()}
+        if not isinstance(self.hardening, Hardening | None):
+            raise TypeError(f"hardening must be a Hardening, got {shown(self.hardening)}")
         set_fields(self, **elastic, **limits)
 
     @property
@@ -140,9 +146,17 @@ class Material(OneLine, ByValue):
         limits = {name: getattr(self, name) for name in STRESS_LIMITS}
         return {name: limit for name, limit in limits.items() if limit is not None}
 
+    @property
+    def yield_curve(self) -> Hardening | None:
+        """Hardening, or that of a perfectly plastic material at its yield stress; None if neither is one number."""
+        stress: Any = self.yield_stress
+        if self.hardening is not None or not is_plain_number(stress):
+            return self.hardening
+        return Hardening(stress=(float(stress),))
+
     def without_strengths(self) -> Material:
-        """Return a copy of the material without strengths and proportional limit."""
-        return make_unchecked(Material, **{**vars(self), **dict.fromkeys(STRESS_LIMITS)})
+        """Return a copy of the material without strengths, proportional limit and hardening."""
+        return make_unchecked(Material, **{**vars(self), **dict.fromkeys((*STRESS_LIMITS, "hardening"))})
 
     def with_numbers(self, young: Array, poisson: Array) -> Material:
         """Return a copy of the material with other elastic constants, without checks."""
@@ -151,7 +165,8 @@ class Material(OneLine, ByValue):
     def summary(self) -> dict[str, Any]:
         """Return the material as a dictionary for JSON, in MPa."""
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
-        return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
+        hardening = {} if self.hardening is None else {"hardening": self.hardening.summary()}
+        return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}, **hardening}
 
     def _repr_html_(self) -> str:
         elastic = {name: getattr(self, name) for name in MATERIAL}

@@ -12,6 +12,7 @@ from typing import Any
 from ..core.checks import NamedItems, check_text, shown
 from ..core.kinds import MEGAPASCALS
 from ..core.unit_systems import Amount, Sentence
+from .hardening import Hardening
 from .joint import Joint
 from .material import Material
 
@@ -32,6 +33,13 @@ UHMWPE = Material(
     "compression at 300 K and 0.007/s",
     proportional_limit=7.5,
     yield_stress=21.0,
+    hardening=Hardening(
+        stress=(7.44, 11.12, 13.75, 15.77, 18.65, 20.67, 23.23, 24.46, 25.32, 26.07),
+        plastic_strain=(0.0, 0.0026, 0.0058, 0.0094, 0.0175, 0.0262, 0.0445, 0.0636, 0.0831, 0.1025),
+        young=1494.0,
+        source="three-network model of Bergström & Bischoff 2010, Int. J. Struct. Changes Solids 2, 31, at 300 K and "
+        "0.007/s: true stress",
+    ),
 )
 CROSSLINKED_PE = Material(
     young=750.0,

@@ -280,13 +280,13 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair, con
 
 def test_loads_are_solved_on_the_mesh_of_their_class(curve):
     angles = [contact_class * 0.99 for contact_class in curve.classes[1:6]]
-    assert [curve._mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
+    assert [curve.mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
     ends = ("half_angle", curve.classes[0]), ("half_angle", 1e-9), ("force", 1e9)
-    assert [curve._mesh_class(*load) for load in ends] == [0, len(curve.classes) - 2, 0]
+    assert [curve.mesh_class(*load) for load in ends] == [0, len(curve.classes) - 2, 0]
     for angle in angles[:3]:
         contact = partial_contact(curve.pairs(0, solver.COARSE), curve.gap, 0.93 * angle)
         for kind in ("force", "indentation"):
-            assert curve._mesh_class(kind, getattr(contact, kind)) == curve._mesh_class("half_angle", 0.93 * angle)
+            assert curve.mesh_class(kind, getattr(contact, kind)) == curve.mesh_class("half_angle", 0.93 * angle)
 
 
 @pytest.fixture(scope="module")
@@ -303,14 +303,14 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
     assert fit == pytest.approx(widest, abs=radians(0.3))
     low = fit / 1.001 ** (count - 0.5)
     bracket = ContactBracket(pair=soft_pair, gap=GAP, low=low, high=low * 1.001**9)
-    assert len(bracket._samples) == count
+    assert len(bracket.samples) == count
     assert not bracket.lies_below("force", 1e12)
     if count == 1:
-        larger = bracket._samples[0].force * 1.001
+        larger = bracket.samples[0].force * 1.001
         assert bracket.solve("force", larger) is bracket.estimate_angle("force", larger) is None
         return
     for kind in ("force", "indentation"):
-        first, last = (getattr(bracket._samples[i], kind) for i in (0, -1))
+        first, last = (getattr(bracket.samples[i], kind) for i in (0, -1))
         for load in (first * 1.0001, (first + last) / 2, 3.0 * last):
             contact = bracket.solve(kind, load)
             assert getattr(contact, kind) == pytest.approx(load, rel=1e-8)

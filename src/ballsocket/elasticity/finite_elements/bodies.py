@@ -46,13 +46,13 @@ class CondensedBody:
         return 2 * self.contact + 1
 
     @cached_property
-    def _elimination_order(self) -> Numbers:
+    def free_unknowns(self) -> Numbers:
         """Indices of the free unknowns in the order of elimination, those of the contact last."""
         block, unknowns = self.elastic.block, self.elastic.element_unknowns
         return elimination_order(block, unknowns, self.fixed_unknowns, self.normal_unknowns)
 
     def _factorize_stiffness(self) -> Any:
-        return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
+        return factorize(self.elastic.stiffness_matrix(), self.free_unknowns)
 
     def surface_compliance(self) -> tuple[Numbers, Numbers]:
         """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
@@ -63,10 +63,14 @@ class CondensedBody:
 
     def displacements(self, forces: Numbers) -> Numbers:
         """Compute the displacements u_φ and u_r of all nodes, (nodes, 2), under normal forces on contact nodes."""
-        load = numpy.zeros(len(self._elimination_order))
+        load = numpy.zeros(len(self.free_unknowns))
         load[-len(self.contact) :] = forces
+        return self.nodal_displacements(self._factorize_stiffness().solve(load))
+
+    def nodal_displacements(self, free_displacements: Numbers) -> Numbers:
+        """Return the displacements u_φ and u_r of all nodes, (nodes, 2), from the free unknowns in order."""
         solution = numpy.zeros(len(self.fixed_unknowns))
-        solution[self._elimination_order] = self._factorize_stiffness().solve(load)
+        solution[self.free_unknowns] = free_displacements
         for column in self.elastic.block.sliding:
             number = self.elastic.block.number
             solution[2 * number[:, column + 1] + 1] = solution[2 * number[:, column] + 1]

@@ -11,13 +11,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy
 
 from ...core.arrays import Numbers
 from ...core.storage.atomic_files import make_folder, write_text
+from ...problem.hardening import Hardening
 from .deck_bodies import TYPES
+from .pair_contact import edge_beyond
 
 _NAME, _EXPECTED = "ballsocket", "expected.json"  # names of the deck, and of the file with the expected results
 _NUMBERS_PER_LINE = 16
@@ -77,10 +80,20 @@ def node_set_lines(name: str, nodes: Iterable[int]) -> Iterator[str]:
         yield ", ".join(numbers[start : start + _NUMBERS_PER_LINE])
 
 
-def material_lines(materials: Mapping[str, tuple[float, float]]) -> Iterator[str]:
-    """Yield the lines of a material, Young's modulus in MPa and Poisson's ratio, for each set of elements."""
+def material_lines(
+    materials: Mapping[str, tuple[float, float]], hardening: Mapping[str, Hardening] = MappingProxyType({})
+) -> Iterator[str]:
+    """Yield the lines of a material, Young's modulus in MPa and Poisson's ratio, for each set of elements.
+
+    `hardening` has the sets that yield.
+    """
     for name, (young, poisson) in materials.items():
         yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {poisson:.12g}")
+        if name in hardening:
+            yield "*PLASTIC"
+            curve = hardening[name]
+            pairs = zip(curve.stress, curve.plastic_strain, strict=True)
+            yield from (f"{stress:.12g}, {strain:.12g}" for stress, strain in pairs)
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
 
@@ -103,7 +116,6 @@ def step_lines(motions: Iterable[tuple[int, float]], output: Iterable[str] = ())
 SECTORS = 180  # number of sectors in a ring: CalculiX solves two degrees of an axisymmetric element
 _OUTPUT_LINES = 12  # of ccx's output in an error message
 _OPEN_GAP = 3e-3  # over the indentation
-_SKIPPED_NODES, _FITTED_NODES = 2, 5  # beyond the edge
 _INNER_FRACTION = 0.67  # of the half angle
 _SKIPPED_POLE_NODES = 10
 
@@ -189,7 +201,7 @@ def read_results(out: Path) -> CcxAnswer:
         indentation, gap = indentation_and_gap(deck, bore[step], ball[step])
         answer.indentation[step] = indentation
         answer.force[step] = -float(forces[step][0, 1]) * SECTORS / deck["scale"]
-        if deck["element"] != TYPES[1]:
+        if deck["element"] != TYPES[1] and indentation > 0:
             half_angle = edge_angle(angle, gap / indentation)
             nodal = numpy.array([pressures[step][node] for node in deck["bore"]["node"]]) / deck["scale"]
             answer.half_angle[step] = half_angle
@@ -210,6 +222,22 @@ def indentation_and_gap(deck: dict[str, Any], bore: Numbers, ball: Numbers) -> t
     return -float(equator), across * numpy.sin(angle) - up * numpy.cos(angle) + opening
 
 
+def bore_displacements(out: Path) -> dict[int, Numbers]:
+    """Read the outward displacements in mm of the bore's nodes at the end of each step (from 0), from the pole on.
+
+    After the last step of a liner that yields they are its permanent set. CalculiX's are wrong at the nodes next to the
+    pole, see `pressure_at_pole`.
+    """
+    path, expected = deck_paths(out)
+    deck = json.loads(expected.read_text(encoding="ascii"))
+    angle, outward = numpy.array(deck["bore"]["angle"]), {}
+    for step, rows in read_printed(path.with_suffix(".dat"), "BORE").items():
+        by_node = {int(row[0]): row[1:3] / deck["scale"] for row in rows}
+        across, up = numpy.array([by_node[node] for node in deck["bore"]["node"]]).T
+        outward[step] = across * numpy.sin(angle) - up * numpy.cos(angle)
+    return outward
+
+
 def edge_angle(angle: Numbers, gap: Numbers) -> float:
     """Compute the half angle in rad from gaps at angles (rad), as fractions of the indentation.
 
@@ -219,13 +247,7 @@ def edge_angle(angle: Numbers, gap: Numbers) -> float:
     nodes. Nodal pressures are smeared over two elements there: p² extrapolated was off by 1.5 degrees in the mean on
     meshes with 16 to 48 elements along the contact, where this was off by 0.03.
     """
-    last = int(numpy.flatnonzero(gap < _OPEN_GAP)[-1])
-    nodes = numpy.arange(last + 1, len(angle))
-    if len(nodes) == 0:
-        return float(angle[-1])
-    nodes = nodes[_SKIPPED_NODES if len(nodes) > _SKIPPED_NODES + 2 else 0 :][:_FITTED_NODES]
-    opening = gap[nodes] ** (2 / 3)
-    return float(numpy.polynomial.Polynomial.fit(opening, angle[nodes], min(2, len(nodes) - 1))(0.0))
+    return edge_beyond(int(numpy.flatnonzero(gap < _OPEN_GAP)[-1]), angle, gap)
 
 
 def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:

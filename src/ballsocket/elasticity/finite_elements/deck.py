@@ -18,7 +18,7 @@ large. CAX8R has no such error.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees, prod
 from textwrap import wrap
@@ -30,6 +30,7 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text, finite_or_none
 from ...problem.gaps import LinearGap, select_gap
+from ...problem.hardening import Hardening
 from ...version import __version__
 from .calculix import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
@@ -86,7 +87,8 @@ class Deck(InputDeck):
 
     `expected.json` has the joint, the scale, the element type and the expected results of the real joint under "steps":
     `indentation` in mm, `force` in N, `max_pressure` and `pole_pressure` in MPa, `half_angle_deg`; null for missing
-    values. It lists the nodes of both surfaces with their angles in rad under "bore" and "round".
+    values. A liner that yields has `permanent_set` in mm too, and one more step that unloads it. The nodes of both
+    surfaces are under "bore" and "round", with their angles in rad.
 
     Attributes
     ----------
@@ -108,11 +110,17 @@ class Deck(InputDeck):
         for number, row in enumerate(zip(*self.expected.values(), strict=True), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
         yield from mesh_lines(bodies)
-        yield from material_lines(bodies.materials)
+        yield from material_lines(bodies.materials, self._hardening)
         yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
         yield from support_lines(bodies)
         for depth in self._indentations:
             yield from step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
+
+    @property
+    def _hardening(self) -> dict[str, Hardening]:
+        """Hardening of the liner at scaled stresses and strains, if it yields."""
+        curve = self.contact.joint.liner.yield_curve
+        return {"LINER": curve.scaled(self.scale, self.scale)} if self.contact.yields and curve else {}
 
     @cached_property
     def _bodies(self) -> DeckBodies:
@@ -123,8 +131,13 @@ class Deck(InputDeck):
     @cached_property
     def expected(self) -> dict[str, Numbers]:
         """Expected results at each step (steps,) by name, with indentation in mm, force in N, pressures in MPa."""
-        contact = self.contact.model.press(self._bodies.joint, indentation=self._indentations)
-        results = {name: getattr(contact, name) for name in ("force", "max_pressure", "pole_pressure")}
+        model, joint, names = self.contact.model, self._bodies.joint, ["force", "max_pressure", "pole_pressure"]
+        if self.contact.yields:
+            names.append("permanent_set")
+            contact = model.follow(replace(joint, liner=self.contact.joint.liner), indentation=self._indentations)
+        else:
+            contact = model.press(joint, indentation=self._indentations)
+        results = {name: getattr(contact, name) for name in names}
         return {"indentation": self._indentations, **results, "half_angle_deg": numpy.degrees(contact.half_angle)}
 
     @property
@@ -135,11 +148,15 @@ class Deck(InputDeck):
         so the overlap is at most a 2000th of the indentation. The force error is about twice that; 0.05 % was measured.
         A ten times larger slope has a ten times smaller error, but larger oscillations of the nodal pressures.
         """
-        return _PENALTY_FACTOR * float(numpy.nanmax(self.expected["max_pressure"] / self.expected["indentation"]))
+        pressed = self._indentations > 0
+        pressure, indentation = (self.expected[name][pressed] for name in ("max_pressure", "indentation"))
+        return _PENALTY_FACTOR * float(numpy.nanmax(pressure / indentation))
 
     @property
     def _indentations(self) -> Numbers:
-        return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
+        """Indentation in mm of each step; a liner that yields is unloaded in one more."""
+        depths = float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
+        return numpy.append(depths, 0.0) if self.contact.yields else depths
 
     def expected_record(self) -> dict[str, Any]:
         """Return the expected results for JSON; see the class."""
@@ -166,6 +183,8 @@ class Deck(InputDeck):
             f"Clearance and indentation are multiplied by {self.scale:g}, for the limit of small displacements: "
             "divide forces, pressures and displacements by it. CalculiX prints a 180th of the force."
         )
+        if self.contact.yields:
+            yield "The liner yields, at stresses and strains that are multiplied likewise. The last step unloads it."
         if self._bodies.joint.ball is not None:
             yield "The ball's modulus is multiplied by R2 over its radius, for the compliance of a ball of radius R2."
         yield "Contact is without friction; its penalty reduces the force by less than 0.1 %."

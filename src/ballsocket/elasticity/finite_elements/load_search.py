@@ -48,37 +48,37 @@ class ContactBracket:
         return samples, False
 
     @property
-    def _samples(self) -> list[PartialContact]:
+    def samples(self) -> list[PartialContact]:
         return self._samples_and_fit[0]
 
     @cached_property
     def _interpolators(self) -> dict[str, PchipInterpolator]:
         """Interpolating functions from ln(load) to ln ε, by the kind of load."""
-        angles = numpy.log([contact.half_angle for contact in self._samples])
-        loads = {kind: [getattr(contact, kind) for contact in self._samples] for kind in ("force", "indentation")}
+        angles = numpy.log([contact.half_angle for contact in self.samples])
+        loads = {kind: [getattr(contact, kind) for contact in self.samples] for kind in ("force", "indentation")}
         return {kind: PchipInterpolator(numpy.log(values), angles) for kind, values in loads.items()}
 
     def lies_below(self, kind: str, load: float) -> bool:
         """Return True if the load exceeds that of the widest contact and no sample is missing."""
-        return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
+        return len(self.samples) == _SAMPLES and bool(getattr(self.samples[-1], kind) < load)
 
     def estimate_angle(self, kind: str, load: float) -> float | None:
         """Estimate the half angle in rad under a load; None for a load outside the range."""
-        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
+        if len(self.samples) < 2 or load < getattr(self.samples[0], kind) or self.lies_below(kind, load):
             return None
-        if load > getattr(self._samples[-1], kind):  # the perfect fit lies before the next sample
-            return self._samples[-1].half_angle * (self.high / self.low) ** (0.5 / (_SAMPLES - 1))
+        if load > getattr(self.samples[-1], kind):  # the perfect fit lies before the next sample
+            return self.samples[-1].half_angle * (self.high / self.low) ** (0.5 / (_SAMPLES - 1))
         return float(numpy.exp(self._interpolators[kind](numpy.log(load))))
 
     def solve(self, kind: str, load: float) -> PartialContact | None:
         """Solve the contact under a "force" or "indentation"; None for a load outside the range."""
-        if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
+        if len(self.samples) < 2 or load < getattr(self.samples[0], kind) or self.lies_below(kind, load):
             return None
-        above = sum(getattr(sample, kind) <= load for sample in self._samples)
-        if above == len(self._samples):
+        above = sum(getattr(sample, kind) <= load for sample in self.samples)
+        if above == len(self.samples):
             _, fits = self._samples_and_fit  # the load is infinite at the perfect fit
-            return self._solve_by_brent(kind, load, self._samples[-1].half_angle, self.high) if fits else None
-        low, high = (self._samples[number].half_angle for number in (above - 1, above))
+            return self._solve_by_brent(kind, load, self.samples[-1].half_angle, self.high) if fits else None
+        low, high = (self.samples[number].half_angle for number in (above - 1, above))
         return self._solve_by_secant(kind, load) or self._solve_by_brent(kind, load, low, high)
 
     def _solve_by_secant(self, kind: str, load: float) -> PartialContact | None:

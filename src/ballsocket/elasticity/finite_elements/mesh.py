@@ -7,7 +7,7 @@ the liner's Young's modulus.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from math import inf, pi
@@ -147,6 +147,16 @@ class Resolution:
     deepest: float  # longest element across a layer, as a fraction of its thickness
     order: int  # 1 is bilinear, 2 biquadratic
     halvings: int = 0  # number of times that every element is divided in four
+
+    def halved(self) -> Resolution:
+        """Return elements of half the length."""
+        return replace(self, halvings=self.halvings + 1)
+
+    def doubled(self) -> Resolution:
+        """Return elements of twice the length."""
+        return replace(
+            self, size=2 * self.size, growth=self.growth**2, widest=2 * self.widest, deepest=min(2 * self.deepest, 0.5)
+        )
 
     def refine(self, corners: Numbers) -> Numbers:
         """Halve the intervals between corners as many times as `halvings`."""

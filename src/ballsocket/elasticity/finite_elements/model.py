@@ -12,21 +12,22 @@ import numpy
 from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
 from ...contact.law import ForceLaw
-from ...contact.per_joint import JointContacts, SolvedContact, joint_at, solve_per_joint
+from ...contact.per_joint import JointContacts, Solve, SolvedContact, joint_at, solve_per_joint
 from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
 from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
 from ...core.sources import Source
 from ...core.stress import Peak
-from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Status, body_remarks, largest_poisson
-from ...problem import Joint
+from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, Status, body_remarks, largest_poisson
+from ...problem import Joint, Material
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
 if TYPE_CHECKING:
     from .load_search import Solved
+    from .plastic_curve import PlasticLoadCurve
     from .section import Section
 
 
@@ -60,16 +61,50 @@ class MeshedContact(SolvedContact):
     @property
     def quick_von_mises(self) -> Bounded:
         """Largest von Mises stress in the liner in MPa with its bounds; solved for near a rim or on a soft backing."""
+        if self.model.plastic:
+            return exact_number(self.von_mises).scaled(1.0, self.stress_error or 0.0)
         stress = super().quick_von_mises
         is_known = self.model.cup == Cup() and arrays.all_true(arrays.isfinite(stress.high) | self._failed)
         return stress if is_known else exact_number(self.von_mises).scaled(1.0, self.stress_error or 0.0)
 
     def _joint_von_mises(self, index: Numbers, contacts: JointContacts) -> Numbers:
+        if self.model.plastic:
+            return contacts.state.von_mises
         from .section import section
 
         joint, cup = joint_at(self.joint, self.laws.shape, int(index[0])), self.model.cup
         sections = (None if contact is None else section(joint, cup, contact) for contact in contacts.state.solved)
         return numpy.array([nan if part is None else part.peak_stress.von_mises for part in sections], dtype=float)
+
+    @property
+    def yields(self) -> bool:
+        """True if the liner may yield."""
+        return bool(self.model.plastic)
+
+    def _plastic_quantity(self, name: str) -> Array:
+        if not self.model.plastic:
+            return 0.0 * self.indentation
+        return self._match_load(self.laws.combine(lambda contacts: getattr(contacts.state, name)))
+
+    @property
+    def permanent_set(self) -> Array:
+        """Largest outward displacement of the bore in mm that remains after the load is removed; 0 without yielding."""
+        return self._plastic_quantity("permanent_set")
+
+    @property
+    def plastic_strain(self) -> Array:
+        """Largest equivalent plastic strain in the liner."""
+        return self._plastic_quantity("plastic_strain")
+
+    @property
+    def plastic_fraction(self) -> Array:
+        """Fraction of the liner's volume that has yielded."""
+        return self._plastic_quantity("plastic_fraction")
+
+    @property
+    def plastic_work(self) -> Array:
+        """Work in N mm that yielding has dissipated since the first load."""
+        return self._plastic_quantity("plastic_work")
 
     @property
     def peak_stress(self) -> Peak:
@@ -108,6 +143,30 @@ class MeshedContact(SolvedContact):
 _BODY_REMARKS = body_remarks("cut off at the plane of the socket's rim", "half a one on its equator")
 
 
+_SMALL_PLASTIC_STRAIN = Range(
+    quantity="plastic_strain",
+    symbol="plastic strain",
+    high=0.05,
+    why="the elements have small strains",
+)
+
+
+def _hardening_modulus_ratio(contact: Any) -> Array:
+    """Compute the ratio of the liner's modulus to that of its hardening; 1 if this is not known."""
+    liner = contact.joint.liner
+    measured = None if liner.hardening is None else liner.hardening.young
+    return liner.young / measured if measured else 1.0 + 0.0 * liner.young
+
+
+_OTHER_MODULUS = Remark(
+    quantity=_hardening_modulus_ratio,
+    low=0.95,
+    high=1.05,
+    why="the liner's Young's modulus is not that of its hardening curve: its strains under a stress differ from the "
+    "measured ones",
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class FiniteElement(Model):
     """Contact by axisymmetric finite elements, with a rim, a sliding liner or a compliant shell.
@@ -131,11 +190,15 @@ class FiniteElement(Model):
     gap : type, optional
         `LinearGap` (Eq. 6 of Heß & Forsbach 2021) or `CircularGap` (Eq. 5). By default it is linear up to c/R2 0.01,
         and circular beyond.
+    plastic : bool
+        True lets the liner yield by the `hardening` of its material, or perfectly plastic at its yield stress. `press`
+        then loads a new socket by each force or indentation, and `follow` one socket by all of them in turn.
 
     Raises
     ------
     ValueError
-        A number outside its range; at a press, a joint that cannot be meshed, or a mesh larger than the memory.
+        A number outside its range; at a press, a joint that cannot be meshed, a mesh larger than the memory, or a
+        yielding liner without hardening and yield stress.
     TypeError
         A cup, spacing, element or gap of another type; a press inside `jax.jit` or `jax.grad`.
     ImportError
@@ -152,6 +215,7 @@ class FiniteElement(Model):
     element: Element = Element.BIQUADRATIC
     meshes: int = 2
     gap: GapKind | None = None
+    plastic: bool = False
 
     def __post_init__(self) -> None:
         kinds = {"cup": (Cup,), "spacing": SPACINGS, "ball_spacing": (*SPACINGS, type(None)), "element": (Element,)}
@@ -171,7 +235,7 @@ class FiniteElement(Model):
     @property
     def title(self) -> str:
         """Description of the model in one line."""
-        return f"axisymmetric finite elements, {self.element.name.lower()}"
+        return f"axisymmetric finite elements, {self.element.name.lower()}{', yielding liner' if self.plastic else ''}"
 
     sources: ClassVar[tuple[Source, ...]] = (Source("hess2021", "section 2.3"),)
 
@@ -192,18 +256,18 @@ class FiniteElement(Model):
     )
     reach: ClassVar[str] = (
         "half angles up to half the arc of cover, at most 88°, or less if the ball fills its socket first or "
-        "leaves the pole; the contact must be wider than a few elements"
+        "leaves the pole; the contact must be wider than a few elements, and a yielding liner must not collapse"
     )
 
     @property
     def validity(self) -> tuple[Range, ...]:
         """Validity ranges; a circular gap needs no close fit."""
-        return (*gap_validity(self.gap), SMALL_STRAIN)
+        return (*gap_validity(self.gap), SMALL_STRAIN, *([_SMALL_PLASTIC_STRAIN] if self.plastic else []))
 
     @property
     def remarks(self) -> tuple[Range, ...]:
-        """Remarks on the gap, on the shape of an infinite layer, and on a soft ball."""
-        return (*gap_remarks(self.gap), *_BODY_REMARKS)
+        """Remarks on the gap, the shape of an infinite layer, a soft ball, and the modulus of the hardening."""
+        return (*gap_remarks(self.gap), *_BODY_REMARKS, *([_OTHER_MODULUS] if self.plastic else []))
 
     def _law(self, joint: Joint) -> ForceLaw:
         """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
@@ -217,16 +281,37 @@ class FiniteElement(Model):
             raise OutsideDomainError(f"fem solves axial loads only, and this one is {angle}: use sphere")
         return replace(self, cup=cup)
 
+    def follow(self, joint: Joint, **loads: Any) -> MeshedContact:
+        """Compute the contacts of one joint under loads that follow one another, such as repeated or removed loads.
+
+        The first load presses a new socket, and each later one the socket as the previous load left it.
+
+        Parameters
+        ----------
+        joint : Joint
+            Joint of plain numbers.
+        **loads
+            `force` in N or `indentation` in mm, an array (loads,), zero or more.
+
+        Returns
+        -------
+        MeshedContact
+            Contact of the shape of the loads. Without force its indentation is where the ball touches again.
+
+        Raises
+        ------
+        ValueError
+            As of `press`; a liner that cannot yield.
+        """
+        if not self.plastic:
+            raise ValueError("the contact does not depend on earlier loads without plastic=True: use press")
+        follower = _LoadPath(**vars(self))
+        contact: MeshedContact = follower.press(joint, **loads)  # type: ignore[assignment]
+        return contact
+
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
-        from .solver import load_curve_of  # slow to import
-
-        spacings = self.spacing, self.ball_spacing or self.spacing
-
-        def solve(plain_joint: Joint, loads: Numbers) -> JointContacts:
-            gap: Any = select_gap(self.gap, plain_joint)
-            curve = load_curve_of(plain_joint, self.cup, spacings, self.element.value, self.meshes, gap)
-            return curve.press(kind, loads)
+        solve = self._plastic_solver(joint.liner, kind) if self.plastic else self._elastic_solver(kind)
 
         solution = solve_per_joint(self, joint, load, solve)
         return SolverResult(
@@ -238,3 +323,44 @@ class FiniteElement(Model):
                 Status.NOT_ROUND: solution.combine(lambda piece: piece.state.not_round) == 1,
             },
         )
+
+    @property
+    def _spacings(self) -> tuple[Spacing, Spacing]:
+        return self.spacing, self.ball_spacing or self.spacing
+
+    def _elastic_solver(self, kind: str) -> Solve:
+        from .solver import load_curve_of  # slow to import
+
+        def solve(joint: Joint, loads: Numbers) -> JointContacts:
+            gap: Any = select_gap(self.gap, joint)
+            return load_curve_of(joint, self.cup, self._spacings, self.element.value, self.meshes, gap).press(
+                kind, loads
+            )
+
+        return solve
+
+    def _plastic_solver(self, liner: Material, kind: str) -> Solve:
+        from .plastic_curve import plastic_curve_of  # slow to import
+
+        hardening = liner.yield_curve
+        if hardening is None:
+            raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
+        if kind == "half_angle":
+            raise ValueError("a yielding liner is pressed by force or indentation, not by half_angle")
+
+        def solve(joint: Joint, loads: Numbers) -> JointContacts:
+            gap: Any = select_gap(self.gap, joint)
+            curve = plastic_curve_of(joint, self.cup, self._spacings, self.element.value, self.meshes, gap, hardening)
+            return self._plastic_contacts(curve, kind, loads)
+
+        return solve
+
+    def _plastic_contacts(self, curve: PlasticLoadCurve, kind: str, loads: Numbers) -> JointContacts:
+        return curve.press(kind, loads)
+
+
+class _LoadPath(FiniteElement):
+    """Finite elements whose liner keeps the plastic strain of the previous loads of an array."""
+
+    def _plastic_contacts(self, curve: PlasticLoadCurve, kind: str, loads: Numbers) -> JointContacts:
+        return curve.follow(kind, loads)

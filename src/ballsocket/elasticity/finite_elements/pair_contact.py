@@ -23,6 +23,7 @@ from .bodies import SurfacePair
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(6))
 _INDENTATION_TOLERANCE = 1e-13  # relative
+_SKIPPED_NODES, _FITTED_NODES = 2, 5  # beyond an edge, which is extrapolated from them
 _POLE_FRACTION = 0.35  # fraction of the contact whose pressures determine the one at the pole, by an even polynomial
 
 
@@ -229,6 +230,16 @@ class PartialContact(PairContact):
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.nodal_pressures[1:]))
         t = numpy.sqrt(numpy.clip((self.half_angle - angle) / (self.half_angle - nodes[-1]), 0.0, 1.0))
         return numpy.where(angle <= nodes[-1], inside, self.pressures[-2] * t + self.pressures[-1] * (t - t**3))
+
+
+def edge_beyond(last: int, angle: Numbers, gap: Numbers) -> float:
+    """Compute the half angle in rad from the gaps at the angles after the `last` closed one; see `edge_angle`."""
+    nodes = numpy.arange(last + 1, len(angle))
+    if len(nodes) == 0:
+        return float(angle[-1])
+    nodes = nodes[_SKIPPED_NODES if len(nodes) > _SKIPPED_NODES + 2 else 0 :][:_FITTED_NODES]
+    opening = gap[nodes] ** (2 / 3)
+    return float(numpy.polynomial.Polynomial.fit(opening, angle[nodes], min(2, len(nodes) - 1))(0.0))
 
 
 def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:

@@ -16,9 +16,11 @@ from ...core.stress import Peak, Stress
 from ...problem import Joint, Material
 from ...problem.cup import Cup
 from .bodies import CondensedBody, ball_body, socket_body
-from .elasticity import ElasticBlock, shape_functions
+from .elasticity import ElasticBlock, element_quadrature, shape_functions
 from .load_search import Solved
 from .mesh import socket_shape
+from .plastic_contact import PlasticContact
+from .plasticity import PlasticStrain
 
 _CORNER_RADIUS = 0.25  # of the liner's thickness, or of the socket's radius if that is smaller
 
@@ -42,6 +44,8 @@ class Part:
         Displacement in mm, in the directions of `position`.
     stress : Stress
         Stress at the nodes, averaged over the part's elements around each.
+    plastic_strain : array (nodes,)
+        Equivalent plastic strain at the nodes, averaged likewise.
     """
 
     name: str
@@ -51,6 +55,7 @@ class Part:
     elements: Numbers
     displacement: Numbers
     stress: Stress
+    plastic_strain: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,36 +105,46 @@ class Section:
         return float(across), float(up)
 
 
-def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
+def section(joint: Joint, cup: Cup, solved: Solved | PlasticContact) -> Section:
     """Compute displacements and stresses of one solved contact of a joint of plain numbers."""
     pair, R2 = solved.pair, float(joint.socket_radius)
     names = ("liner", *(f"backing {number}" for number in range(1, len(joint.backing) + 1)))
     socket = socket_body(socket_shape(joint, cup), pair.resolution)
-    parts = list(_make_parts(socket, names, joint.liner, solved.forces(0), R2, R2))
+    if isinstance(solved, PlasticContact):
+        displaced, plastic = socket.nodal_displacements(solved.displacement), solved.plastic
+    else:
+        displaced, plastic = _unit_displacements(socket, joint.liner, solved.forces(0), R2), None
+    parts = list(_make_parts(socket, names, joint.liner, displaced, R2, R2, plastic))
     if joint.ball is not None:
         ball = ball_body(float(joint.ball.poisson), pair.ball_resolution)
+        pressed = _unit_displacements(ball, joint.ball, -solved.forces(1), R2)
         # placed at first touch, and pushed down
         lowered, descent = (numpy.array([[0.0], [float(drop)]]) for drop in (joint.clearance, solved.indentation))
-        for part in _make_parts(ball, ("ball",), joint.ball, -solved.forces(1), R2, float(joint.ball_radius)):
+        for part in _make_parts(ball, ("ball",), joint.ball, pressed, R2, float(joint.ball_radius)):
             parts.append(replace(part, position=part.position - lowered, displacement=part.displacement - descent))
     return Section(parts=tuple(parts), socket_radius=R2)
+
+
+def _unit_displacements(body: CondensedBody, material: Material, forces: Numbers, loaded_radius: float) -> Numbers:
+    """Compute the displacements (nodes, 2) of a body of unit size under forces in N on its surface."""
+    return body.displacements(forces / (float(material.young) * loaded_radius**2))
 
 
 def _make_parts(
     body: CondensedBody,
     names: tuple[str, ...],
     material: Material,
-    forces: Numbers,
+    unit_displacements: Numbers,
     loaded_radius: float,
     radius: float,
+    plastic: PlasticStrain | None = None,
 ) -> Iterator[Part]:
     """Yield the parts of a body of unit size, one for each layer from the inside out.
 
-    Its surface is loaded by forces in N on its nodes, on a sphere of the radius `loaded_radius` in mm. Young's modulus
-    is that of the material, and `radius` in mm scales the positions.
+    Its displacements (nodes, 2) are in units of `loaded_radius` in mm. Young's modulus is that of the material, and
+    `radius` in mm scales the positions. The first part may have plastic strains.
     """
     young, block = float(material.young), body.elastic.block
-    unit_displacements = body.displacements(forces / (young * loaded_radius**2))
     phi = numpy.repeat(block.angle, block.radius.shape[1])
     u_phi, u_r = loaded_radius * unit_displacements.T
     sine, cosine = numpy.sin(phi), numpy.cos(phi)
@@ -139,12 +154,18 @@ def _make_parts(
         elements = block.elements[:, block.layers == layer]
         nodes, local_nodes = numpy.unique(elements, return_inverse=True)
         local_nodes = local_nodes.reshape(elements.shape)
+        yielding = plastic if layer == 0 else None
+        stresses = young * _element_stresses(body.elastic, layer, unit_displacements.ravel(), yielding)
+        plastic_strain = numpy.zeros((1, *stresses.shape[1:]))
+        if yielding is not None:
+            extrapolation = _superconvergent_points(block.order)[1]
+            plastic_strain[0] = numpy.maximum(_inner_values(yielding.equivalent, block.order) @ extrapolation, 0.0)
         # mean over the elements around each node
-        total, count = numpy.zeros((4, len(nodes))), numpy.zeros(len(nodes))
-        numpy.add.at(count, local_nodes.T, 1.0)
-        for sums, values in zip(total, _element_stresses(body.elastic, layer, unit_displacements.ravel()), strict=True):
-            numpy.add.at(sums, local_nodes.T, values)
-        radial, meridional, hoop, shear = young * total / count
+        count = numpy.bincount(local_nodes.ravel())
+        radial, meridional, hoop, shear, equivalent = (
+            numpy.bincount(local_nodes.T.ravel(), weights=values.ravel()) / count
+            for values in (*stresses, *plastic_strain)
+        )
         yield Part(
             name=name,
             angle=phi[nodes],
@@ -153,10 +174,13 @@ def _make_parts(
             elements=local_nodes,
             displacement=displacement[:, nodes],
             stress=Stress(radial=radial, meridional=meridional, hoop=hoop, shear=shear),
+            plastic_strain=equivalent,
         )
 
 
-def _element_stresses(elastic: ElasticBlock, layer: int, displacements: Numbers) -> Numbers:
+def _element_stresses(
+    elastic: ElasticBlock, layer: int, displacements: Numbers, plastic: PlasticStrain | None
+) -> Numbers:
     """Compute stress components (4, elements, nodes) of a layer as fractions of Young's modulus.
 
     The unknowns of the body are `displacements`. The stresses are evaluated at the superconvergent points: the 1 or 2
@@ -173,6 +197,8 @@ def _element_stresses(elastic: ElasticBlock, layer: int, displacements: Numbers)
         strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
         swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
         mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
+        if plastic is not None:
+            strain -= numpy.moveaxis(_inner_values(plastic.components[chunk], block.order), -1, 0)
         rho, z, hoop = (2 * shear * strain[i] + mean for i in (0, 1, 3))
         rho_z = shear * strain[2]
         # spherical directions at the polar angle of each point
@@ -183,6 +209,15 @@ def _element_stresses(elastic: ElasticBlock, layer: int, displacements: Numbers)
         tilted = sine * cosine * (rho - z) + (cosine**2 - sine**2) * rho_z
         stresses[:, chunk] = numpy.stack([radial, meridional, hoop, tilted]) @ extrapolation
     return stresses
+
+
+def _inner_values(values: Numbers, order: int) -> Numbers:
+    """Convert values (elements, points, ...) at quadrature points to the superconvergent ones, by a bilinear fit."""
+    inner, outer = (
+        numpy.stack([numpy.ones_like(points[0]), *points, points[0] * points[1]], axis=-1)
+        for points in (_superconvergent_points(order)[0], element_quadrature(order)[0])
+    )
+    return numpy.moveaxis(numpy.tensordot(inner @ numpy.linalg.pinv(outer), values, (1, 1)), 0, 1)
 
 
 def _superconvergent_points(order: int) -> tuple[Numbers, Numbers]:
@@ -211,8 +246,8 @@ def write_vtk(section: Section, path: Path) -> None:
     """Write meshes, displacements (mm) and stresses (MPa) of a section to a VTK file.
 
     x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data are
-    `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
-    data are `part`, 0 for the first. The file is written atomically: an interrupted write leaves none.
+    `displacement`, `plastic_strain`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical
+    directions. Cell data are `part`, 0 for the first. The file is written atomically: an interrupted write leaves none.
 
     Parameters
     ----------
@@ -239,7 +274,7 @@ def write_vtk(section: Section, path: Path) -> None:
         numpy.column_stack([*numpy.concatenate(vectors, axis=1), no_depth])
         for vectors in ([part.position for part in parts], [part.displacement for part in parts])
     )
-    data = {"displacement": moved}
+    data = {"displacement": moved, "plastic_strain": numpy.concatenate([part.plastic_strain for part in parts])}
     for name in ("von_mises", "radial", "meridional", "hoop", "shear"):
         data[name] = numpy.concatenate([getattr(part.stress, name) for part in parts]).ravel()
     pairs = zip(parts, first[:-1], strict=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from math import inf, pi, radians
 from operator import attrgetter
+from typing import Any
 
 import numpy
 
@@ -24,7 +25,7 @@ from .pair_contact import FullContact, partial_contact
 from .progress import report_progress
 from .spacing import Spacing, Uniform, check_memory, mesh_size
 
-FINE, COARSE = 0, 1  # indices of the two meshes
+FINE, COARSE, COARSEST = 0, 1, 2  # indices of the meshes; the last is for the errors of yielding liners
 _STRIDE = 4  # number of classes whose contacts one coarse mesh resolves
 _CLASS_MARGIN = 1.12  # factor by which the half angle may differ from its class on another mesh
 
@@ -46,7 +47,7 @@ class MeshedLoadCurve:
         """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
         touching = load > 0
         loads = load[touching].tolist()
-        numbers = [self._mesh_class(kind, value) for value in loads]
+        numbers = [self.mesh_class(kind, value) for value in loads]
         pairs = list(zip(loads, numbers, strict=True))
         fine, *coarse = (
             MeshedStates(solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in pairs))
@@ -58,13 +59,13 @@ class MeshedLoadCurve:
             error = estimate_errors(kind, fine, coarse[0], self.order)
         return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
 
-    def _mesh_class(self, kind: str, load: float) -> int:
+    def mesh_class(self, kind: str, load: float) -> int:
         """Return the mesh class of a load, from its half angle estimated on the coarse mesh of a nearby class."""
         last = len(self.classes) - 2
         if kind == "half_angle":
             return min(sum(load <= edge for edge in self.classes[1:]), last)
         for start in range(0, last, _STRIDE):
-            bracket = self._contact_bracket(start, COARSE)
+            bracket = self.contact_bracket(start, COARSE)
             angle = bracket.estimate_angle(kind, load)
             if angle is not None:
                 return min(sum(angle <= edge for edge in self.classes[1:]), last)
@@ -72,7 +73,7 @@ class MeshedLoadCurve:
                 return start
         return last
 
-    def _contact_bracket(self, number: int, mesh: int) -> ContactBracket:
+    def contact_bracket(self, number: int, mesh: int) -> ContactBracket:
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
@@ -82,7 +83,7 @@ class MeshedLoadCurve:
 
     def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
         """Solve one contact on the mesh of a class; None for a load outside the range of the class."""
-        bracket = self._contact_bracket(number, mesh)
+        bracket = self.contact_bracket(number, mesh)
         if kind == "half_angle":
             if not self.classes[-1] / _CLASS_MARGIN <= load <= bracket.high:
                 return None
@@ -129,7 +130,7 @@ class MeshedStates(PeakPressure):
             raise AttributeError(name)
         return self._evaluate_contacts(_LAWS.get(name, attrgetter(name)))
 
-    def _evaluate_contacts(self, law: Callable[[Solved], float]) -> Numbers:
+    def _evaluate_contacts(self, law: Callable[[Any], float]) -> Numbers:
         """Evaluate a function of each contact; NaN for missing contacts."""
         return numpy.array([numpy.nan if contact is None else law(contact) for contact in self.solved])
 
@@ -213,7 +214,8 @@ def load_curve_of(
     def make_pair(class_index: int, mesh: int) -> SurfacePair:
         limit, thickness = class_limits[class_index], float(joint.liner_thickness)
         coarse = (spacing.coarse(limit, radius, thickness, order) for spacing in spacings)
-        socket, ball = (part if mesh == COARSE else replace(part, halvings=1) for part in coarse)
+        change = {FINE: Resolution.halved, COARSEST: Resolution.doubled}.get(mesh)
+        socket, ball = coarse if change is None else map(change, coarse)
         return _make_surface_pair(cup, joint, socket, ball, min(_REACH_FACTOR * limit, widest))
 
     gap = kind(clearance=float(joint.clearance), socket_radius=radius)

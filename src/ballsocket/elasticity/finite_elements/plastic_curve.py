@@ -1,0 +1,169 @@
+"""Contacts of one joint whose liner yields: each load from the virgin socket, or one load after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from operator import attrgetter
+from typing import Any
+
+import numpy
+
+from ...contact.per_joint import QUANTITIES, JointContacts
+from ...core.arrays import Numbers
+from ...problem import Joint
+from ...problem.cup import Cup
+from ...problem.hardening import Hardening
+from .bodies import socket_body
+from .mesh import socket_shape
+from .plastic_body import PlasticBody
+from .plastic_contact import PlasticContact, PlasticPath
+from .solver import COARSE, COARSEST, MeshedLoadCurve, MeshedStates, estimate_errors, load_curve_of
+from .spacing import Spacing
+
+_CONVERGENCE_ORDER = 2  # of force and displacement, measured
+_RUNGS, _GROWTH = 8, 1.25  # increments up to the widest elastic contact of a mesh; ratio of the loads beyond
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlasticContacts(MeshedStates):
+    """Contacts with a yielding liner; each quantity has one number per contact, NaN for a missing contact (None)."""
+
+    solved: tuple[PlasticContact | None, ...]  # type: ignore[assignment]
+
+    def __getattr__(self, name: str) -> Numbers:
+        if name not in (*QUANTITIES, *PLASTIC, "von_mises"):
+            raise AttributeError(name)
+        return self._evaluate_contacts(attrgetter(name))
+
+    @property
+    def at_rim(self) -> Numbers:
+        """Flag of each contact: 1 if it fills the socket, else 0."""
+        return self._evaluate_contacts(lambda contact: float(contact.fills_bore))
+
+    @property
+    def not_round(self) -> Numbers:
+        """Flag of each contact: 0, since the active set has neither tension nor overlap."""
+        return self._evaluate_contacts(lambda contact: 0.0)
+
+    @property
+    def edge_element(self) -> Numbers:
+        """Length of the elements at the edge of each contact, as a fraction of its half angle; 0 without contact."""
+        return self._evaluate_contacts(lambda contact: contact.edge_element / (contact.half_angle or numpy.inf))
+
+
+PLASTIC = ("permanent_set", "plastic_strain", "plastic_fraction", "plastic_work")
+"""Quantities of a contact whose liner yields."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlasticLoadCurve:
+    """Contacts of a joint of plain numbers whose liner yields.
+
+    The meshes are those of the elastic contacts, coarser by one halving: plastic strains gain nothing from finer ones.
+    """
+
+    elastic: MeshedLoadCurve
+    joint: Joint
+    cup: Cup
+    hardening: Hardening
+    _paths: dict[tuple[int, int], PlasticPath] = field(default_factory=dict, init=False, repr=False)
+    _ladders: dict[tuple[str, int, int], list[PlasticContact]] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def _meshes(self) -> tuple[int, ...]:
+        return (COARSE, COARSEST)[: self.elastic.meshes]
+
+    def press(self, kind: str, load: Numbers) -> JointContacts:
+        """Solve contacts, each loaded from the virgin socket by a "force" or "indentation"."""
+        touching = load > 0
+        loads = load[touching].tolist()
+        meshed = [[self._press_on_mesh(kind, value, mesh) for value in loads] for mesh in self._meshes]
+        return self._contacts(kind, load, touching, meshed)
+
+    def follow(self, kind: str, load: Numbers) -> JointContacts:
+        """Solve contacts under loads that follow one another; the first one loads the virgin socket."""
+        meshed = [self._follow_on_mesh(kind, load.tolist(), mesh) for mesh in self._meshes]
+        return self._contacts(kind, load, numpy.ones(len(load), dtype=bool), meshed)
+
+    def _contacts(
+        self, kind: str, load: Numbers, touching: Numbers, meshed: list[list[PlasticContact | None]]
+    ) -> JointContacts:
+        fine, *coarse = (PlasticContacts(solved=tuple(contacts)) for contacts in meshed)
+        error = dict.fromkeys(QUANTITIES, numpy.full(len(meshed[0]), numpy.nan))
+        if coarse:
+            with numpy.errstate(invalid="ignore", divide="ignore"):
+                error = estimate_errors(kind, fine, coarse[0], _CONVERGENCE_ORDER)
+        reached = numpy.isfinite(fine.indentation)
+        return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
+
+    def _path(self, number: int, mesh: int) -> PlasticPath:
+        """Make the path on the mesh of a class."""
+        if (number, mesh) not in self._paths:
+            pair, young = self.elastic.pairs(number, mesh), float(self.joint.liner.young)
+            body = socket_body(socket_shape(self.joint, self.cup), pair.resolution)
+            plastic = PlasticBody(body=body, hardening=self.hardening.scaled(1 / young))
+            self._paths[number, mesh] = PlasticPath(body=plastic, pair=pair, gap=self.elastic.gap, young=young)
+        return self._paths[number, mesh]
+
+    def _rung(self, kind: str, number: int, index: int) -> float:
+        """Return a load of the ladder of a class, from 0 to that of its widest elastic contact and beyond."""
+        widest = float(getattr(self.elastic.contact_bracket(number, COARSE).samples[-1], kind))
+        return widest * (index / _RUNGS if index <= _RUNGS else _GROWTH ** (index - _RUNGS))
+
+    def _press_on_mesh(self, kind: str, load: float, mesh: int) -> PlasticContact | None:
+        """Solve a load in increments that do not depend on the other loads, on a mesh that is wide enough."""
+        for number in range(self.elastic.mesh_class(kind, load), -1, -1):
+            ladder = self._ladders.setdefault((kind, number, mesh), [self._path(number, mesh).start])
+            contact: PlasticContact | None = ladder[-1]
+            while contact is not None and self._rung(kind, number, len(ladder)) < load and self._fits(contact, number):
+                contact = self._path(number, mesh).approach(kind, self._rung(kind, number, len(ladder)), contact)
+                ladder += [] if contact is None else [contact]
+            below = sum(self._rung(kind, number, index) < load for index in range(1, len(ladder)))
+            contact = self._path(number, mesh).approach(kind, load, ladder[below])
+            if contact is None or self._fits(contact, number):
+                return contact
+        return None
+
+    def _follow_on_mesh(self, kind: str, loads: list[float], mesh: int) -> list[PlasticContact | None]:
+        """Solve a path of loads on the mesh of its largest load, or a wider one where the contact needs it."""
+        contacts: list[PlasticContact | None] = []
+        for number in range(self.elastic.mesh_class(kind, max(loads)), -1, -1):
+            contacts = self._follow_in_class(kind, loads, number, mesh)
+            if all(contact is None or self._fits(contact, number) for contact in contacts):
+                break
+        return contacts
+
+    def _follow_in_class(self, kind: str, loads: list[float], number: int, mesh: int) -> list[PlasticContact | None]:
+        path = self._path(number, mesh)
+        contact: PlasticContact | None = path.start
+        contacts = []
+        for load in loads:
+            start = 0.0 if contact is None else float(getattr(contact, kind))
+            count = int(numpy.ceil(abs(load - start) / self._rung(kind, number, 1))) or 1
+            for target in numpy.linspace(start, load, min(count, _RUNGS) + 1)[1:].tolist():
+                contact = None if contact is None else path.approach(kind, target, contact)
+            contacts.append(contact)
+        return contacts
+
+    def _fits(self, contact: PlasticContact, number: int) -> bool:
+        """Return True unless the contact reaches the end of its pressure nodes inside the bore."""
+        return number == 0 or not contact.pressures[-4:].any()
+
+
+@lru_cache(maxsize=16)
+def plastic_curve_of(
+    joint: Joint,
+    cup: Cup,
+    spacings: tuple[Spacing, Spacing],
+    order: int,
+    meshes: int,
+    kind: Any,
+    hardening: Hardening,
+) -> PlasticLoadCurve:
+    """Return the curve of a joint of plain numbers whose liner yields; see `solver.load_curve_of`.
+
+    `kind` is the class of the gap.
+    """
+    elastic = load_curve_of(joint, cup, spacings, order, meshes, kind)
+    return PlasticLoadCurve(elastic=elastic, joint=joint, cup=cup, hardening=hardening)
