@@ -222,7 +222,6 @@ def _built(group: Any, annotation: Any, options: dict[str, Any]) -> Any:
 
 
 def _group_options(group: Any, annotation: Any) -> Iterator[Parameter]:
-    """Return the options of a group as single parameters."""
     if group is JointOptions:
         yield from (_parameter(entry, entry.help, None) for entry in inputs_in(annotation))
     elif issubclass(group, FileTable):
@@ -236,8 +235,6 @@ def _group_options(group: Any, annotation: Any) -> Iterator[Parameter]:
 
 
 def _parameter(entry: Input, text: str, default: Any) -> Parameter:
-    """Return the parameter of an input, for typer."""
-
     def complete(start: str) -> list[str]:
         return [name for name in entry.choices if name.startswith(start.lower())]
 

@@ -291,7 +291,6 @@ def fail(message: str) -> NoReturn:
 
 
 def _escape(text: str) -> str:
-    """Escape the characters of a text that are not printable."""
     return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
 
 

@@ -131,7 +131,6 @@ class _LawType(types.Type):
 
 @typeof_impl.register(CompiledLaw)
 def _law_type(law: CompiledLaw, _: Any) -> _LawType:
-    """Return the numba type of a compiled law."""
     return _LawType(law.function, typeof(law.numbers))
 
 

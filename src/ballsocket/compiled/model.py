@@ -114,7 +114,6 @@ class Compiled(ModelWrapper):
         return super()._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> CompiledLaw:
-        """Return the compiled force law of a joint."""
         return compiled_law(super()._law(joint))
 
 

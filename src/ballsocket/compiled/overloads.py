@@ -114,13 +114,11 @@ jit_formula(roots.scalar_increasing_root)
 
 @intrinsic
 def _to_bits(context: Any, number: Any) -> Any:
-    """Return the 64 bits of a float."""
     return types.uint64(types.float64), lambda _, builder, __, values: builder.bitcast(values[0], ir.IntType(64))
 
 
 @intrinsic
 def _from_bits(context: Any, bits: Any) -> Any:
-    """Return the float of 64 bits."""
     return types.float64(types.uint64), lambda _, builder, __, values: builder.bitcast(values[0], ir.DoubleType())
 
 

@@ -244,7 +244,6 @@ def wear_rates(question: Question, cases: Sequence[Case]) -> list[float | None]:
 
 
 def _simulation(question: Question, file: HipFile, case: Case) -> HipSimulation:
-    """Create the simulation of the hip file with the joint and the cup angles of a case."""
     geometry = {name: value for name, value in case.items() if name not in LOADS}
     joint, _, _ = press_arguments(question.file.joint, geometry)
     angles: dict[str, Any] = {name: case[name] for name in ("inclination", "anteversion") if name in case}

@@ -203,7 +203,6 @@ class PreloadRecording(Recording):
 
 
 def _curve_name(quantity: str, index: int) -> str:
-    """Return the C name of a tabulated curve."""
     return f"{quantity}_{index}"
 
 

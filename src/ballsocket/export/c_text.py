@@ -41,7 +41,6 @@ def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
 
 
 def _step_statements(step: Recorded) -> Iterator[str]:
-    """Yield the C statements that compute a recorded step."""
     if step.step == "input":
         return
     if step.step == "curve":
@@ -53,7 +52,6 @@ def _step_statements(step: Recorded) -> Iterator[str]:
 
 
 def _step_expression(step: Recorded, operands: list[str]) -> str:
-    """Return the C expression of a recorded step from the texts of its operands."""
     if step.step == "where":
         return "{} ? {} : {}".format(*operands)
     if step.step == "slope":

@@ -289,7 +289,6 @@ def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> d
 
 
 def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a key, with its meaning and default."""
     described, default = meaning_of(field.encode_name, field.type), plain_default(field)
     example, quantity = Input("", field).example, QUANTITIES.get(field.encode_name)
     if quantity is not None and described == quantity.title:

@@ -95,7 +95,6 @@ class WearIntegrator:
         return numpy.concatenate([self.depth[active.cells], self.ball[active.ball_cells], [self.work]])
 
     def _compute_change_per_cycle(self, state_vector: Numbers) -> Numbers:
-        """Compute the change of the state vector per cycle, by solving the contacts of a cycle."""
         active, socket_cell_count = self._active, len(self._active.cells)
         depth = state_vector[:socket_cell_count] + self._active_creep
         if active.counterface is not None:

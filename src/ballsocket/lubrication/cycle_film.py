@@ -215,14 +215,11 @@ def _contact(mesh: FilmMesh, instant: CycleInstant) -> DryContact:
 
 def _smallest(wave: FilmWave, film: Numbers) -> float:
     """Compute the smallest film in mm; in elastic contacts that of cells off the edge, at the outlet's constriction."""
-    mesh, inside = wave.contact.mesh, wave.contact.inside
-    if not wave.contact.edge.prescribed:
-        return float(film[inside].min(initial=numpy.inf))
-    borders = inside[mesh.first] != inside[mesh.second]
-    interior = inside.copy()
-    interior[mesh.first[borders]] = interior[mesh.second[borders]] = False
-    cells = interior if interior.any() else inside
-    return wave.contact.edge.outlet_ratio * float(film[cells].min(initial=numpy.inf))
+    contact = wave.contact
+    if not contact.edge.prescribed:
+        return float(film[contact.inside].min(initial=numpy.inf))
+    cells = contact.interior if contact.interior.any() else contact.inside
+    return contact.edge.outlet_ratio * float(film[cells].min(initial=numpy.inf))
 
 
 def _at_loads(motion: FilmMotion, waves: Sequence[FilmWave], thickness: Numbers) -> Numbers:

@@ -64,6 +64,14 @@ class DryContact:
         return numpy.asarray(self.pressure > 0 if self.region is None else self.region)
 
     @property
+    def interior(self) -> Numbers:
+        """Mask of the cells in contact without those at its edge (cells,)."""
+        mesh, interior = self.mesh, self.inside.copy()
+        borders = interior[mesh.first] != interior[mesh.second]
+        interior[mesh.first[borders]] = interior[mesh.second[borders]] = False
+        return interior
+
+    @property
     def signed_pressure(self) -> Numbers:
         """Pressure (cells,) in MPa, whose differences between cells have the right slope at the edge if continued."""
         return self.pressure if self.continuation is None else self.continuation

@@ -165,19 +165,26 @@ def make_contact_film(
     in_bore = _bore_mask(contact, mesh)
     compliance, softness = _yielding(contact, dry, grid, frame, in_bore)
     mesh = mesh if in_bore.all() else mesh.within(in_bore)
+    angle = numpy.arccos(numpy.clip(mesh.direction @ dry.axis, -1.0, 1.0))
+    in_first = angle < bounds[0][1]
+    if isinstance(contact, OffAxisContact):
+        pressure, displacement = contact.pressure_at(mesh.direction), numpy.asarray(contact.displacement)
+    else:
+        pressure = contact.pressure(numpy.minimum(angle, bounds[0][1]))
+        displacement = (float(contact.joint.clearance) + float(contact.indentation)) * dry.axis
     problem = FilmProblem(
         mesh=mesh,
         viscosity=viscosity,
         spin=spin,
-        gap=_gap(contact, mesh),
+        gap=_gap(contact, mesh, displacement),
         compliance=numpy.full(mesh.cells, compliance),
         rim_pressure=numpy.zeros(len(mesh.rim_cell)),
         force=float(contact.force) * dry.axis,
         softness=softness,
     )
-    angle = numpy.arccos(numpy.clip(mesh.direction @ dry.axis, -1.0, 1.0))
-    in_first = angle < bounds[0][1]
-    state = _dry_state(contact, dry, mesh, numpy.where(in_first, angle, bounds[0][1]))
+    state = FilmState(
+        pressure=numpy.where(in_first, pressure, 0.0), void=numpy.zeros(mesh.cells), eccentricity=displacement
+    )
     thickening = _thickening(dry, spin, viscosity, problem.thickness(state)[in_first])
     film = float(dry.edge.inlet_film(thickening * viscosity, numpy.asarray(dry.speed(spin))))
     return ContactFilm(
@@ -241,14 +248,10 @@ def _yielding(
     return 0.0, replace(softness, correction=correction.within(in_bore))
 
 
-def _gap(contact: Contact, mesh: FilmMesh) -> Numbers:
+def _gap(contact: Contact, mesh: FilmMesh, displacement: Numbers) -> Numbers:
     """Compute the film (cells,) in mm of the centred ball on the undeformed bore, worn or not."""
     clearance, radius = float(contact.joint.clearance), float(contact.joint.socket_radius)
-    if isinstance(contact, OffAxisContact):
-        depth = contact.model.worn_depth(mesh.direction.T, radius)
-        displacement = numpy.asarray(contact.displacement)
-    else:
-        depth, displacement = 0.0, numpy.array([0.0, 0.0, clearance + float(contact.indentation)])
+    depth = contact.model.worn_depth(mesh.direction.T, radius) if isinstance(contact, OffAxisContact) else 0.0
     kind = select_gap(contact.model.gap, contact.joint) if hasattr(contact.model, "gap") else LinearGap
     length = float(numpy.linalg.norm(displacement))
     reach = mesh.direction @ displacement
@@ -261,18 +264,6 @@ def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> i
     """Choose the number of cells in a ring so that several lie in the sides of an elastic contact."""
     share = dry.edge.side_speed(viscosity, speed, dry.contact_radius) / speed
     return min(max(least, 8 * ceil(_CELLS_OF_SIDES / share / 8)), _MAX_MERIDIANS)
-
-
-def _dry_state(contact: Contact, dry: DryContact, mesh: FilmMesh, angle: Numbers) -> FilmState:
-    """Make the dry contact on the cells of a film; `angle` (cells,) from the load is that of the edge outside."""
-    edge = angle.max()
-    if isinstance(contact, OffAxisContact):
-        pressure, displacement = contact.pressure_at(mesh.direction), numpy.asarray(contact.displacement)
-    else:
-        pressure = contact.pressure(angle)
-        displacement = (float(contact.joint.clearance) + float(contact.indentation)) * dry.axis
-    inside = numpy.where(angle < edge, pressure, 0.0)
-    return FilmState(pressure=inside, void=numpy.zeros(mesh.cells), eccentricity=displacement)
 
 
 def _thickening(dry: DryContact, spin: Numbers, viscosity: float, gap: Numbers) -> float:

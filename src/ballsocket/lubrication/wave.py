@@ -164,10 +164,7 @@ class FilmWave:
         """
         from scipy.sparse import csr_matrix  # slow to import
 
-        mesh, faces, inside = self.contact.mesh, self._faces, self.contact.inside
-        interior = inside.copy()
-        borders = inside[mesh.first] != inside[mesh.second]
-        interior[mesh.first[borders]] = interior[mesh.second[borders]] = False
+        mesh, faces, interior = self.contact.mesh, self._faces, self.contact.interior
         rows = mesh.face_slopes[numpy.concatenate([faces, faces + len(mesh.first)])]
         shape = (rows.shape[0], len(self._cells) + 1)
         slopes = csr_matrix((rows.data, self._numbers[rows.indices], rows.indptr), shape)

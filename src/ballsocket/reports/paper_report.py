@@ -302,7 +302,6 @@ def _limit(axes: Axes, panel: Panel) -> None:
 
 
 def _name_cases(axes: Axes, panel: Panel) -> None:
-    """Add a legend of the cases to a panel."""
     from matplotlib.lines import Line2D
 
     cases = dict.fromkeys(line.case for line in panel.lines)

@@ -226,7 +226,6 @@ def memory_size(task: Task) -> int:
 
 
 def _result_size(task: Task) -> int:
-    """Return the size in bytes of the results of one point."""
     return sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
 
 

@@ -21,7 +21,7 @@ from ...problem.gaps import LinearGap
 from .abel import AbelState
 from .free_face import MODES, POLAR_TERMS, free_face_of
 from .kernel import Kernel
-from .load_curve import LoadCurve, knot_window
+from .load_curve import LoadCurve, interpolate_cubic, knot_window
 from .modes import ElasticBall, Socket
 
 _ITERATIONS = 3  # fixed-point iterations before the extrapolation
@@ -184,7 +184,7 @@ class ContactSeries:
         """
         angle = numpy.exp(x)
         (depth, deepening), (force, rise), (pressure, _) = (
-            _interpolate_cubic(x, self.x, self.logs[name], self._slopes[name])
+            interpolate_cubic(x, self.x, self.logs[name], self._slopes[name])
             for name in ("indentation", "force", "max_pressure")
         )
         depth, deepening = depth + numpy.log(2 * numpy.sin(angle / 2) ** 2), deepening + angle / numpy.tan(angle / 2)
@@ -194,15 +194,6 @@ class ContactSeries:
         rise, deepening = rise + 3 + growth, deepening + growth
         stiffness = force - depth + numpy.log(rise / deepening)
         return {"indentation": depth, "force": force, "max_pressure": pressure, "stiffness": stiffness, "slope": rise}
-
-
-def _interpolate_cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
-    i = numpy.clip(numpy.searchsorted(x, at) - 1, 0, len(x) - 2)
-    width, t = x[i + 1] - x[i], (at - x[i]) / (x[i + 1] - x[i])
-    rise, first, second = y[i + 1] - y[i], width * slope[i], width * slope[i + 1]
-    values = y[i] + t * (first + t * (3 * rise - 2 * first - second + t * (first + second - 2 * rise)))
-    slopes = (first + t * (2 * (3 * rise - 2 * first - second) + 3 * t * (first + second - 2 * rise))) / width
-    return values, slopes
 
 
 Bodies = tuple[ContactSeries, ContactSeries]

@@ -151,7 +151,6 @@ def _cosines_and_sines(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
 
 
 def _evaluate_polynomial(coefficients: Numbers, x: Numbers) -> Numbers:
-    """Evaluate a polynomial in x by Horner's rule."""
     total = numpy.full(x.shape, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         total *= x

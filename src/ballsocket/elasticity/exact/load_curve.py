@@ -127,12 +127,18 @@ class LoadCurve:
         knots = self.knots
         x, y, slope = numpy.log(getattr(knots, kind)), numpy.log(knots.half_angle), 1 / log_slope(kind, knots)
         goal = numpy.log(load)
-        i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
-        width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
-        cubic = y[i] * (1 + 2 * t) * (1 - t) ** 2 + y[i + 1] * t * t * (3 - 2 * t)
-        cubic = cubic + width * t * (1 - t) * (slope[i] * (1 - t) - slope[i + 1] * t)
-        bounded = numpy.clip(cubic, y[i], y[i + 1])
-        return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), bounded))
+        bounded = numpy.clip(interpolate_cubic(goal, x, y, slope)[0], y[0], y[-1])
+        return numpy.exp(numpy.where(goal < x[0], y[0] + slope[0] * (goal - x[0]), bounded))
+
+
+def interpolate_cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
+    """Interpolate by cubics with given slopes at x; return values and slopes."""
+    i = numpy.clip(numpy.searchsorted(x, at) - 1, 0, len(x) - 2)
+    width, t = x[i + 1] - x[i], (at - x[i]) / (x[i + 1] - x[i])
+    rise, first, second = y[i + 1] - y[i], width * slope[i], width * slope[i + 1]
+    values = y[i] + t * (first + t * (3 * rise - 2 * first - second + t * (first + second - 2 * rise)))
+    slopes = (first + t * (2 * (3 * rise - 2 * first - second) + 3 * t * (first + second - 2 * rise))) / width
+    return values, slopes
 
 
 def knot_window(angle: Numbers) -> slice | None:

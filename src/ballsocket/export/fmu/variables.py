@@ -99,7 +99,6 @@ def _output_properties() -> Iterator[dict]:
 
 
 def _parameter_properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
-    """Yield the properties of all tunable parameters of the element, with start values."""
     for parameter in TUNABLES:
         start = getattr(element.constants, parameter.constant) * parameter.si
         properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
@@ -159,7 +158,6 @@ def reference_loads(element: ForceElement | PreloadedElement, state: Numbers) ->
 
 
 def _csv_text(names: list[str], time: Numbers, values: Numbers) -> str:
-    """Format a table of values over time as CSV text."""
     head = ",".join(f'"{name}"' for name in ("time", *names))
     rows = numpy.hstack([time[:, None], values]).tolist()
     return "\n".join([head, *(",".join(map(repr, row)) for row in rows)]) + "\n"
