@@ -17,6 +17,7 @@ from ..core.unit_systems import Amount, Sentence, Units
 from ..evidence.matrix import KEYS, LIMITED, NAMES, amount_text, number, title_of
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup
+from ..problem.hardening import Hardening
 from ..studies.parameters import LOADS, PARAMETERS
 from .section_plots import joint_section
 from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, numbered, single_axes
@@ -125,12 +126,17 @@ def _joint(summary: Record) -> Joint:
         ball_radius=summary["ball_radius"],
         clearance=summary["clearance"],
         liner_thickness=float(summary["liner_thickness"]),
-        liner=Material(**summary["liner"]),
-        ball=None if ball is None else Material(**ball),
-        backing=tuple(Layer(thickness=float(layer.pop("thickness")), material=Material(**layer)) for layer in layers),
+        liner=_material(summary["liner"]),
+        ball=None if ball is None else _material(ball),
+        backing=tuple(Layer(thickness=float(layer.pop("thickness")), material=_material(layer)) for layer in layers),
         support=Support(summary["support"]),
         name=summary["name"],
     )
+
+
+def _material(summary: Record) -> Material:
+    hardening = summary.get("hardening")
+    return Material(**{**summary, "hardening": None if hardening is None else Hardening(**hardening)})
 
 
 def matrix_figure(record: Record, name: str = "max_pressure", units: Units = Units.SI) -> Figure:
