@@ -106,9 +106,7 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
         "limits": [str(limit) for limit in limits],
         "within_limits": (codes == Verdict.KEPT).tolist(),
         "verdicts": _verdict_words(codes),
-        "verdicts_by_limit": {
-            str(limit): _verdict_words(verdicts(orientations, [limit])) for limit in limits
-        },
+        "verdicts_by_limit": {str(limit): _verdict_words(verdicts(orientations, [limit])) for limit in limits},
         "inclination_ranges": [
             {
                 "anteversion_deg": round(degrees(angle), 9),
