@@ -146,7 +146,7 @@ def test_finite_elements_with_their_order_raise_the_level_of_the_code(record):
     ("change", "level", "missing"),
     [
         (lambda record: None, "c", "plasticity"),
-        (lambda record: record["matrix"][0].update(valid=False), "b", "1 of 4 cases lie outside the range"),
+        (lambda record: record["matrix"][0].update(valid=False), "b", "outside the range of the model: 1 of 4 cases"),
         (lambda record: record["matrix"][0]["numbers"].update(utilisation=None), "b", "strength not checked"),
         (lambda record: record["matrix"][0]["numbers"].update(utilisation=1.01), "b", "exceeds the yield stress"),
         (lambda record: record["matrix"][0]["numbers"].update(utilisation=0.99), "c", "plasticity"),

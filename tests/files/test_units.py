@@ -120,3 +120,16 @@ def test_factors_and_names_of_common_units_are_those_of_pint(monkeypatch):
     monkeypatch.setattr(module, "_COMMON_FACTORS", {})
     monkeypatch.setattr(module, "_COMMON_UNITS", {})
     assert converted() == direct
+
+
+@pytest.mark.parametrize(("kind", "text"), [("modulus", "2 mPa"), ("foundation modulus", "280 mPa/mm")])
+def test_millipascals_are_a_slip_for_megapascals_except_in_a_viscosity(kind, text):
+    with pytest.raises(ValueError, match="mPa is a thousandth of 1 Pa: write MPa"):
+        parse("it", text, kind)
+    assert parse("it", "2.5 mPa s", "viscosity") == pytest.approx(2.5e-3)
+
+
+@pytest.mark.parametrize("text", ["0.1 mm +- 5 %", "0.1 ± 0.02 mm", "0.1 +/- 0.02 mm"])
+def test_a_number_with_a_tolerance_is_answered_with_the_place_of_tolerances(text):
+    with pytest.raises(ValueError, match="state a tolerance apart from the number, by --spread"):
+        parse("clearance", text, "length")

@@ -254,7 +254,7 @@ def test_the_command_states_method_and_error(tmp_path, few_held_out):
     assert series["error"]["volume"] <= series["tolerance"]["volume"]
     assert set(said["sobol"]["volume"]) == {"coefficient"}
     shown = " ".join(printed(*words).split())
-    assert f"series of 1 simulations in place of 200: 95 % of the results of {FEW} simulated" in shown
+    assert f"series of 1 simulation in place of 200: 95 % of the results of {FEW} simulated" in shown
     assert re.search(r"first order .* volume coefficient ", shown)
     simulated = answer(*words[:3], "30", "--method", "runs")
     assert simulated["uncertainty"]["series"] is None

@@ -1,13 +1,13 @@
 """Validity, utilisation and notes of the contact model in a run: equal to those of a press of the same joint."""
 
 from dataclasses import replace
-from math import radians
+from math import inf, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact.verdict import Verdict
+from ballsocket.contact.verdict import Verdict, error_bar
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import Activity, Archard, HipSimulation, Mix, PatientVariability, in_vivo, population
 from ballsocket.hip.contact_checks import half_angles
@@ -163,3 +163,17 @@ def test_the_verdict_includes_the_allowable_pressure():
     assert check.utilisation_bar.verdict(high=1.0) is Verdict.KEPT
     assert check.summary()["pressure_ratio"] == pytest.approx(check.max_pressure / 5.0)
     assert check.verdict is Verdict.EXCEEDED
+
+
+def test_a_contact_at_the_rim_has_no_bound_of_its_stress_as_in_a_press():
+    """The axial stress of the same contact says nothing about the corner of a rim that is loaded."""
+    cup, load = bs.Cup(inclination=radians(50.0), arc_of_cover=radians(150.0)), constant_load(8, force=1500.0)
+    press = bs.Sphere(cup=cup, ring_width=radians(5.0)).press(HIP, force=1500.0)
+    assert (press.edge_loaded, error_bar(press, "utilisation").high) == (True, inf)
+    history = use_of(HIP, load, cup=cup).after(1e5)
+    for check in (*history.use.unworn_checks, *history.contact_checks[-1]):
+        assert check.utilisation < 0.5
+        assert (check.utilisation_bar.high, check.verdict) == (inf, Verdict.UNDECIDED)
+    (axial,) = use_of(HIP, load).unworn_checks
+    assert axial.utilisation_bar.high < 0.6
+    assert axial.verdict is Verdict.KEPT

@@ -182,7 +182,7 @@ def test_other_files_are_refused_by_their_name(tmp_path, name, content, message)
         (BINARY[:-1], "truncated or damaged binary STL: .* bytes, its header states"),
         (bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(500), r"states 4294967295 triangles, 214748364834 bytes"),
         (bytes(84), "a.stl has no triangles"),
-        (scans.binary(PLAIN * np.nan), "coordinates are not finite numbers"),
+        (scans.binary(PLAIN * np.nan), "coordinates without a finite number"),
         (ASCII[:-100], "truncated or damaged ASCII STL: a vertex is not three numbers, 'vertex'"),
         (ASCII.replace(b"vertex", b"vortex", 1), "damaged ASCII STL: facet 1 has not three vertices"),
         (ASCII.replace(b".", b",", 3), "damaged ASCII STL: could not convert string to float"),

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from ballsocket.core.kinds import MILLIMETRES
+from ballsocket.core.unit_systems import Sentence, with_error
 from ballsocket.planning import PointCloud, measure_wear, read_points
 
 from ..cli.command import answer
@@ -79,7 +81,7 @@ def text(points, head=""):
 HEAD = POINTS - scans.CENTRE
 HEAD = HEAD * (32.0 / np.linalg.norm(HEAD, axis=1) - 1.0)[:, None]
 REFUSED = {
-    "two columns": (text(POINTS[:, :2]), "line 1 has 2 cells, and there are 3 columns"),
+    "two columns": (text(POINTS[:, :2]), "line 1 has 2 cells, the line of heads 3"),
     "metres": (text(POINTS / 1000.0), r"0\.03\d* mm large: .* its unit may be m \(3\d(\.\d)? mm\)"),
     "metres in heads": (text(POINTS, "x_m y_m z_m\n"), "states the unit 'm' .* state --stl-units m"),
     "mixed units": (text(POINTS, "x_mm y_mm z_m\n"), "columns in different units, m and mm"),
@@ -107,3 +109,26 @@ def test_the_command_prints_the_wear_with_its_error(tmp_path):
     (tmp_path / "a.xyz").write_text(PLAIN, encoding="utf-8")
     worn = answer("planning", "--worn", "a.xyz", "--head-diameter", "31.6", folder=tmp_path)["worn"]
     assert abs(worn["volume"] - scans.removed_volume(15.8, 0.25)) < worn["volume_error"]
+
+
+def test_a_measured_head_acts_or_the_notes_say_that_it_does_not():
+    """A head of the bore's own radius may hide a shift in an unworn sphere; the points of a worn bore exclude it."""
+    unworn, worn = PointCloud(scans.worn_bore(shift=0.1, count=1500)), PointCloud(POINTS)
+    alone, measured = measure_wear(unworn), measure_wear(unworn, head_radius=15.9)
+    assert measured.volume_error < alone.volume_error
+    assert measured.head_note in measured.notes
+    assert "cannot have worn the sphere" in measured.head_note
+    equal = measure_wear(unworn, head_radius=16.0)
+    assert equal.volume_error == alone.volume_error
+    same = measure_wear(worn, head_radius=14.0)
+    assert (same.volume, same.volume_error) == (measure_wear(worn).volume, measure_wear(worn).volume_error)
+    for bore in (equal, same):
+        assert "changes no number" in bore.head_note
+    assert "a diameter of 4 mm less than the bore" in same.head_note
+
+
+def test_a_printed_number_has_the_digits_of_its_error():
+    assert [str(Sentence("{} ± {}", *with_error(*pair, MILLIMETRES))) for pair in ((91.63, 5.1), (1234.5, 120.0))] == [
+        "91.6 mm ± 5.1 mm",
+        "1230 mm ± 120 mm",
+    ]

@@ -14,16 +14,18 @@ import xarray
 
 import ballsocket as bs
 from ballsocket.core.kinds import Unit
+from ballsocket.files.units import parse
 from ballsocket.model_catalogue import named_model
 from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives, off_axis_uncertainty
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
-from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
+from ballsocket.studies.expressions import distribution_of, parse_distribution, parse_limit, parse_range
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, limited_quantities, margin_on_plane, verdicts
 from ballsocket.studies.metadata import joint_dimension
 from ballsocket.studies.optimisation import optimise, pareto
 from ballsocket.studies.run import default_model
+from ballsocket.studies.study_answer import map_summary, study_summary
 from ballsocket.studies.task import OUTCOMES
 from ballsocket.studies.variance_shares import sensitivity
 
@@ -422,3 +424,44 @@ def test_sensitivities_in_csv_and_json(tmp_path):
     numbers = correlated["quantities"]["max_pressure"]["numbers"].values()
     assert sum(number["shapley"] for number in numbers) == pytest.approx(1.0)
     assert all(number["shapley_low"] <= number["shapley_high"] for number in numbers)
+
+
+def test_a_tolerance_in_percent_is_a_share_of_its_nominal_value():
+    width = parse_distribution("clearance = 0.1 +- 0.005 mm")
+    for text in ("clearance = 0.1 mm +- 5 %", "clearance=100 um ± 5%", "clearance = 0.1 +/- 5 per cent"):
+        name, distribution = parse_distribution(text)
+        assert (name, distribution.low, distribution.high) == ("clearance", *map(pytest.approx, (0.095, 0.105)))
+        assert distribution.deviation == pytest.approx(width[1].deviation)
+
+    def read(name, value):
+        return parse(name, value, "length")
+
+    tabled = distribution_of("clearance", {"nominal": "0.1 mm", "plus_minus": "5 %"}, read)
+    assert (tabled.low, tabled.high) == pytest.approx((0.095, 0.105))
+    assert distribution_of("clearance", {"mean": 0.2, "deviation": "10 %"}, read).deviation == pytest.approx(0.02)
+    with pytest.raises(ValueError, match="a tolerance is above 0"):
+        parse_distribution("clearance = 0.1 mm +- 0 %")
+
+
+def test_json_states_angles_in_degrees_with_the_unit_in_the_key():
+    """As in a press, in the CSV of a study and in its terminal."""
+    joint = bs.joints["hip-28"]
+    studied = bs.study(bs.HessForsbach(), joint, force=[1000.0, 2000.0])
+    angles = np.degrees(bs.HessForsbach().press(joint, force=[1000.0, 2000.0]).half_angle)
+    summary = study_summary(studied)
+    assert summary["values"]["half_angle_deg"] == pytest.approx(angles)
+    ends = summary["quantities"]["half_angle_deg"]
+    assert [ends["least"]["value"], ends["largest"]["value"], ends["median"]] == pytest.approx([*angles, angles.mean()])
+    mapped = map_summary(bs.study(bs.HessForsbach(), joint, half_angle=[0.5, 0.6]), [])["quantities"]["force"]
+    assert [end["at"]["half_angle_deg"] for end in mapped] == pytest.approx(np.degrees([0.5, 0.6]))
+    best = optimise(bs.HessForsbach(), joint, {"clearance": (0.05, 0.2)}, load={"force": 2000.0}, minimise="half_angle")
+    written = best.summary()
+    assert (written["minimise"], written["value"]) == ("half_angle_deg", pytest.approx(np.degrees(best.value)))
+    assert written["slopes"]["clearance"] == pytest.approx(np.degrees(best.slopes["clearance"]))
+    assert not any(key in json.dumps([summary, mapped, written]) for key in ('"half_angle"', '"max_pressure_angle"'))
+
+
+def test_a_limit_that_is_no_number_is_refused_as_such():
+    for text in ("edge_distance>=nan", "max_pressure<=nan"):
+        with pytest.raises(ValueError, match="= nan is not allowed: a limit is a number"):
+            parse_limit(text)

@@ -115,7 +115,7 @@ def test_a_wrong_call_is_refused_with_the_reason(call, message, tmp_path, monkey
         (b"ball_radius,clearence\n16,0.1\n", "did you mean 'clearance'"),
         (b"ball_radius,force,half_angle_deg\n16,,\n", r"force in line 2 of rows.csv = nan is not allowed"),
         (b"clearance_deg,force\n6,1000\n", "the unit of clearance_deg = '1 deg' is not a length"),
-        (b"clearance,force\n0.1,1000,7\n", "rows.csv: line 2 has 3 cells, and there are 2 columns"),
+        (b"clearance,force\n0.1,1000,7\n", "rows.csv: line 2 has 3 cells, the line of heads 2"),
         (b'force\n"1\n2\n', "rows.csv: it is not a table in text: unexpected end of data, in line 4"),
         (b"force\n" + b"1" * 99_000 + b"\n", "force in line 2 of rows.csv = inf"),
         (b"force\n" + b"1" * 200_000 + b"\n", "rows.csv: it is not a table in text: field larger than field limit"),

@@ -15,6 +15,7 @@ from rich.progress import Progress
 
 from ..contact.verdict import Verdict
 from ..core.checks import needs
+from ..core.display import counted
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
 from ..core.unit_systems import Units
@@ -80,8 +81,8 @@ def _gather(question: Question, out: Path, engine: Engine, as_json: bool, units:
     notes = conclusions(record, Units.SI if as_json else units)
     if resumed:
         notes.append(
-            f"{resumed} results were read from an earlier, stopped run and not computed: --check computes all of them "
-            "again"
+            f"{counted(resumed, 'result')} of an earlier, stopped run not computed but read: --check computes all of "
+            "them again"
         )
     identifier = digest((out / SUMS).read_bytes())
     if as_json:

@@ -193,8 +193,8 @@ def _dimension_of(name: str) -> str:
 
 def _as_option(name: str, value: float) -> Iterator[str]:
     """Yield an option of `press` for a parameter, and its value with the unit."""
-    quantity = QUANTITIES.get(name)
-    unit = "" if quantity is None else quantity.unit.replace("mm2", "mm²").removeprefix("1")
+    name = name.removesuffix("_deg")
+    unit = QUANTITIES[name].kind.assumed_unit if name in QUANTITIES else ""
     yield f"--{name.removeprefix('liner_') if name in _LINER_PARAMETERS else name}".replace("_", "-")
     yield f"{value:.6g} {unit}".strip()
 

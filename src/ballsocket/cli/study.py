@@ -130,7 +130,7 @@ def _progress_bar(store: str | Path | None) -> Iterator[Listener]:
         _stop(progress)
         if store is not None and latest:
             counts = f"{count_text(latest[0].n_done)} of {count_text(latest[0].n_points)}"
-            stored = f"{counts} points are stored in {address_of(store) or store}"
+            stored = f"points stored: {counts}, in {address_of(store) or store}"
             print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:

@@ -77,6 +77,12 @@ def plain_number(value: float, digits: int = 4) -> str:
 _LEFT = " style='text-align:left'"
 
 
+def counted(count: float, noun: str) -> str:
+    """Write a count with its noun, such as "1 point" or "3 points"; the plural of the noun ends in s."""
+    number = str(count) if isinstance(count, int) else plain_number(count)
+    return f"{number} {noun}{'' if count == 1 else 's'}"
+
+
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return an HTML table of texts, the first column on the left."""
 

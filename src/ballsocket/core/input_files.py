@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from .checks import shown
+from .display import counted
 
 _MAX_FILES = 50
 _VARIABLE = "BALLSOCKET_INPUT_FOLDERS"
@@ -126,5 +127,5 @@ def packed_files(main: Path, opened: Iterable[Path]) -> tuple[Path, ...]:
         if not path.is_relative_to(main.parent) or ".." in path.relative_to(main.parent).parts:
             raise ValueError(f"{shown(str(path))} lies outside the folder of {main.name}: put it beside that file")
     if len(files) > _MAX_FILES:
-        raise ValueError(f"{main.name} names {len(files) - 1} files: at most {_MAX_FILES - 1} are allowed")
+        raise ValueError(f"{main.name} names {counted(len(files) - 1, 'file')}: at most {_MAX_FILES - 1} are allowed")
     return files

@@ -12,6 +12,7 @@ import numpy
 
 from .arrays import Numbers
 from .checks import needs
+from .display import counted
 from .input_files import open_input, resolve_input
 
 _HEADER_BYTES = 2**16  # number of bytes in which the header of a file ends
@@ -58,15 +59,15 @@ def read_mesh_file(path: Path) -> tuple[Numbers, Numbers]:
         raise ValueError(message)
     if n_stated and int(n_stated[1]) != len(points):
         raise ValueError(
-            f"{path.name} is incomplete: its header states {int(n_stated[1])} points, and it has {len(points)}: save "
-            "it again"
+            f"{path.name} is incomplete: its header states {counted(int(n_stated[1]), 'point')}, and it has "
+            f"{len(points)}: save it again"
         )
     triangles = numpy.concatenate([numpy.zeros((0, 3), dtype=int), *blocks])
     if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
         wrong = first_index + (triangles.min() if triangles.min() < 0 else triangles.max())
         raise ValueError(
-            f"{path.name}: a face names point {wrong}, and the file has {len(points)} points: count them from "
-            f"{first_index}, not back from the last one"
+            f"{path.name}: a face names point {wrong}, and the file has {counted(len(points), 'point')}: count them "
+            f"from {first_index}, not back from the last one"
         )
     return points[:, :3], triangles
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from math import floor, isinf, log10, prod
+from math import floor, inf, isinf, log10, prod
 from types import MappingProxyType
 from typing import Any
 
@@ -144,6 +144,12 @@ class Amount:
     unit: Unit = PLAIN  # metric unit in which it is written
     digits: int = 4  # significant
     decimals: int | None = None  # in the metric unit, in place of significant digits
+
+
+def with_error(value: float, error: float, unit: Unit = PLAIN, digits: int = 2) -> tuple[Amount, Amount]:
+    """Round a number and its error to the last of the significant digits of the error."""
+    decimals = digits - 1 - floor(log10(error * unit.factor)) if 0 < error < inf else None
+    return Amount(value, unit, decimals=decimals), Amount(error, unit, digits, decimals)
 
 
 class Sentence(str):

@@ -11,7 +11,9 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_number, require
+from ..core.display import counted
 from ..core.sources import Source
+from ..core.unit_systems import Sentence, with_error
 from . import restitution as relations
 from .friction import check_and_store_number
 from .restitution import Relation, restitution_of
@@ -151,7 +153,8 @@ class DampingEstimate:
         return self.restitution - _restitutions_at(self.damping.hysteresis, self.speed)
 
     def __str__(self) -> str:
-        return f"χ = {self.damping.hysteresis:.4g} ± {self.error:.2g} s/mm from {len(self.speed)} restitutions"
+        numbers = with_error(self.damping.hysteresis, self.error)
+        return Sentence("χ = {} ± {} s/mm from {}", *numbers, counted(len(self.speed), "restitution"))
 
 
 def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None = None) -> DampingEstimate:
@@ -175,7 +178,7 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
     --------
     >>> from ballsocket.dynamics import from_restitution
     >>> print(from_restitution(speed=[20.0, 40.0, 80.0], restitution=[0.951, 0.902, 0.822]))
-    χ = 0.004037 ± 3.6e-05 s/mm from 3 restitutions
+    χ = 0.004037 ± 0.000036 s/mm from 3 restitutions
     """
     speeds = numpy.atleast_1d(numpy.asarray(speed, dtype=float))
     restitutions = numpy.atleast_1d(numpy.asarray(restitution, dtype=float))

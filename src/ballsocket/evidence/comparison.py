@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
+from ..core.display import counted
 from ..core.executors.processes import Engine, Serial
 from .credibility import assess
 from .credibility_levels import Record
@@ -170,7 +171,9 @@ def _pair_values(written: Any, now: Any, where: str = "") -> Iterator[Difference
             yield from _pair_values(old, new, f"{where}[{index}]")
     else:
         lists = isinstance(now, list) and isinstance(written, list)
-        yield Difference(where, written, now, f"has {len(written)} rows, computed {len(now)}" if lists else "")
+        yield Difference(
+            where, written, now, f"has {counted(len(written), 'row')}, computed {len(now)}" if lists else ""
+        )
 
 
 def _agrees(pair: Difference, computed: Record) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+from ..core.display import counted
 from ..studies.parameters import LOADS
 from .code_checks import ORDER_OF_ELEMENTS, OWN_TOLERANCE
 from .comparators import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, MEASURED, WITHIN
@@ -27,7 +28,7 @@ class ReachedLevel:
 def _software_level(record: Record) -> ReachedLevel:
     run = [check for check in record["code_verification"] if check["passed"] is not None]
     failed = [check["name"] for check in run if not check["passed"]]
-    supported = f"ballsocket {record['version']}, its libraries and {len(run)} checks run on this machine"
+    supported = f"ballsocket {record['version']}, its libraries and {counted(len(run), 'check')} run on this machine"
     missing = "the list of known faults, judged for this context of use by a quality system of the user"
     if failed:
         return ReachedLevel("a", supported, f"failed checks: {', '.join(failed)}; {missing}")
@@ -37,7 +38,7 @@ def _software_level(record: Record) -> ReachedLevel:
 def _code_level(record: Record) -> ReachedLevel:
     checks = {check["name"]: check["passed"] for check in record["code_verification"]}
     passed, failed, absent = ([name for name, state in checks.items() if state is s] for s in (True, False, None))
-    supported = f"{len(passed)} of {len(passed) + len(failed)} checks passed on this machine"
+    supported = f"{len(passed)} of {counted(len(passed) + len(failed), 'check')} passed on this machine"
     missing = [f"failed: {', '.join(failed)}"] if failed else []
     missing += [f"not run: {', '.join(absent)}"] if absent else []
     if failed or not passed:
@@ -113,7 +114,9 @@ def _solver_level(record: Record) -> ReachedLevel:
     largest = max((max(calculation["deviation"].values(), default=0.0) for calculation in calculations), default=0.0)
     alone = [calculation["worst_of"] for calculation in calculations if not calculation["deviation"]]
     count = len(calculations)
-    supported = f"other methods of the same body differ by {_percent(largest)} at most, at {count} worst cases"
+    supported = (
+        f"other methods of the same body differ by {_percent(largest)} at most, at {counted(count, 'worst case')}"
+    )
     if len(alone) == count:
         missing = "a second method or other settings of the solver at the worst cases"
         return ReachedLevel("a", "one method only", missing)
@@ -146,7 +149,7 @@ def _form_level(record: Record) -> ReachedLevel:
     unknown = "plasticity, creep and friction in the contact itself; see limits and assumptions"
     missing = []
     if invalid:
-        missing.append(f"{invalid} of {len(rows)} cases lie outside the range of the model")
+        missing.append(f"outside the range of the model: {invalid} of {counted(len(rows), 'case')}")
     if None in utilisations:
         missing.append("strength not checked: no yield stress, or no result")
     elif max(utilisations, default=0.0) > 1:
@@ -186,7 +189,7 @@ def _samples_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     measured = [comparator for comparator in applying if MEASURED in comparator.get("kind", "")]
     count = len(record["claims"]) + len(record["comparators"])
-    supported = f"{count} published results, {len(measured)} of them measured on joints like these"
+    supported = f"{counted(count, 'published result')}, {len(measured)} of them measured on joints like these"
     missing = "measurements of the device itself"
     return ReachedLevel("b" if measured else "a", supported, missing)
 
@@ -194,8 +197,8 @@ def _samples_level(record: Record) -> ReachedLevel:
 def _conditions_level(record: Record) -> ReachedLevel:
     where = [comparator["applicability"]["where"].get("F/(E R1²)") for comparator in _applying(record)]
     count = {reach: where.count(reach) for reach in (WITHIN, IN_PART)}
-    supported = f"the loads of the question lie within those of {count[WITHIN]} comparators that apply"
-    supported += f", in part within those of {count[IN_PART]}" if count[IN_PART] else ""
+    supported = f"the loads of the question lie within those of the comparators that apply: {count[WITHIN]}"
+    supported += f", in part: {count[IN_PART]}" if count[IN_PART] else ""
     missing = "conditions of the device's own use, measured with their uncertainty"
     if count[WITHIN]:
         return ReachedLevel("c", supported, missing)
@@ -206,7 +209,7 @@ def _conditions_level(record: Record) -> ReachedLevel:
 def _equivalency_level(record: Record) -> ReachedLevel:
     applying = _applying(record)
     assumed = [comparator for comparator in applying if comparator.get("assumed")]
-    supported = f"{len(applying) - len(assumed)} of {len(applying)} comparators that apply state all of their inputs"
+    supported = f"all inputs are stated by {len(applying) - len(assumed)} of {counted(len(applying), 'comparator')}"
     if not applying or len(assumed) == len(applying):
         return ReachedLevel("a", supported, "a comparator that applies and states all of its inputs")
     if assumed or _applying(record, APPLIES_IN_PART):
@@ -216,7 +219,7 @@ def _equivalency_level(record: Record) -> ReachedLevel:
 
 def _outputs_level(record: Record) -> ReachedLevel:
     compared = [comparator for comparator in _applying(record) if comparator.get("numbers") or comparator.get("ours")]
-    supported = f"differences of {len(compared)} published results that apply, as numbers"
+    supported = f"differences of {counted(len(compared), 'published result')}, as numbers"
     missing = "an experiment with stated uncertainty at the loads of the question"
     return ReachedLevel("b" if compared else "a", supported, missing)
 

@@ -13,6 +13,7 @@ import numpy
 from ..contact import Contact
 from ..contact.verdict import EDGE_DISTANCE, Bounded, Verdict, error_bar
 from ..core.arrays import Numbers, to_numpy
+from ..core.display import counted
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.unit_systems import Units
@@ -209,7 +210,7 @@ class LimitCheck:
             f"nearer than the error bar or the required accuracy of {100 * self.accuracy:.3g} %": self.marginal,
             "without a valid result": self.unknown,
         }
-        parts = [f"{count} case{'s' * (count > 1)} {words}" for words, count in counts.items() if count]
+        parts = [f"{counted(count, 'case')} {words}" for words, count in counts.items() if count]
         return ", ".join(parts) if parts or self.row is not None else "no case has a result"
 
     def summary(self) -> dict[str, Any]:

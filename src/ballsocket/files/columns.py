@@ -15,7 +15,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import closest, nearest, needs, shown
-from ..core.display import plain_number
+from ..core.display import counted, plain_number
 from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
 from ..core.kinds import Kind
@@ -178,9 +178,9 @@ class NumberTable:
         `unused` are the numbers of rows that a result does not use, by their description.
         """
         counts = {**self.left_out, **unused}
-        parts = [f"{count} {'line' if count == 1 else 'lines'} {place}" for place, count in counts.items() if count]
+        parts = [f"{counted(count, 'line')} {place}" for place, count in counts.items() if count]
         n_rows = len(self) - sum(unused.values())
-        return f"{self.title}: {n_rows} rows read, left out {', '.join(parts)}" if parts else ""
+        return f"{self.title}: {counted(n_rows, 'row')} read, left out {', '.join(parts)}" if parts else ""
 
     def items(self) -> Iterator[tuple[Head, Numbers]]:
         """Yield each head with the numbers below it."""
@@ -464,8 +464,8 @@ class _Block:
             is_wide = any(cell != "" for cell in cells[max(width, len(texts)) :])
             if is_wide or (self.separator == " " and len(cells) < width):
                 raise ValueError(
-                    f"line {line} has {len(cells)} cells, and there are {width} columns: decimal commas and empty "
-                    "cells need semicolons or tabs between the cells, or quotes"
+                    f"line {line} has {counted(len(cells), 'cell')}, the line of heads {width}: decimal commas and "
+                    "empty cells need semicolons or tabs between the cells, or quotes"
                 )
         filled = {index for _, cells in body for index, cell in enumerate(cells) if cell != ""}
         heads = [

@@ -80,6 +80,8 @@ _SPELLINGS = {
 }
 """Spellings of symbols, by their small letters, whose other spellings are wrong or may mean two units."""
 
+_PRESSURES = (Kind.MODULUS, Kind.FOUNDATION)  # kinds of which millipascals are a slip for megapascals
+
 _COMMON_FACTORS: dict[tuple[tuple[str, float], ...], float] = {
     (("micrometer", 1), ("millimeter", 1)): 0.001,
     (("centimeter", 1), ("millimeter", 1)): 10.0,
@@ -153,7 +155,10 @@ def _number(name: str, value: float | str, kind: str) -> float:
             return number
         if kind == Kind.NUMBER:
             raise ValueError(f"{shown(unit)} is the unit of a plain number")
-        return convert(number, parse_units(unit), parse_units(Kind(kind).assumed_unit))
+        units = parse_units(unit)
+        if "millipascal" in units and kind in _PRESSURES:
+            raise ValueError(f"{shown(unit)} is in millipascals")
+        return convert(number, units, parse_units(Kind(kind).assumed_unit))
     except ValueError as error:
         raise ValueError(_refusal(name, value, kind)) from error
 
@@ -320,6 +325,7 @@ _STANDARD_GRAVITY = 9.80665  # m/s²
 _TYPICAL_MASS = 75.0  # kg, of a patient
 _BODY_WEIGHT = re.compile(r"(%|per\s?cent)?\s*(?:(?:of|x|times)\s+)?(?:the\s+)?(?:BW|body\s*weights?)", re.IGNORECASE)
 
+_TOLERANCE = re.compile(r"\+-|\+/-|±")
 _MARKED = re.compile(r"\s*[-+]?\d+[,' \u202f\u00a0]\d")
 
 
@@ -327,11 +333,15 @@ def _refusal(name: str, value: Any, kind: str) -> str:
     percent = number_of_percent(value) if kind == Kind.NUMBER else None
     respelled = {word: right for word in _WORD.findall(str(value)) if (right := _right_spelling(word))}
     hint = _weight_hint(str(value)) if kind == Kind.FORCE else ""
-    if _MARKED.match(str(value)):
+    if _TOLERANCE.search(str(value)):
+        hint = "; state a tolerance apart from the number, by --spread of sensitivity or --tolerance of press"
+    elif _MARKED.match(str(value)):
         hint = "; write a decimal point, and nothing between thousands"
     elif percent is not None:
         with suppress(ValueError):
             hint = f"; {percent} % is {parse(name, percent, kind) / 100:g}"
+    elif kind in _PRESSURES and "mPa" in _WORD.findall(str(value)):
+        hint = "; mPa is a thousandth of 1 Pa: write MPa"
     elif respelled and not hint:
         hint = "".join(f"; write {right}, not {word}" for word, right in respelled.items())
     return f"{name} = {shown(value)} is not {Kind(kind).example}{hint}"

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from ..core.checks import NamedItems, known_name
+from ..core.display import counted
 from .creep_law import CreepLaw, constrained_share
 from .law_fields import law_field, list_unit, read_law, select_law_class
 
@@ -60,7 +61,7 @@ class KelvinVoigtChain(CreepLaw):
 
     def __post_init__(self) -> None:
         if len(self.compliances) != len(self.times) or not len(self.times):
-            counts = f"{len(self.compliances)} compliances and {len(self.times)} times"
+            counts = f"{counted(len(self.compliances), 'compliance')} and {counted(len(self.times), 'time')}"
             raise ValueError(f"a KelvinVoigtChain needs as many compliances as times, and at least one, got {counts}")
         super().__post_init__()
 

@@ -9,6 +9,7 @@ from math import degrees, pi
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.display import counted
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
@@ -183,7 +184,7 @@ class CupFrame:
         if len(unloaded) == count:
             notes.append("no wear: the ball is never in contact during this cycle")
         elif len(unloaded):
-            first, part = self.cycle.describe_step(int(unloaded[0])), f"{len(unloaded)} of {count} instants"
+            first, part = self.cycle.describe_step(int(unloaded[0])), f"{len(unloaded)} of {counted(count, 'instant')}"
             notes.append(f"the ball lifts off, first at {first}: {part} have no contact and no wear")
         if self.separation is not None:
             notes.append(self.separation.describe(self.cycle))

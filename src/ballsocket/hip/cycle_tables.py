@@ -14,6 +14,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
+from ..core.display import counted
 from ..files.columns import Head, HeadChoice, NumberTable, read_columns
 from ..problem.cup import Side
 from .cycle import PhaseFunction
@@ -46,7 +47,9 @@ def read_table(path: Path, choice: HeadChoice) -> NumberTable:
     """
     table = read_columns(path, _HEADS, choice)
     if not _MIN_ROWS <= len(table) < _ROW_LIMIT:
-        raise ValueError(f"{path.name}: {len(table)} lines below the heads; a cycle has {_MIN_ROWS} to {_ROW_LIMIT}")
+        raise ValueError(
+            f"{path.name}: {counted(len(table), 'line')} below the heads; a cycle has {_MIN_ROWS} to {_ROW_LIMIT}"
+        )
     return table
 
 

@@ -14,7 +14,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require
-from ..core.display import finite_or_none, load_plot
+from ..core.display import counted, finite_or_none, load_plot
 from ..core.records import Record
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
@@ -96,7 +96,7 @@ class Film(Record):
 
     def __repr__(self) -> str:
         smallest = 1e6 * numpy.min(self.least, initial=numpy.inf)
-        return f"<film by {self.method} in {len(self.phases)} instants: smallest {smallest:.3g} nm>"
+        return f"<film by {self.method} in {counted(len(self.phases), 'instant')}: smallest {smallest:.3g} nm>"
 
     @property
     def error(self) -> Numbers | None:

@@ -11,6 +11,7 @@ import numpy
 
 from ..contact import Model
 from ..contact.model import BondedLiner
+from ..contact.strength import rim_errors
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.display import OneLine, html_list
@@ -243,14 +244,20 @@ class HipSetup(OneLine):
         )
 
     def contact_checks(
-        self, worst: Numbers, stress_errors: tuple[float, float] = UNWORN_ERRORS
+        self, worst: Numbers, edge: RimDistance, stress_errors: tuple[float, float] = UNWORN_ERRORS
     ) -> tuple[ContactCheck, ...]:
-        """Check validity and strength of each row of a table of worst contacts."""
+        """Check validity and strength of each row of a table of worst contacts, by their distance from the rim.
+
+        The stress of edge loading has no upper bound. A bore worn to its rim has the largest pressure elsewhere.
+        """
         frame = self.frame
-        instants = [self.cycle.describe_step(step) for step in frame.loaded[worst[:, 0].astype(int)]]
+        steps = worst[:, 0].astype(int)
+        distance = numpy.where(edge.is_edge_loaded, 0.0, numpy.maximum(edge.distance, numpy.finfo(float).tiny))
+        errors = numpy.maximum(numpy.transpose(rim_errors(self.joint, distance[steps])), stress_errors)
+        instants = [self.cycle.describe_step(step) for step in frame.loaded[steps]]
         return tuple(
-            check_contact(self.contact_model, self.joint, row, stress_errors, activity, instant)
-            for (activity, _), row, instant in zip(frame.activities, worst, instants, strict=True)
+            check_contact(self.contact_model, self.joint, row, (low, high), activity, instant)
+            for (activity, _), row, (low, high), instant in zip(frame.activities, worst, errors, instants, strict=True)
         )
 
     @cached_property
@@ -261,7 +268,7 @@ class HipSetup(OneLine):
     @cached_property
     def unworn_checks(self) -> tuple[ContactCheck, ...]:
         """Validity and strength of the worst contact of each activity in the first cycle."""
-        return self.contact_checks(self.unworn_worst_contacts)
+        return self.contact_checks(self.unworn_worst_contacts, self.edge(self.unworn))
 
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
         """Collect pressure and sliding of the socket's cells over a cycle, as input of a wear law."""

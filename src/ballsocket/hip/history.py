@@ -16,7 +16,7 @@ from ..contact.verdict import Verdict
 from ..core import answers
 from ..core.answers import QUIET, Column, Row, Table
 from ..core.arrays import Numbers
-from ..core.display import OneLine, load_plot, plain_number
+from ..core.display import OneLine, counted, load_plot
 from ..core.kinds import MEGAPASCALS, MILLIMETRES
 from ..core.quantities import QUANTITIES
 from ..core.records import Record
@@ -108,7 +108,7 @@ class Report(Record, OneLine):
 
     def __str__(self) -> str:
         numbers = f"{self.volume:.4g} mm³ worn, penetration {self.penetration:.4g} mm"
-        return f"after {plain_number(self.cycles)} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
+        return f"after {counted(self.cycles, 'cycle')}: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +213,9 @@ class History(OneLine):
     @cached_property
     def contact_checks(self) -> tuple[tuple[ContactCheck, ...], ...]:
         """Checks of the contact model at each report, one for each activity with contact."""
-        return tuple(self.use.contact_checks(report.worst_contacts, WORN_ERRORS) for report in self.reports)
+        return tuple(
+            self.use.contact_checks(report.worst_contacts, report.edge, WORN_ERRORS) for report in self.reports
+        )
 
     @property
     def valid(self) -> bool:
@@ -242,7 +244,7 @@ class History(OneLine):
 
     def _list_notes(self) -> Iterator[str]:
         use = self.use
-        later = [f"after {plain_number(report.cycles)} cycles" for report in self.reports]
+        later = [f"after {counted(report.cycles, 'cycle')}" for report in self.reports]
         yield from list_check_notes([(_FIRST_CYCLE, use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
         yield from use.notes
         liner = float(use.joint.liner_thickness)
@@ -250,14 +252,14 @@ class History(OneLine):
             first = next((report for report in self.reports if report.depth > limit * liner), None)
             if first is not None:
                 depths = Amount(first.depth, MILLIMETRES, 3), Amount(liner, MILLIMETRES)
-                yield Sentence(sentence, plain_number(first.cycles), *depths)
+                yield Sentence(sentence, counted(first.cycles, "cycle"), *depths)
                 break
         approaches = [self.worst, *(report.edge.closest_approach(use.frame) for report in self.reports)]
         first_stages: dict[str, tuple[str, ClosestApproach]] = {}  # by the kind of contact at the rim
         for stage, nearest in zip([_FIRST_CYCLE, *later], approaches, strict=True):
             if nearest is not None and nearest.steps_at_rim:
                 first_stages.setdefault(nearest.kind, (stage, nearest))
-        count = str(len(use.frame.loaded))
+        count = counted(len(use.frame.loaded), "instant")
         unworn_distance = Amount(0.0 if self.worst is None else self.worst.distance, MILLIMETRES, 3)
         for _, (stage, nearest) in sorted(first_stages.items()):
             pressure = Amount(nearest.pressure, MEGAPASCALS, 3)
@@ -277,7 +279,7 @@ class History(OneLine):
     def __str__(self) -> str:
         joint, count = self.use.joint, len(self.reports)
         state = "" if self.converged else "; not converged"
-        return f"of {joint.name or joint.dimensions}, {count} report{'s' * (count > 1)}, last {self.last}{state}"
+        return f"of {joint.name or joint.dimensions}, {counted(count, 'report')}, last {self.last}{state}"
 
     def _repr_html_(self) -> str:
         notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
@@ -363,15 +365,15 @@ _WEAR_RANKS = {
 """Quantities of the table of wear; those that a hip does not have are in data only."""
 
 _THIN_LINER = 0.25  # worn depth above which a note appears, relative to the thickness of the liner
-_WORN_THROUGH = "worn through: after {} cycles the depth is {} in a liner of {}; later reports are void"
-_WORN_THIN = "after {} cycles {} of a liner of {} are worn away; its stiffness is still that of the unworn liner"
+_WORN_THROUGH = "worn through: after {} the depth is {} in a liner of {}; later reports are void"
+_WORN_THIN = "after {} {} of a liner of {} are worn away; its stiffness is still that of the unworn liner"
 _FIRST_CYCLE = "in the first cycle"
 _EDGE_LOADING = (
-    "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
+    "edge loading: {} the contact reaches the rim in {} of {}, most at {}; "
     "the pressure in the outermost ring is at most {}"
 )
 _WORN_TO_RIM = (
-    "worn to the rim: {} the worn bore fits the ball and touches it up to the rim in {} of {} instants; this is not "
+    "worn to the rim: {} the worn bore fits the ball and touches it up to the rim in {} of {}; this is not "
     "edge loading, since under the same loads the unworn contact ends {} before the rim; the pressure in the "
     "outermost ring is at most {}"
 )

@@ -10,7 +10,7 @@ import numpy
 from ..contact.verdict import bar_text, ratio_text
 from ..core.answers import PAGE, Answer, Cell, Column, Row, Table
 from ..core.arrays import Numbers
-from ..core.display import plain_number
+from ..core.display import counted, plain_number
 from ..core.kinds import (
     CUBIC_MILLIMETRES,
     MEGAPASCALS,
@@ -77,10 +77,10 @@ def _wear_lines(history: History) -> Iterator[Sentence]:
         elif nearest is not None:
             yield Sentence("{}, the contact reaches the rim ({}) at {}", stage, nearest.kind, nearest.location)
     yield Sentence(
-        "estimated numerical error {} of the volume and {} of the depth, {} blocks of cycles",
+        "estimated numerical error {} of the volume and {} of the depth, {} of cycles",
         Amount(error.volume, PERCENT, 2),
         Amount(error.depth, PERCENT, 2),
-        str(history.steps),
+        counted(history.steps, "block"),
     )
 
 
@@ -115,7 +115,7 @@ def contact_line(history: History) -> str:
         unworn, end = (
             _utilisation_text(max(stage, key=lambda check: check.utilisation or 0.0)) for stage in (checks, last)
         )
-        after = f"{end} after {plain_number(history.last.cycles)} cycles"
+        after = f"{end} after {counted(history.last.cycles, 'cycle')}"
         ratios = [check.pressure_ratio for check in (*checks, *last) if check.pressure_ratio is not None]
         largest = max(ratios, key=lambda ratio: ratio.value, default=None)
         pressure = "" if largest is None else f"; pressure at most {ratio_text(largest)} the allowable pressure"

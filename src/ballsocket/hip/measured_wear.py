@@ -12,7 +12,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import known_name, require, shown
-from ..core.display import plain_number
+from ..core.display import counted
 
 MILLION = 1e6  # cycles to which rates refer
 
@@ -101,7 +101,8 @@ class MeasuredWear:
         if self.station is not None:
             names = (self.station,) * values.size if isinstance(self.station, str) else tuple(self.station)
             if len(names) != values.size:
-                raise ValueError(f"station has {len(names)} names for {values.size} values: one name, or one for each")
+                counts = f"{counted(len(names), 'name')} for {counted(values.size, 'value')}"
+                raise ValueError(f"station has {counts}: one name, or one for each")
             object.__setattr__(self, "station", names)
 
     def _check_totals(self, values: Numbers) -> None:
@@ -113,7 +114,9 @@ class MeasuredWear:
             )
         cycles = _positive_array("cycles", self.cycles, "a number of cycles is positive and finite")
         if cycles.size != values.size:
-            raise ValueError(f"{self.quantity} has {values.size} values and {cycles.size} cycles: one for each value")
+            raise ValueError(
+                f"{self.quantity} has {counted(values.size, 'value')} and cycles has {cycles.size}: one for each value"
+            )
         object.__setattr__(self, "cycles", cycles)
 
     def _check_rate(self, rate: str) -> None:
@@ -131,7 +134,7 @@ class MeasuredWear:
             raise ValueError(f"a {rate} rate of {quantity} needs {needed}: numbers of cycles, such as to = 5e6")
         if rate == "mean" and self.begin:
             raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
-        rule = f"it is above the {plain_number(begin)} cycles of from, and finite"
+        rule = f"it is above the {counted(begin, 'cycle')} of from, and finite"
         require("to", self.end, 0 <= begin < self.end < inf, rule)
 
     def __len__(self) -> int:

@@ -11,6 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.chebyshev import chebyshev_points
+from ..core.display import counted
 from ..core.storage.pieces import check_worker_code, fingerprint
 from .chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from .contact_checks import check_rows
@@ -171,7 +172,8 @@ def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degre
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))
     points, exponents = family.box.sample(len(known)), _exponents(family.box, degree)
     if known.sum() < (_MIN_MEMBERS_PER_TERM * len(exponents) if family.box.axes else 1):
-        raise NoSeriesError(f"{len(known) - int(known.sum())} of {len(known)} simulations of a series have no result")
+        simulations = counted(len(known), "simulation")
+        raise NoSeriesError(f"{len(known) - int(known.sum())} of {simulations} of a series without a result")
     columns = {name: numpy.array([point[name] for point in points])[known] for name in family.box.ranges}
     terms = basis(family.box.scale(columns), exponents)
     solved = numpy.linalg.lstsq(

@@ -89,6 +89,11 @@ class RimDistance(Record):
     pressure: Numbers
     edge_loaded: Numbers | None = None
 
+    @property
+    def is_edge_loaded(self) -> Numbers:
+        """Mask of the contacts that are edge loading: (loaded,)."""
+        return self.distance <= 0 if self.edge_loaded is None else self.edge_loaded
+
     def closest_index(self, loading: CupFrame) -> int | None:
         """Return the index of the contact closest to the rim; None without loads."""
         if not len(self.distance):
@@ -107,7 +112,7 @@ class RimDistance(Record):
             step_description=loading.cycle.describe_step(int(loading.loaded[index])),
             steps_at_rim=int((self.distance <= 0).sum()),
             pressure=float(self.pressure.max()),
-            steps_edge_loaded=int((self.distance <= 0 if self.edge_loaded is None else self.edge_loaded).sum()),
+            steps_edge_loaded=int(self.is_edge_loaded.sum()),
         )
 
 

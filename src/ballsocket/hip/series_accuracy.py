@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy
 
+from ..core.display import counted
 from .variability import RESULT_COLUMNS, RESULT_UNITS, CohortResult
 
 TOLERANCES: Mapping[str, float] = {
@@ -91,8 +92,8 @@ class SeriesAccuracy:
         """Describe the series, its error and the patients outside its ranges, for reports of a cohort."""
         errors = ", ".join(f"{100 * error:.2g} % in {name}" for name, error in self.relative.items())
         described = (
-            f"series of {self.n_simulations} simulations in place of {n_patients}: {100 * _FRACTION:g} % of the "
-            f"results of {self.n_held_out} simulated {noun} are within {errors.replace('_', ' ')}"
+            f"series of {counted(self.n_simulations, 'simulation')} in place of {n_patients}: {100 * _FRACTION:g} % of "
+            f"the results of {self.n_held_out} simulated {noun} are within {errors.replace('_', ' ')}"
         )
         if not self.within_tolerance:
             limits = ", ".join(f"{100 * TOLERANCES[name]:g} % in {name}" for name in self.relative)

@@ -14,7 +14,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.display import plain_number
+from ..core.display import counted, plain_number
 from ..core.storage.atomic_files import make_folder, read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
 from ..lubrication import Lubricant
@@ -111,7 +111,7 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
     estimated_depth = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
     if not estimated_depth <= MAX_WORN_LINERS * thickness:
         raise ValueError(
-            f"{plain_number(cycles)} cycles at the rate of the first one would wear {estimated_depth:.3g} mm away, "
+            f"{counted(cycles, 'cycle')} at the rate of the first one would wear {estimated_depth:.3g} mm away, "
             f"more than {MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: "
             "reduce the wear coefficient or the cycles"
         )
@@ -133,7 +133,7 @@ def run_to_report_points(
             continue
         if report_count < integrator.cycles:
             raise ValueError(
-                f"the store has reached {plain_number(integrator.cycles)} cycles without a report at "
+                f"the store has reached {counted(integrator.cycles, 'cycle')} without a report at "
                 f"{plain_number(report_count)}; give another folder"
             )
 
@@ -293,7 +293,7 @@ class HipSimulation(HipSetup):
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
     """Check the cycle counts of a run, and return those of its reports in ascending order, the last one at its end."""
     require("cycles", cycles, 0 < cycles < inf, "a number of cycles is positive and finite")
-    rule = f"it lies between 0 and the {plain_number(cycles)} cycles of the run"
+    rule = f"it lies between 0 and the {counted(cycles, 'cycle')} of the run"
     for count in report_at:
         require("report_at", count, 0 <= count <= cycles, rule)
     return sorted({float(count) for count in (*report_at, cycles)})

@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.display import finite_or_none
+from ..core.display import counted, finite_or_none
 from .history import History, NumericalError
 from .law_fields import law_summary
 from .measured_wear import MILLION, MeasuredWear
@@ -119,7 +119,8 @@ class WearFit:
             yield f"the measured mass is a volume by the density {density:g} mg/mm³"
         last = max((measured.cycles.max() for measured in self.data if measured.cycles is not None), default=inf)
         if last < _FEW_CYCLES:
-            yield f"the last reading is after {last:g} cycles: if these are millions, write 'cycles [Mc]' or {last:g}e6"
+            millions = f"if these are millions, write 'cycles [Mc]' or {last:g}e6"
+            yield f"the last reading is after {counted(last, 'cycle')}: {millions}"
         yield from self._specimen_notes()
         if not isfinite(self.high):
             yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"
@@ -138,7 +139,7 @@ class WearFit:
         if count > 1:
             yield (
                 f"the coefficient is the mean of {count} specimens, which scatter by {100 * self.scatter:.2g} % "
-                f"(k = 1); the band is by Student's quantile with {count - 1} degree{'s' * (count > 2)} of freedom"
+                f"(k = 1); the band is by Student's quantile with {counted(count - 1, 'degree')} of freedom"
             )
             if self.high - self.low <= _ROUNDING * self.coefficient:
                 yield "the specimens agree exactly: their scatter gives no band; state uncertainty, such as '5 %'"

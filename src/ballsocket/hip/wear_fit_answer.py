@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 
 from ..core.answers import Answer, Cell, Column, Row, Table
-from ..core.display import plain_number
+from ..core.display import counted
 from ..core.kinds import Unit
 from ..core.unit_systems import Amount, Sentence
 from .wear_fit import WearFit
@@ -50,7 +50,7 @@ def _measured(fit: WearFit) -> Table:
         factor = measured.density or 1.0
         unit = Unit(measured.unit if measured.density is None else measured.unit.replace("mm³", "mg"), factor)
         for number, (value, result) in enumerate(zip(measured.values, results, strict=True)):
-            after = "" if measured.rate else f" after {plain_number(measured.cycles[number])} cycles"
+            after = "" if measured.rate else f" after {counted(measured.cycles[number], 'cycle')}"
             title = measured.description if measured.rate else f"{measured.measured_quantity}{after}"
             cells: list[Cell] = [title, Amount(float(value), unit), Amount(float(result), unit)]
             rows.append(Row([*cells, stations[len(rows)]] if several else cells))

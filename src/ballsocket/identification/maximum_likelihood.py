@@ -11,6 +11,7 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import shown
+from ..core.display import counted
 from ..problem import Joint
 from .bands import compute_bands
 from .fit import find_best_fit, minimise_misfit
@@ -139,8 +140,8 @@ def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]
             freedom = float(used.sum() - leverages[part][used].sum())
             if freedom < _MIN_NOISE_FREEDOM:
                 raise ValueError(
-                    f"the uncertainty of {measured.name or measured.quantity} is missing, and {len(measured)} values "
-                    "are too few to estimate it: state uncertainty, or measure more values"
+                    f"the uncertainty of {measured.name or measured.quantity} is missing, and cannot be estimated "
+                    f"from {counted(len(measured), 'value')}: state uncertainty, or measure more values"
                 )
             residuals = (results[part] - misfit.value[part])[used]
             least = _MIN_RELATIVE_NOISE * float(abs(measured.values).max())
@@ -189,8 +190,8 @@ def _check_data(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unkno
     ranges = [unknown.name for unknown in unknowns if not unknown.has_distribution]
     if count < len(ranges):
         raise ValueError(
-            f"{count} values do not suffice for {len(ranges)} unknowns ({', '.join(ranges)}): measure more values, or "
-            "free fewer unknowns"
+            f"too few data, {counted(count, 'value')} for {counted(len(ranges), 'unknown')} ({', '.join(ranges)}): "
+            "measure more values, or free fewer unknowns"
         )
     names = {unknown.name for unknown in unknowns}
     needed = {name: measured for measured in data if measured.observable for name in measured.observable.numbers}

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ..core.answers import Answer, Cell, Column, Row, Table
+from ..core.display import counted
 from ..core.kinds import PERCENT, Unit
 from ..core.quantities import LOADS
 from ..core.unit_systems import Amount
@@ -22,7 +23,9 @@ def describe_identification(result: IdentificationResult, posterior: Posterior |
     sets = ", ".join(f"{len(data)} x {data.quantity}" for data in result.data)
     remarks = dict.fromkeys(data.remark for data in result.data if data.remark)
     return Answer(
-        title="; ".join([f"{result.model.name} fitted to {len(result.misfit.value)} values ({sets})", *remarks]),
+        title="; ".join(
+            [f"{result.model.name} fitted to {counted(len(result.misfit.value), 'value')} ({sets})", *remarks]
+        ),
         tables=[
             _estimates(result, posterior)._replace(lines=[*_quality(result, posterior)]),
             *([_machine_errors(result)] if result.sensitivity else []),

@@ -10,6 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import shown
+from ..core.display import counted
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
 from ..files.cells import NumberedRow, decode_text, is_data, split_text
@@ -97,7 +98,9 @@ def _read_text(path: Path, units: str) -> tuple[Numbers, tuple[str, ...]]:
         table = find_cells(path.name, _without_heads(tables) or tables, _AXES)
         points, notes = _read_points(lines, table, _find_columns(table, units))
         if n_stated and int(n_stated) != len(points):
-            raise ValueError(f"its first line states {n_stated} points, and it has {len(points)}: save it again")
+            raise ValueError(
+                f"its first line states {counted(int(n_stated), 'point')}, and it has {len(points)}: save it again"
+            )
         return points, notes
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from error
@@ -137,7 +140,7 @@ def _read_points(lines: Sequence[str], table: CellTable, columns: Sequence[int])
         raise ValueError(
             f"line {numbers[row]} has {shown(lines[numbers[row] - 1])}: that is no point, three numbers x y z"
         ) from error
-    note = f"{table.title}: {n_unnamed} columns without names are not read, behind x, y and z"
+    note = f"{table.title}: not read: {counted(n_unnamed, 'column')} without a name, behind x, y and z"
     return points, (note,) * bool(n_unnamed)
 
 

@@ -15,6 +15,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import shown
+from ..core.display import counted
 from ..core.input_files import open_input
 from ..files.cells import decode_text
 from ..problem.cup import Side
@@ -225,7 +226,7 @@ def _read_fcsv(text: str, coordinates: str | None) -> Iterator[tuple[str, Number
     signs = _signs(header.get("coordinatesystem"), coordinates)
     for cells in csv.reader(rows):
         if len(cells) <= max(columns.index(name) for name in ("x", "y", "z", "label")):
-            raise ValueError(f"a row of {len(cells)} columns is incomplete: {shown(','.join(cells))}")
+            raise ValueError(f"a row of {counted(len(cells), 'column')} is incomplete: {shown(','.join(cells))}")
         name = cells[columns.index("label")].strip()
         yield name, signs * _point(name, [cells[columns.index(axis)] for axis in "xyz"])
 

@@ -13,6 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import shown
+from ..core.display import counted
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
 
@@ -138,7 +139,7 @@ def _read_triangles(stream: BinaryIO, size: int, path: Path) -> tuple[Numbers, b
             raise ValueError(
                 f"{name} is not read: {shown(path.suffix.lower())} is no suffix of a mesh; save it as STL, OBJ or PLY"
             )
-        expected = f"its header states {count} triangles, {_BINARY_HEADER + _BINARY_FACET * count} bytes"
+        expected = f"its header states {counted(count, 'triangle')}, {_BINARY_HEADER + _BINARY_FACET * count} bytes"
         raise ValueError(
             f"{name} is a truncated or damaged binary STL: {size} bytes, "
             + (expected if count >= 0 else f"less than the header of {_BINARY_HEADER}")
@@ -178,7 +179,7 @@ def check_extent(points: Numbers, units: str, name: str) -> float:
     """
     length = length_of(units)
     if not numpy.isfinite(points).all():
-        raise ValueError(f"{name}: {(~numpy.isfinite(points)).sum()} coordinates are not finite numbers")
+        raise ValueError(f"{name}: {counted((~numpy.isfinite(points)).sum(), 'coordinate')} without a finite number")
     low, high = _SIZES
     extent = float(numpy.ptp(points, axis=0).max())
     if not low <= extent * length <= high:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from math import acos, degrees, floor, log10
+from math import acos, degrees
 
 from ..core.answers import Answer, Cell, Column, Row, Table
-from ..core.kinds import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, PERCENT, Kind, Unit
-from ..core.unit_systems import Amount, Sentence
+from ..core.display import counted
+from ..core.kinds import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, PERCENT, Kind
+from ..core.unit_systems import Amount, Sentence, with_error
 from .geometry import angle_between
 from .implants import ImplantFit
 from .pelvis import CupOrientation, PelvicFrame
@@ -33,12 +34,6 @@ def describe_plan(plan: HipPlan, remarks: Iterable[str] = ()) -> Answer:
     return Answer(title="planning data of a hip", tables=[table], notes=list(remarks))
 
 
-def _rounded(value: float, error: float, unit: Unit) -> Amount:
-    """Return a number with the digits that its error leaves."""
-    decimals = floor(0.5 - log10(error * unit.factor)) if error > 0 else 3
-    return Amount(value, unit, decimals=decimals)
-
-
 def _angle(angle: float) -> Amount:
     return Amount(angle, Kind.ANGLE.written, decimals=1)
 
@@ -59,7 +54,7 @@ def _cup_cells(orientation: CupOrientation | None) -> Iterator[_Cells]:
     if orientation.residual is not None:
         error = "" if orientation.angle_error is None else f"±{degrees(orientation.angle_error):.1f}°, "
         residual = Amount(orientation.residual, MILLIMETRES, decimals=2)
-        plane = Sentence(f"{error}{orientation.points} rim points, {{}} rms", residual)
+        plane = Sentence(f"{error}{counted(orientation.points, 'rim point')}, {{}} rms", residual)
     for upright, title in ((True, ""), (False, " to the pelvic plane")):
         if not upright and orientation.frame.vertical is None:
             return
@@ -73,7 +68,7 @@ def _fit_cells(part: str, fit: ImplantFit | None) -> Iterator[_Cells]:
     if fit is None:
         return
     residual = Amount(fit.residual, MILLIMETRES, decimals=3)
-    radius = _rounded(fit.radius, max(fit.residual, _MESH_ERROR), MILLIMETRES)
+    radius, _ = with_error(fit.radius, max(fit.residual, _MESH_ERROR), MILLIMETRES, digits=1)
     yield f"{part} radius", radius, Sentence("{} rms", residual)
     rim = f"rim within {degrees(fit.rim_deviation):.1f}° of a plane" if fit.axis is not None else "complete"
     yield f"{part} arc of cover", _angle(fit.arc_of_cover), rim
@@ -94,16 +89,14 @@ def _wear_cells(worn: WornBore | None) -> Iterator[_Cells]:
     """Yield the rows of a worn bore; errors are two standard errors."""
     if worn is None:
         return
-    error = Amount(worn.volume_error, CUBIC_MILLIMETRES, 2)
-    volume = _rounded(worn.volume, worn.volume_error, CUBIC_MILLIMETRES)
-    yield "worn volume", volume, Sentence(f"±{{}} (95 %), {worn.points} points", error)
+    volume, error = with_error(worn.volume, worn.volume_error, CUBIC_MILLIMETRES)
+    yield "worn volume", volume, Sentence(f"±{{}} (95 %), {counted(worn.points, 'point')}", error)
     polar = degrees(acos(min(max(float(worn.deepest @ worn.pole), -1.0), 1.0)))
-    error = Amount(worn.depth_error, MICROMETRES, 2)
+    depth, error = with_error(worn.depth, worn.depth_error, MICROMETRES)
     place = Sentence(f"±{{}} (95 %), {polar:.0f}° from the middle of the points", error)
-    yield "deepest wear", _rounded(worn.depth, worn.depth_error, MICROMETRES), place
-    errors = Amount(worn.radius_error, MILLIMETRES, 2), Amount(worn.noise, MICROMETRES, 2)
-    radius = _rounded(worn.radius, worn.radius_error, MILLIMETRES)
-    yield "unworn radius", radius, Sentence("±{} (95 %), noise {}", *errors)
+    yield "deepest wear", depth, place
+    radius, error = with_error(worn.radius, worn.radius_error, MILLIMETRES)
+    yield "unworn radius", radius, Sentence("±{} (95 %), noise {}", error, Amount(worn.noise, MICROMETRES, 2))
     share = f"{100.0 * worn.cover:.0f} % within {degrees(worn.reach):.0f}° of their middle"
     unworn = Amount(worn.unworn, PERCENT, decimals=0)
     yield "unworn part", unworn, f"of the covered surface; points cover {share}"

@@ -17,13 +17,12 @@ from ..core.checks import require
 from ..core.kinds import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, PERCENT
 from ..core.unit_systems import Amount, Sentence
 from ..elasticity.off_axis.directions import tangents
-from ..elasticity.off_axis.scans import fit_sphere
+from ..elasticity.off_axis.scans import MIN_POINTS, MIN_REACH, fit_sphere
 from .clouds import PointCloud
 from .geometry import polar, robust_scale
 from .implants import RADII
 
 _SEED = 20260103
-_MIN_POINTS = 200
 _THINNING = radians(3.0)  # distance of the points for the first sphere: dense parts count as much as sparse ones
 _STARTS, _FINALISTS, _STEPS, _LAST_STEPS = 300, 8, 2, 20  # spheres, best of them, and steps of the trimmed fit for both
 _TRIMMED = 0.4  # share of the points whose residuals the trimmed fit minimises
@@ -37,7 +36,6 @@ _PASSES = 12
 _PATCH = radians(10.0)  # size of the patches of one error of form, and radius of the patch of the deepest wear
 _MAX_GAP = radians(15.0)  # longest distance of neighbouring points; a wider gap is not covered
 _SMOOTHED_AWAY = 1e-3  # largest relative error of the paraboloid at the deepest wear of a head
-_MIN_REACH = radians(25.0)
 _MIN_UNWORN = 0.1  # least share of the covered surface that is not worn
 _MIN_FLATNESS = 0.02  # smallest over largest scatter of points on a sphere; 0.1 at a reach of 25°
 _MAX_FORM = 0.005  # largest scatter of the unworn part over its radius
@@ -87,7 +85,9 @@ class WornBore:
         True if the worn part is as good a sphere as the unworn one, with the same radius.
     hidden_shift : float
         Longest shift in mm of a head of the bore's radius that may have worn the sphere without a trace in the points.
-        The errors contain it. 0 if the points exclude it.
+        The errors contain it. 0 if the points, or a smaller head, exclude it.
+    head_note : str
+        Effect of a measured head on the numbers; empty without one.
     name : str
         Name of the file.
     """
@@ -111,6 +111,7 @@ class WornBore:
     name: str
     reading_notes: tuple[str, ...] = ()
     hidden_shift: float = 0.0
+    head_note: str = ""
 
     @property
     def area(self) -> float:
@@ -150,6 +151,8 @@ class WornBore:
                     Amount(2 * self.radius_error, MICROMETRES, 2),
                 )
             )
+        if self.head_note:
+            notes.append(self.head_note)
         if self.ambiguous:
             notes.append(
                 f"{self.name}: the worn part is a sphere too, of the same radius within its error: the errors contain "
@@ -191,7 +194,7 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
         middle.
     """
     points, name = cloud.points, cloud.name
-    require(f"points of {name}", len(points), len(points) >= _MIN_POINTS, f"a bore has at least {_MIN_POINTS} points")
+    require(f"points of {name}", len(points), len(points) >= MIN_POINTS, f"a bore has at least {MIN_POINTS} points")
     extents = numpy.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if extents[2] < _MIN_FLATNESS * extents[0]:
         raise ValueError(f"{name} is not a bore: its points lie in a plane or on a line")
@@ -210,15 +213,32 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
             f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
             f"{2 * unworn.radius:.6g} ± {2 * unworn.radius_error:.2g} mm; check the head and --stl-units"
         )
+    unused = "" if head_radius is None else _unused_head(unworn, head_radius)
     if len(bores) == 1:
-        larger = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
-        return unworn if larger else _add_hidden_shift(unworn, local, spheres[0])
+        shifted = _add_hidden_shift(unworn, local, spheres[0])
+        excludes = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
+        if not (excludes and shifted.hidden_shift):
+            return replace(shifted, head_note=unused)
+        length = Amount(shifted.hidden_shift, MILLIMETRES, 2)
+        return replace(unworn, head_note=Sentence(_HEAD_EXCLUDES, name, length))
     errors = {}
     for quantity in ("volume", "depth"):
         difference = abs(getattr(bores[0], quantity) - getattr(bores[1], quantity))
         own, other = (getattr(bore, f"{quantity}_error") for bore in bores)
         errors[f"{quantity}_error"] = max(difference + other, own)
-    return replace(unworn, **errors, ambiguous=True)
+    return replace(unworn, **errors, ambiguous=True, head_note=unused)
+
+
+def _unused_head(bore: WornBore, head_radius: float) -> Sentence:
+    """Describe a head that changes no number: it is as large as the bore, or the points exclude a hidden shift."""
+    gap = Amount(2 * (bore.radius - head_radius), MILLIMETRES, 2)
+    return Sentence("{}: the head, with a diameter of {} less than the bore, changes no number", bore.name, gap)
+
+
+_HEAD_EXCLUDES = (
+    "{}: the head is smaller than the bore, so that it cannot have worn the sphere of the bore without a trace: the "
+    "errors contain no such shift, which could else be up to {}"
+)
 
 
 def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> WornBore:
@@ -228,8 +248,10 @@ def _integrate(cloud: PointCloud, local: _Neighbourhoods, sphere: _Unworn) -> Wo
     pole = radial[_thin(radial)].mean(axis=0)  # dense parts count as much as sparse ones
     pole /= max(float(numpy.linalg.norm(pole)), 1e-12)
     reach = float(numpy.arccos(numpy.clip(radial @ pole, -1.0, 1.0)).max())
-    allowed = "a bore has points up to 25° (0.436 rad) from its middle"
-    require(f"reach of {name} in rad", reach, reach >= _MIN_REACH, allowed)
+    if reach < MIN_REACH:
+        raise ValueError(
+            f"{name} has points up to {degrees(reach):.0f}° from its middle; a bore needs {degrees(MIN_REACH):.0f}°"
+        )
     areas = _vertex_areas(radial, pole)
     covered = float(areas.sum())
     errors = _Errors.of(local, sphere)

@@ -6,6 +6,7 @@ from itertools import starmap
 from types import MappingProxyType
 from typing import Any
 
+from ..core.display import counted
 from ..core.unit_systems import Sentence, Units, from_json, holders_of
 from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
@@ -139,7 +140,7 @@ def _final_wear(record: Record, units: Units) -> Rows:
     band = f" ({band_text(bands[-1]['volume'], unit.factor)} in 95 of 100 patients)" if bands else ""
     case = case_text(unloaded(record["worst"]["wear_rate"]["case"]), units)
     volume = f"{number(last['volume'] * unit.factor)} {unit.text}{band}"
-    return [(f"worn volume after {number(last['cycles'])} cycles", volume, case)]
+    return [(f"worn volume after {counted(last['cycles'], 'cycle')}", volume, case)]
 
 
 def _pictures(record: Record, units: Units) -> list[dict[str, str]]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from ..contact.verdict import bar_text, percent
 from ..core.answers import Answer, Check, Table, grid
 from ..core.checks import needs
+from ..core.display import counted
 from ..core.input_files import open_input
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.storage.atomic_files import check_ending, write_atomically
@@ -38,7 +39,7 @@ def _environment() -> Environment:
     """Return the environment of the templates, which escapes texts and refuses missing values."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    return Environment(
+    environment = Environment(
         loader=PackageLoader(__package__),
         autoescape=True,
         undefined=StrictUndefined,
@@ -46,6 +47,8 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    environment.filters["counted"] = counted
+    return environment
 
 
 PAGE_FORMATS = (".html", ".pdf")  # endings of the files that `write_page` writes

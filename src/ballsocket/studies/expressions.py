@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..core.checks import check_names, shown
+from ..core.checks import check_names, number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.schema import QUANTITY_SCHEMA
@@ -17,6 +18,9 @@ from .parameters import MATERIAL_PARTS, PARAMETERS
 
 if TYPE_CHECKING:
     from .limits import Limit
+
+Read = Callable[[str, Any], float]
+"""Function from name and value of a number in a file to the number."""
 
 _MAX_CHARACTERS = 200  # largest length of a text; matching a longer one could take seconds
 
@@ -64,6 +68,8 @@ def parse_choices(text: str) -> tuple[str, list[Any]] | None:
 def parse_distribution(text: str) -> tuple[str, Distribution]:
     """Parse a name and its distribution: "clearance=0.10+-0.05 mm" (tolerance), "liner_poisson=0.38..0.46" (uniform).
 
+    A tolerance may be a percentage of its nominal value, as in "clearance=0.1 mm +- 5 %".
+
     Raises ValueError: another form, or an unknown name.
     """
     match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", text)
@@ -72,8 +78,9 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
         return name, Rectangular(low=low, high=high)
     name, nominal, plus_minus = match.groups()
     check_names([name], PARAMETERS, "among what can scatter")
-    kind = PARAMETERS[name].kind
-    return name, tolerance(parse(name, _add_unit(nominal, plus_minus), kind), parse(name, plus_minus, kind))
+    read = partial(parse, kind=PARAMETERS[name].kind)
+    centre = read(name, nominal if number_of_percent(plus_minus) else _add_unit(nominal, plus_minus))
+    return name, tolerance(centre, _read_width(name, plus_minus, centre, read))
 
 
 def parse_correlations(texts: Iterable[str]) -> Correlation:
@@ -128,8 +135,11 @@ def _add_unit(number: str, last: str) -> str:
     return f"{number} {unit.group(1)}".strip() if unit and bare else number
 
 
-Read = Callable[[str, Any], float]
-"""Function from name and value of a number in a file to the number."""
+def _read_width(name: str, stated: Any, centre: float, read: Read) -> float:
+    """Read a tolerance or a deviation, a number with a unit or a percentage of the value at the centre."""
+    percent = number_of_percent(stated)
+    return read(name, stated) if percent is None else parse(name, percent, Kind.NUMBER) / 100 * abs(centre)
+
 
 _DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
     (("low", "high"), Rectangular),
@@ -157,9 +167,15 @@ def distribution_of(name: str, content: Any, read: Read) -> Distribution:
     """
     for keys, make in _DISTRIBUTIONS:
         if isinstance(content, Mapping) and set(content) == set(keys):
-            numbers = {key: read(f"{name}.{key}", content[key]) for key in keys if key != "factor"}
-            if "factor" in keys:  # it has no unit
-                numbers["factor"] = parse(f"{name}.factor", content["factor"], Kind.NUMBER)
+            numbers: dict[str, float] = {}
+            for key in keys:
+                label, stated = f"{name}.{key}", content[key]
+                if key == "factor":  # it has no unit
+                    numbers[key] = parse(label, stated, Kind.NUMBER)
+                elif key in ("deviation", "plus_minus"):
+                    numbers[key] = _read_width(label, stated, numbers[keys[0]], read)
+                else:
+                    numbers[key] = read(label, stated)
             with as_given(content, f"{name}."):
                 return make(**numbers)
     raise ValueError(

@@ -65,6 +65,8 @@ class Limit:
             for end in (self.low, self.high):
                 good = (abs(end) <= pi) | (abs(end) == inf)
                 require(self.name, end, good, f"it is in radians; {degrees_hint(end)}")
+        for end in (self.low, self.high):
+            require(self.name, end, end == end, "a limit is a number")
         require(
             self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
         )

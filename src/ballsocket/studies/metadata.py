@@ -19,6 +19,7 @@ from ..contact.strength import unchecked_strength_reason
 from ..contact.verdict import Verdict
 from ..core import arrays
 from ..core.arrays import Numbers
+from ..core.display import counted
 from ..core.kinds import MILLIMETRES
 from ..core.quantities import QUANTITIES, SHELL
 from ..core.storage.pieces import fingerprint
@@ -80,7 +81,7 @@ def study_attributes(task: Task) -> dict[str, Any]:
     # the name of a material axis comes before its properties
     names = ((*([axis.name] if axis.labels else []), *axis.names) for axis in task.design.axes)
     return {
-        "title": f"{task.model.title}, pressed at {task.design.size} points",
+        "title": f"{task.model.title}, pressed at {counted(task.design.size, 'point')}",
         "model": task.model.name,
         "joint": json.dumps(task.joint.summary(), ensure_ascii=False),
         "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
@@ -127,6 +128,27 @@ def held_in(result: xarray.Dataset) -> dict[str, float]:
     """Return the lengths of the joint in mm that a study or a sensitivity holds while others vary."""
     held: dict[str, float] = json.loads(result.attrs.get(HELD, "{}"))
     return held
+
+
+def as_data(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """Return contents by the names of quantities with the keys and units of JSON: half_angle in rad as half_angle_deg.
+
+    A content is a number, a list, or a mapping with numbers and the point `at` which they are.
+    """
+    return {_data_key(name): _datum(name, content) for name, content in numbers.items()}
+
+
+def _data_key(name: str) -> str:
+    return QUANTITIES[name].key if name in QUANTITIES else name
+
+
+def _datum(name: str, content: Any) -> Any:
+    if isinstance(content, list):
+        return [_datum(name, entry) for entry in content]
+    if isinstance(content, Mapping):
+        return {key: as_data(part) if key == "at" else _datum(name, part) for key, part in content.items()}
+    is_number = isinstance(content, float) and name in QUANTITIES
+    return content * QUANTITIES[name].written.factor if is_number else content
 
 
 def held_text(held: Mapping[str, float]) -> Sentence:

@@ -15,12 +15,15 @@ from ..contact import Model
 from ..contact.verdict import Verdict
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
+from ..core.display import counted
+from ..core.quantities import QUANTITIES as ALL_QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from ..problem import Joint
 from .derivatives import DerivativeFunction, finite_differences
 from .design import Design, grid, sample
 from .distributions import Rectangular
 from .limits import Limit, allowed, count_verdicts, limited_quantities, refusal_reason
+from .metadata import as_data
 from .parameters import MATERIAL_PARTS, PARAMETERS, hold, vary_joint
 from .run import study
 from .task import QUANTITIES
@@ -81,8 +84,14 @@ class Optimum:
 
     def summary(self) -> dict[str, Any]:
         """Return a dictionary of the optimum for JSON."""
+        objective = ALL_QUANTITIES[self.minimise]
+        units = {name: ALL_QUANTITIES[name].written.factor / objective.written.factor for name in self.slopes}
         return {
             **vars(self),
+            "minimise": objective.key,
+            "value": self.value * objective.written.factor,
+            "point": as_data(self.point),
+            "slopes": {ALL_QUANTITIES[name].key: slope / units[name] for name, slope in self.slopes.items()},
             "active": list(self.active),
             "joint": self.joint.summary(),
             "verdict": Verdict.KEPT.word,
@@ -234,7 +243,7 @@ class _Search:
                 name: Rectangular(low=low, high=high) for name, (low, high) in self.ranges.items()
             }
             design = sample(count, seed=seed, **uniform) * grid(**self.sizes)
-            joints = f"of {count} joints within the ranges"
+            joints = f"of {counted(count, 'joint')} within the ranges"
             refused, place = f"none {joints} is allowed", f"for any {joints}"
         else:
             design = grid(**self.sizes)

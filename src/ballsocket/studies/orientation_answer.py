@@ -12,6 +12,7 @@ import numpy
 from ..core.answers import Answer, Column, Judged, Row, Table
 from ..core.arrays import Numbers
 from ..core.bounded import Verdict
+from ..core.display import counted
 from ..core.kinds import MILLIMETRES
 from ..core.quantities import CONTACT, DERIVED
 from ..core.unit_systems import Amount, Sentence
@@ -25,11 +26,16 @@ LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")  # fields of or
 def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = ()) -> Answer:
     """Describe distance to the rim and largest pressure by orientation, the orientations within limits, the best ones.
 
-    A number has the verdict on all limits; it is missing where the bore does not hold the ball.
+    The half angle is a table if it has a limit. A number has the verdict on the limits of its quantity, or on all
+    limits if its quantity has none; it is missing where the bore does not hold the ball.
     """
-    codes = verdicts(orientations, limits)
     tables = []
-    for quantity in (DERIVED["edge_distance"], CONTACT["max_pressure"]):
+    limited = {limit.name for limit in limits}
+    for quantity in (DERIVED["edge_distance"], CONTACT["max_pressure"], CONTACT["half_angle"]):
+        if quantity.name == "half_angle" and quantity.name not in limited:
+            continue
+        marking = [limit for limit in limits if limit.name == quantity.name] or limits
+        codes = verdicts(orientations, marking)
         heads = [angle_text(angle) for angle in orientations.inclination]
         column = replace(Column.of(quantity), decimals=1, title="")  # known to about 0.1 mm and 0.1 MPa
         columns = [replace(column, key=head, name=head, head=head) for head in heads]
@@ -39,13 +45,14 @@ def describe_orientations(orientations: Orientations, limits: Sequence[Limit] = 
             for angle, pairs in zip(orientations.anteversion, numpy.dstack([values.T, codes.T]), strict=True)
         ]
         corner = Column.of_words("anteversion", quantity.title)
-        lines = ["columns: inclination, rows: anteversion"]
+        marks = Sentence("; marks: {}", _joined(marking)) if len(limits) > 1 else ""
+        lines = [Sentence("columns: inclination, rows: anteversion{}", marks)]
         tables.append(Table(quantity.key, quantity.title, [corner, *columns], rows, lines))
     return Answer(
         title=str(orientations.joint),
         lines=[load_sentence(orientations)],
         tables=tables,
-        notes=[*(_limit_sentences(orientations, limits, codes) if limits else ()), *_sentences(orientations)],
+        notes=[*(_limit_sentences(orientations, limits) if limits else ()), *_sentences(orientations)],
     )
 
 
@@ -98,7 +105,8 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     return {
         "limits": [str(limit) for limit in limits],
         "within_limits": (codes == Verdict.KEPT).tolist(),
-        "verdicts": [[Verdict(code).word for code in row] for row in codes.tolist()],
+        "verdicts": _verdict_words(codes),
+        "verdicts_by_limit": {str(limit): _verdict_words(verdicts(orientations, [limit])) for limit in limits},
         "inclination_ranges": [
             {
                 "anteversion_deg": round(degrees(angle), 9),
@@ -109,13 +117,35 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     }
 
 
-def _limit_sentences(orientations: Orientations, limits: Sequence[Limit], codes: Numbers) -> Iterator[str]:
-    """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
-    kept, undecided, _ = (int((codes == verdict).sum()) for verdict in Verdict)
-    texts = Sentence(" and ".join("{}" for _ in limits), *map(str, limits))
-    yield Sentence("limit: {}; {}", texts, f"kept in {kept} of {codes.size} orientations, exceeded where *")
+def _verdict_words(codes: Numbers) -> list[list[str]]:
+    return [[Verdict(code).word for code in row] for row in codes.tolist()]
+
+
+def _joined(limits: Sequence[Limit]) -> Sentence:
+    return Sentence(" and ".join("{}" for _ in limits), *map(str, limits))
+
+
+def _counts(codes: Numbers) -> list[int]:
+    """Count the orientations by their verdict."""
+    return [int((codes == verdict).sum()) for verdict in Verdict]
+
+
+def _limit_sentences(orientations: Orientations, limits: Sequence[Limit]) -> Iterator[str]:
+    """Yield sentences on the limits together and each, and on the inclinations within them.
+
+    One sentence is for neighbouring anteversions of the same range.
+    """
+    codes = verdicts(orientations, limits)
+    kept, undecided, _ = _counts(codes)
+    text = f"kept in {kept} of {counted(codes.size, 'orientation')}, exceeded where *"
+    yield Sentence("limit: {}; {}", _joined(limits), text)
     if undecided:
-        yield f"undecided in {undecided} orientations with ?: by the error bar, or outside the range of the model"
+        orientations_text = counted(undecided, "orientation")
+        yield f"undecided in {orientations_text} with ?: by the error bar, or outside the range of the model"
+    for limit in limits if len(limits) > 1 else ():
+        counts = zip(Verdict, _counts(verdicts(orientations, [limit])), strict=True)
+        text = ", ".join(f"{verdict.word} in {count}" for verdict, count in counts if count)
+        yield Sentence("{}: {}", str(limit), text)
     ranges = inclination_ranges(orientations, codes)
     starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
     for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
@@ -149,7 +179,7 @@ def _sentences(orientations: Orientations) -> Iterator[str]:
         yield Sentence(f"least pressure: {{}} {_orientation_text(*angles)}", least)
     loaded = int((orientations.edge_loaded & orientations.held).sum())
     if loaded:
-        yield f"{loaded} of {size} orientations load the rim (below 0: how far beyond first touch)"
+        yield f"the rim is loaded in {loaded} of {counted(size, 'orientation')} (below 0: how far beyond first touch)"
     if numpy.isposinf(pressure).any():
         yield "inf: the end of the bore digs in, where the pressure is unbounded"
     yield from orientations.notes
@@ -158,7 +188,7 @@ def _sentences(orientations: Orientations) -> Iterator[str]:
         if status.failed and count:
             yield f"{count} of {size}: {status.sentence}"
     rings = angle_text(orientations.model.ring_width)
-    yield f"{orientations.model.name}: rings of {rings}, {size} orientations in {orientations.seconds:.2f} s"
+    yield f"{orientations.model.name}: rings of {rings}, {counted(size, 'orientation')} in {orientations.seconds:.2f} s"
 
 
 def _orientation_text(inclination: float, anteversion: float) -> str:

@@ -15,6 +15,7 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core import arrays
 from ..core.checks import check_names, needs, shown
+from ..core.display import counted
 from ..core.executors.processes import Engine, Serial, available_memory, count_text, size_text
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun
@@ -252,7 +253,7 @@ def _compute_into_store(store: StudyStore, run: PieceRun, engine: Engine, listen
     except ConnectionError:
         raise
     except OSError as error:
-        state = f"{n_stored} of {len(task.blocks)} blocks are stored; run the study again to resume"
+        state = f"{n_stored} of {counted(len(task.blocks), 'block')} stored; run the study again to resume"
         raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.folder)) from error
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
-from ..core.unit_systems import Sentence
-from .metadata import held_in, held_lines
+from ..core.unit_systems import Sentence, with_error
+from .metadata import as_data, held_in, held_lines
 from .study_answer import amount_of
 
 if TYPE_CHECKING:
@@ -35,9 +35,8 @@ _TABLES = {1: ("sensitivity", "Sensitivity", "number"), 2: ("pairs", "Pairs of p
 def describe_sensitivity(indices: xarray.Dataset) -> Answer:
     """Describe the scatter of each result, and the parts of the parameters and of their pairs in it."""
     means = (
-        Sentence("{}: {} ± {}", name, *(amount_of(name, float(part[key])) for key in ("mean", "deviation")))
-        for name in indices.quantity.values.tolist()
-        for part in [indices.sel(quantity=name)]
+        Sentence("{}: {} ± {}", name, *with_error(content["mean"], content["deviation"], QUANTITIES[name].shown))
+        for name, content in _contents(indices).items()
     )
     entries = list(_entries(indices))
     correlation = indices.attrs.get("correlation")
@@ -62,7 +61,7 @@ class IndexEntry(NamedTuple):
 
 
 def _entries(indices: xarray.Dataset) -> Iterator[IndexEntry]:
-    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+    for quantity, content in _contents(indices).items():
         yield from (IndexEntry(quantity, [name], numbers) for name, numbers in content["numbers"].items())
         yield from (IndexEntry(quantity, pair["parameters"], pair) for pair in content.get("pairs", ()))
 
@@ -104,21 +103,31 @@ def index_table(indices: xarray.Dataset) -> Table:
 
 def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
     """Summarise the shares of the variance with their intervals, and elasticities, by quantity and parameter."""
+    quantities: dict[str, Any] = {}
+    for name, content in _contents(indices).items():
+        scatter = {key: content[key] for key in ("mean", "deviation")}
+        for key, written in as_data({name: scatter}).items():
+            quantities[key] = {**content, **written}
+    options = {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
+    return {"held": held_in(indices), "samples": indices.attrs["samples"], "quantities": quantities, **options}
+
+
+def _contents(indices: xarray.Dataset) -> dict[str, dict[str, Any]]:
+    """Return mean and deviation of each quantity, and the indices of single parameters and of pairs."""
     parameters = indices.parameter.values.tolist()
     single, paired = ([str(name) for name in indices.data_vars if indices[name].ndim == count] for count in (2, 3))
-    content: dict[str, Any]
-    quantities: dict[str, Any] = {}
+    quantities: dict[str, dict[str, Any]] = {}
     for quantity in indices.quantity.values.tolist():
         part = indices.sel(quantity=quantity)
-        quantities[quantity] = content = {name: float(part[name]) for name in ("mean", "deviation")}
+        content: dict[str, Any] = {name: float(part[name]) for name in ("mean", "deviation")}
+        quantities[quantity] = content
         content["numbers"] = {name: _numbers(part[single].sel(parameter=name)) for name in parameters}
         if paired:
             content["pairs"] = [
                 {"parameters": [one, other], **_numbers(part[paired].sel(parameter=one, other_parameter=other))}
                 for one, other in combinations(parameters, 2)
             ]
-    options = {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
-    return {"held": held_in(indices), "samples": indices.attrs["samples"], "quantities": quantities, **options}
+    return quantities
 
 
 def _numbers(part: xarray.Dataset) -> dict[str, Any]:

@@ -12,12 +12,13 @@ import numpy
 from ..contact.verdict import Verdict
 from ..core.answers import Answer, Cell, Column, Row, Table
 from ..core.arrays import to_list
+from ..core.display import counted
 from ..core.kinds import PERCENT, Unit
 from ..core.quantities import QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from .file_formats import iterate_chunks
 from .limits import Limit, allowed, count_verdicts, refusal_reason, undecided_reason
-from .metadata import held_in, held_lines, invalid_reasons, missing_reasons
+from .metadata import as_data, held_in, held_lines, invalid_reasons, missing_reasons
 from .parameters import MATERIAL_PARTS
 from .task import BOUNDS, OUTCOMES, VERDICT
 
@@ -95,7 +96,7 @@ def describe_study(study: xarray.Dataset) -> Answer:
     report = _StudyReport(study)
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
-    line = f"{study.status.size} points, {report.valid} of them valid"
+    line = f"{counted(study.status.size, 'point')}, {report.valid} of them valid"
     table = _end_table(study, report.quantities(), "study", "Study")
     return Answer(
         title="; ".join([f"{study.attrs['model']}, {shape or 'one point'}", *_comments(study)]),
@@ -119,8 +120,8 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
         "valid": report.valid == size,
         **({"verdicts": {verdict.word: n for verdict, n in report.verdicts.items()}} if report.verdicts else {}),
         "notes": [*_comments(study), *report.notes()],
-        "quantities": report.quantities(),
-        "values": _values(study) if size <= _MAX_LISTED else None,
+        "quantities": as_data(report.quantities()),
+        "values": as_data(_values(study)) if size <= _MAX_LISTED else None,
     }
 
 
@@ -138,16 +139,18 @@ def _values(study: xarray.Dataset) -> dict[str, Any]:
 
 
 def describe_map(study: xarray.Dataset, limits: Sequence[Limit]) -> Answer:
-    """Describe the kept designs of a map; ValueError as of `map_summary`."""
+    """Describe the kept designs of a map; ValueError as of `map_table`."""
     return Answer(title=f"design map, model {study.attrs['model']}", tables=[map_table(study, limits)])
 
 
 def map_table(study: xarray.Dataset, limits: Sequence[Limit]) -> Table:
-    """List the ends of each result of the kept designs; ValueError as of `map_summary`."""
-    summary = map_summary(study, limits)
-    ends = {name: dict(zip(("least", "largest"), pair, strict=True)) for name, pair in summary["quantities"].items()}
+    """List the ends of each result of the kept designs.
+
+    Raises ValueError: every point exceeds a limit or has no result.
+    """
+    counts, found = _kept_ends(study, limits)
+    ends = {name: dict(zip(("least", "largest"), pair, strict=True)) for name, pair in found.items()}
     table = _end_table(study, ends, "map", "Design map")
-    counts = summary["verdicts"]
     shares = [(Amount(n / study.status.size, PERCENT, 3), word) for word, n in counts.items() if n]
     template = ", ".join(["{} {}"] * len(shares)) + "; {}" * len(limits)
     lines = [Sentence(f"of the map: {template}", *(part for share in shares for part in share), *map(str, limits))]
@@ -158,10 +161,20 @@ def map_table(study: xarray.Dataset, limits: Sequence[Limit]) -> Table:
 
 
 def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:
-    """Summarise the allowed points of a map: least and largest values with coordinates.
+    """Summarise the kept points of a map: least and largest values with coordinates; ValueError as of `map_table`."""
+    counts, ends = _kept_ends(study, limits)
+    return {
+        "model": study.attrs["model"],
+        "held": held_in(study),
+        "limits": [str(limit) for limit in limits],
+        "verdicts": counts,
+        "valid": bool(study.valid.where(allowed(study, limits), True).all()),
+        "quantities": as_data(ends),
+    }
 
-    Raises ValueError: every point exceeds a limit or has no result.
-    """
+
+def _kept_ends(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[dict[str, int], dict[str, list[Any]]]:
+    """Return the numbers of points by verdict, and least and largest value of each result of the kept ones."""
     good, counts = allowed(study, limits), count_verdicts(study, limits)
     if not counts[Verdict.KEPT.word] + counts[Verdict.UNDECIDED.word]:
         raise ValueError(refusal_reason(study, limits, "no point of the map is allowed", "at any point of the map"))
@@ -170,14 +183,7 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
         values = study[name].where(good).transpose(*study.status.dims).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": _coordinates(study, end)} for end in ends]
-    return {
-        "model": study.attrs["model"],
-        "held": held_in(study),
-        "limits": [str(limit) for limit in limits],
-        "verdicts": counts,
-        "valid": bool(study.valid.where(good, True).all()),
-        "quantities": quantities,
-    }
+    return counts, quantities
 
 
 # Optima and Pareto fronts
@@ -204,8 +210,8 @@ def describe_optimum(best: Optimum) -> Answer:
         lines.append("the model is not valid there: use another model")
     if best.undecided:
         lines.append(
-            f"{best.undecided} of {best.searched} searched joints are undecided: their error bar contains a limit, or "
-            "a strength is missing; the best one keeps the limits by its whole error bar"
+            f"undecided: {best.undecided} of {counted(best.searched, 'searched joint')}: their error bar contains a "
+            "limit, or a strength is missing; the best one keeps the limits by its whole error bar"
         )
     if best.active:
         lines.append(Sentence(f"active limits: {', '.join(['{}'] * len(best.active))}", *best.active))
@@ -222,7 +228,7 @@ def describe_front(front: xarray.Dataset) -> Answer:
     names = [*(str(name) for name in front.coords if front[name].dims), *_result_names(front)]
     columns = [Column.of(QUANTITIES[name]) if name in QUANTITIES else Column.of_words(name) for name in names]
     rows = [Row(cells) for cells in zip(*(chosen[name].values.tolist() for name in names), strict=True)]
-    lines = [f"{size} designs that no other beats in both", *held_lines(held_in(front))]
+    lines = [f"{counted(size, 'design')} that no other beats in both", *held_lines(held_in(front))]
     return Answer(
         title=f"Pareto front, model {front.attrs['model']}",
         tables=[Table("front", "Pareto front", columns, rows, lines)],
@@ -235,7 +241,7 @@ def front_summary(front: xarray.Dataset) -> dict[str, Any]:
     return {
         "model": front.attrs["model"],
         "held": held_in(front),
-        "points": {name: to_list(front[name].values) for name in names},
+        "points": as_data({name: to_list(front[name].values) for name in names}),
     }
 
 

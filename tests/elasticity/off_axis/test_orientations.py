@@ -10,7 +10,7 @@ import ballsocket as bs
 from ballsocket.core.bounded import Verdict
 from ballsocket.reports.orientation_plots import orientation_figure
 from ballsocket.studies.expressions import parse_limit
-from ballsocket.studies.orientation_answer import verdicts
+from ballsocket.studies.orientation_answer import describe_orientations, limits_summary, verdicts
 
 from ...joints import HIP
 
@@ -110,3 +110,26 @@ def test_map_shows_its_fields_and_marks_a_stated_orientation_also_at_zero(angles
     assert left.get_xlabel() == "inclination [°]"
     shown = [line.get_xydata()[0] for line in left.lines if line.get_label() == "this cup"]
     assert np.reshape(shown, (-1, 2)) == pytest.approx(np.degrees(np.reshape(marked, (-1, 2))))
+
+
+def test_each_limit_marks_the_table_of_its_quantity(oriented):
+    """85° does not hold the ball; 45° loads the rim; the largest pressure is below 100 MPa in all others."""
+    limits = [parse_limit(text) for text in ("edge_distance>=0.1 mm", "max_pressure<=100 MPa", "half_angle<=1 deg")]
+    described = describe_orientations(oriented, limits)
+    marks = {table.key: [[cell.verdict for cell in row.cells[1:]] for row in table.rows] for table in described.tables}
+    kept, exceeded = Verdict.KEPT, Verdict.EXCEEDED
+    assert list(marks) == ["edge_distance", "max_pressure", "half_angle_deg"]
+    assert marks["max_pressure"] == [[kept, kept, exceeded]] * 2
+    assert marks["edge_distance"] == [[kept, exceeded, exceeded], [exceeded] * 3]
+    assert marks["half_angle_deg"] == [[exceeded] * 3] * 2
+    summary = limits_summary(oriented, limits)
+    assert summary["verdicts_by_limit"]["max_pressure ≤ 100 MPa"] == [["kept"] * 2] * 2 + [["exceeded"] * 2]
+    assert "max_pressure ≤ 100 MPa: kept in 4, exceeded in 2" in described.notes
+    keys = [table.key for table in describe_orientations(oriented, limits[:1]).tables]
+    assert keys == ["edge_distance", "max_pressure"]
+
+
+def test_one_orientation_is_one():
+    notes = describe_orientations(orient(0.2, 0.1), [parse_limit("edge_distance>=0.1 mm")]).notes
+    assert any("kept in 1 of 1 orientation," in note for note in notes)
+    assert not any("1 orientations" in note for note in notes)

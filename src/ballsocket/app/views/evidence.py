@@ -17,6 +17,7 @@ from typing import Any
 
 from ...contact.verdict import Verdict
 from ...core.checks import check_names, shown
+from ...core.display import counted
 from ...core.kinds import Kind
 from ...core.unit_systems import Units
 from ...evidence.folder import SUMS, WORK, names_of, write
@@ -151,7 +152,7 @@ def _case_table(screen: Screen) -> str:
         for name, values in axes.items()
     ]
     offer = "" if screen.asked.limits.strip() else _OFFER
-    heads = ["1 case" if number == 1 else f"{number} cases", "values"]
+    heads = [counted(number, "case"), "values"]
     return f"{offer}{table(heads, rows, 'text')}{_CONTENTS}"
 
 

@@ -10,6 +10,7 @@ import numpy
 
 from ...contact.verdict import EDGE_DISTANCE, Bounded, exact_number
 from ...core.answers import Check
+from ...core.display import counted
 from ...design_checks import checks_at, sorted_checks, wear_check
 from ...elasticity.off_axis.grid import Grid
 from ...files.joint_file import JointFile
@@ -259,7 +260,7 @@ def _simulate_design(hip: HipSimulation, use: Use, reached: Callable[[float, str
         band = f"band: numerical error of the run, {100 * history.error.depth:.2g} %"
     else:
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
-        share = f"{100 * bands.level:g} % of the predictions for {bands.n_patients} patients"
+        share = f"{100 * bands.level:g} % of the predictions for {counted(bands.n_patients, 'patient')}"
         band = f"band: {share}, for the scatter of the wear coefficient"
     largest = hip.frame.loads[hip.frame.largest_load_index[0]]
     return WearResult(

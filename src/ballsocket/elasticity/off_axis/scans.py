@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import radians
+from math import degrees, radians
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,9 @@ from .bore_shapes import InterpolatedDeviation
 _NEIGHBOURS = 24  # number of nearest points that the local plane is fitted to
 _SLOPE_PENALTY = 1e-3  # regularisation of the slope of the local plane
 
-_MIN_POINTS = 200
+MIN_POINTS = 200  # least number of points of a bore
 _MAX_COORDINATE = 1e6  # mm
-_MIN_REACH = radians(25.0)
+MIN_REACH = radians(25.0)  # least polar angle that the points of a bore reach
 
 _MAX_ROUGHNESS = 0.03  # root mean square deviation of a bore, as a fraction of its radius
 
@@ -117,9 +117,10 @@ def scan_from_points(
 ) -> Scan:
     """Make a scan of a bore from points (points, 3) in mm; `read_scan` explains the arguments."""
     size = check_number("finest", finest)
-    require("finest", size, 0 < size <= _MAX_AVERAGING_ANGLE, "the angle is above 0 and at most 0.35 radians (20°)")
+    allowed = f"an angle above 0 and at most {_MAX_AVERAGING_ANGLE:g} radians ({degrees(_MAX_AVERAGING_ANGLE):.0f}°)"
+    require("finest", size, 0 < size <= _MAX_AVERAGING_ANGLE, allowed)
     rotation = check_number("azimuth", AIM["azimuth"].check(azimuth))
-    require(f"points of {name}", len(points), len(points) >= _MIN_POINTS, f"a scan has at least {_MIN_POINTS} points")
+    require(f"points of {name}", len(points), len(points) >= MIN_POINTS, f"a scan has at least {MIN_POINTS} points")
     require(f"points of {name}", points, numpy.isfinite(points), "a point is finite")
     in_range = abs(points) <= _MAX_COORDINATE
     require(f"points of {name}", points, in_range, f"coordinates (mm) are at most {_MAX_COORDINATE:g}")
@@ -136,8 +137,8 @@ def scan_from_points(
     axis = mean / mean_length
     directions = _cup_axes(axis, rotation) @ (vectors / length[:, None]).T
     reach = float(numpy.arccos(numpy.clip(directions[2], -1, 1)).max())
-    if reach < _MIN_REACH:
-        raise ValueError(f"{name} covers {numpy.degrees(reach):.0f}° around its pole; a scan needs at least 25°")
+    if reach < MIN_REACH:
+        raise ValueError(f"{name} covers {degrees(reach):.0f}° around its pole; a scan needs {degrees(MIN_REACH):.0f}°")
     directions, deviation = _average_in_boxes(directions, length - radius, size)
     return Scan(
         radius=radius,
@@ -152,7 +153,7 @@ def scan_from_points(
 
 def _cup_axes(axis: Numbers, azimuth: float) -> Numbers:
     """Compute the cup's axes (3, 3) in the scan's frame, from the cup's axis z and the azimuth of the scan's x."""
-    reference = numpy.eye(3)[0 if abs(axis[0]) < numpy.cos(_MIN_REACH) else 1]
+    reference = numpy.eye(3)[0 if abs(axis[0]) < numpy.cos(MIN_REACH) else 1]
     x = reference - (reference @ axis) * axis
     x = x / numpy.linalg.norm(x)
     y = numpy.cross(axis, x)
