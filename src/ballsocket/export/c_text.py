@@ -56,6 +56,8 @@ def _step_expression(step: Recorded, operands: list[str]) -> str:
     """Return the C expression of a recorded step from the texts of its operands."""
     if step.step == "where":
         return "{} ? {} : {}".format(*operands)
+    if step.step == "scaled_exp":  # the exponential is only computed where it counts
+        return "{0} == 0.0 ? 0.0 : {0} * exp({1})".format(*operands)
     if step.step == "slope":
         return f"{operands[0]}[{step.about}]"
     if step.step == "neg":
