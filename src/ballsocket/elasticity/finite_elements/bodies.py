@@ -52,7 +52,8 @@ class CondensedBody:
         return elimination_order(block, unknowns, self.fixed_unknowns, self.normal_unknowns)
 
     def _factorize_stiffness(self) -> Any:
-        return factorize(self.elastic.stiffness_matrix(), self._elimination_order)
+        order = self._elimination_order
+        return factorize(self.elastic.stiffness_matrix()[order][:, order])
 
     def surface_compliance(self) -> tuple[Numbers, Numbers]:
         """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
@@ -73,10 +74,9 @@ class CondensedBody:
         return solution.reshape(-1, 2)
 
 
-def factorize(matrix: csc_matrix, order: Numbers) -> Any:
-    """Compute the LU factors of a symmetric matrix for the unknowns in this order."""
-    ordered = matrix[order][:, order].tocsc()
-    return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+def factorize(matrix: csc_matrix) -> Any:
+    """Compute the LU factors of a symmetric matrix, whose unknowns are in the order of elimination."""
+    return splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def last_factors(factors: Any, count: int) -> tuple[Numbers, Numbers]:
