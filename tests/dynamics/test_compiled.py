@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.dynamics import simulate
+from ballsocket.dynamics import Friction, simulate
 
 from ..extent import either
 from ..joints import HIP
@@ -65,6 +65,21 @@ def test_states_of_different_lengths_are_refused(shapes):
         element.loads(*(np.zeros((states, 3)) for states in shapes))
     with pytest.raises(ValueError, match=r"position of shape \(3,\) is not allowed: each state is a row"):
         element.loads(*np.zeros((3, 3)))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {},
+        {"friction": Friction(coefficient=0.05)},
+        {"friction": Friction(coefficient=0.0, viscous=1e-3), "smoothing": 0.01},
+        {"friction": Friction(coefficient=0.05, static_coefficient=0.1), "cup": bs.Cup()},
+    ],
+    ids=lambda effects: " ".join(effects) or "none",
+)
+def test_compiled_loads_without_some_effects_equal_those_of_the_element(effects):
+    check_loads(bs.ForceElement(bs.HessForsbach(), HIP, **effects), 500)
 
 
 @pytest.mark.long

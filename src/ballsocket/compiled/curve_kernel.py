@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy
 
 from ..contact.octave_curve import OctaveCurve
 from ..core.arrays import Numbers
-from .overloads import compile_loop
+from .overloads import compile_loop, frexp
 
 
 def evaluate_curve(curve: OctaveCurve, x: Numbers) -> Numbers:
@@ -29,7 +28,7 @@ def _curve_loop(quantities: int, terms: int) -> Any:
     def evaluate(x, first, density, origins, rows, values):  # type: ignore[no-untyped-def]
         """Evaluate the polynomials of the piece of each number."""
         for j in range(len(x)):
-            mantissa, exponent = math.frexp(x[j])
+            mantissa, exponent = frexp(x[j])
             piece = min(int(2 * density * mantissa) + density * exponent - first, len(origins) - 1)
             offset = x[j] - origins[piece]
             for row in range(quantities):

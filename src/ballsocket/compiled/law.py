@@ -26,7 +26,7 @@ from ..models.closed_form import ClosedLaw
 from ..models.foundation import FoundationLaw
 from ..models.kinematics import Kinematics
 from . import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
-from .overloads import inline_formula, jit_formula
+from .overloads import VECTOR_FUNCTIONS, jit_formula, vector_formula
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,7 +110,7 @@ def _foundation_function(motion: Kinematics) -> Any:
 @cache
 def _curve_function() -> Any:
     """Return the compiled force law of a curve."""
-    derivatives_at = inline_formula(octave_curve.derivatives_at)
+    derivatives_at = vector_formula(octave_curve.derivatives_at, VECTOR_FUNCTIONS)
 
     @njit(error_model="numpy", fastmath={"contract"})
     def force_and_tangent(indentation, low, high, first, density, origins, rows):  # type: ignore[no-untyped-def]

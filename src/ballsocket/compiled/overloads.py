@@ -139,6 +139,21 @@ def _power_of_two(exponent):  # type: ignore[no-untyped-def]
 
 
 @inline_formula
+def _mantissa_and_exponent(x):  # type: ignore[no-untyped-def]
+    bits = _to_bits(x)
+    mantissa = (bits & types.uint64(0x000FFFFFFFFFFFFF)) | types.uint64(0x3FE0000000000000)
+    return _from_bits(mantissa), types.int64(bits >> types.uint64(52)) - (_EXPONENT_BIAS - 1)
+
+
+def frexp(x: float) -> tuple[float, int]:
+    """Return the mantissa of a positive normal number, from 1/2 to 1, and its binary exponent."""
+    return math.frexp(x)
+
+
+overload(frexp, strict=False, jit_options={"forceinline": True})(lambda x: _mantissa_and_exponent)
+
+
+@inline_formula
 def exp(x):  # type: ignore[no-untyped-def]
     """Compute e^x."""
     x = 710.0 if x > 710.0 else x
@@ -239,7 +254,7 @@ def cos(x):  # type: ignore[no-untyped-def]
     return -value if (quarter == types.uint64(1)) | (quarter == types.uint64(2)) else value
 
 
-VECTOR_FUNCTIONS: dict[str, Any] = {"exp": exp, "log": log, "log1p": log1p, "sin": sin, "cos": cos}
+VECTOR_FUNCTIONS: dict[str, Any] = {"exp": exp, "log": log, "log1p": log1p, "sin": sin, "cos": cos} | {"frexp": frexp}
 """Functions without branches by the name of the function of `ballsocket.core.arrays` that they replace."""
 
 
@@ -247,3 +262,25 @@ def vector_formula(formula: Any, functions: dict[str, Any]) -> Any:
     """Return a formula, registered for compiled code, that calls other functions by the same names."""
     names = {**formula.__globals__, **functions}
     return inline_formula(FunctionType(formula.__code__, names, formula.__name__, formula.__defaults__))
+
+
+def zero_setter(indices: tuple[int, ...]) -> Any:
+    """Return a function of a named tuple of floats that tells the compiler which of them are 0.
+
+    Compiled code then has no branches for them. In Python the function returns its argument.
+    """
+
+    def set_zeros(numbers: Any) -> Any:
+        return numbers
+
+    @intrinsic
+    def insert_zeros(_: Any, numbers: Any) -> Any:
+        def generate(_: Any, builder: Any, __: Any, values: Any) -> Any:
+            for index in indices:
+                values = [builder.insert_value(values[0], ir.Constant(ir.DoubleType(), 0.0), index)]
+            return values[0]
+
+        return numbers(numbers), generate
+
+    overload(set_zeros)(lambda numbers: lambda numbers: insert_zeros(numbers))  # type: ignore[call-arg]
+    return set_zeros

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from math import frexp
 from typing import Any
 
 import numpy
@@ -103,7 +104,7 @@ class OctaveCurve:
 
 def piece_number(x: float, density: int) -> int:
     """Return the number of the piece of a number x = m 2^e with 1/2 <= m < 1: the integer part of 2 m n, plus e n."""
-    mantissa, exponent = math.frexp(x)
+    mantissa, exponent = frexp(x)
     return int(2 * density * mantissa) + density * exponent
 
 
@@ -132,7 +133,7 @@ def derivatives_at(
     if not x <= high:
         return math.nan, math.nan, math.nan
     inside = low if x < low else x  # `max` and `min` take longer than the polynomials
-    mantissa, exponent = math.frexp(inside)
+    mantissa, exponent = frexp(inside)
     piece = int(2 * density * mantissa) + density * exponent - first
     if piece == len(rows):
         piece -= 1

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy
 from numba import njit
+from numba.extending import overload
 
 from ..compiled import kernels as _kernels  # noqa: F401 - registers the formulas of the foundation
 from ..compiled.law import CompiledLaw
-from ..compiled.overloads import inline_formula, jit_formula
+from ..compiled.overloads import VECTOR_FUNCTIONS, inline_formula, jit_formula, vector_formula, zero_setter
 from ..contact import octave_curve
 from ..core.arrays import Numbers
 from ..core.checks import check_shape, check_vectors, shown
@@ -125,7 +126,8 @@ class CompiledElement:
         ]
         state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, *motion)]
         force, moment, energy, tangent = (numpy.empty((len(position), *row)) for row in ((3,), (3,), (), (6,)))
-        _compiled_batch_loop()(self.potential, self.constants, *state, force, moment, energy, tangent)
+        absent = tuple(Constants._fields.index(name) for name in _OPTIONAL if getattr(self.constants, name) == 0.0)
+        _compiled_batch_loop(absent)(self.potential, self.constants, *state, force, moment, energy, tangent)
         return force, moment, energy, tangent
 
 
@@ -144,7 +146,9 @@ def _compiled_spring_potential(motion: Kinematics) -> Any:
 @cache
 def _compiled_curve_potential() -> Any:
     """Compile the function that evaluates a fitted energy curve: energy, force and stiffness."""
-    return njit(error_model="numpy", fastmath={"contract"})(octave_curve.derivatives_at)
+    return njit(error_model="numpy", fastmath={"contract"})(
+        vector_formula(octave_curve.derivatives_at, VECTOR_FUNCTIONS)
+    )
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
@@ -162,32 +166,51 @@ def load_from_contact(centre, contact, velocity, spin, constants):  # type: igno
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
-_BLOCK_SIZE = 256  # number of states whose energies are computed before their loads; the separate loops are faster
+_BLOCK_SIZE = 256  # number of states in a block, whose loads one loop of vector instructions computes
+_OPTIONAL = ("smoothing", "time", "static", "viscous", "rim", "film_damping")  # constants that are 0 without an effect
 
 
 @cache
-def _compiled_batch_loop() -> Any:
+def _compiled_batch_loop(absent: tuple[int, ...]) -> Any:
+    """Compile the loop over states for elements in which the constants of some indices are 0.
+
+    Without the branches of absent effects the loop over a block has vector instructions.
+    """
+    without_absent = zero_setter(absent)
+
     @njit(error_model="numpy", fastmath={"contract"})
-    def compute_batch(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
-        """Compute force, moment, energy and tangent stiffness of each state, in blocks."""
-        block = numpy.empty((_BLOCK_SIZE, 3))
+    def compute_batch(potential, given_constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
+        """Compute force, moment, energy and tangent stiffness of each state, in blocks with a row for each number."""
+        constants = without_absent(given_constants)
+        block = numpy.empty((25, _BLOCK_SIZE))
+        state, slopes, results = block[:9], block[9:12], block[12:]
         for first in range(0, len(energy), _BLOCK_SIZE):
-            last = min(first + _BLOCK_SIZE, len(energy))
-            for i in range(first, last):
-                centre = ball_centre.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(ball_centre.smooth_ramp(centre.indentation, constants.smoothing)[0])
-                block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
-            for i in range(first, last):
-                centre = ball_centre.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
-                rounded = ball_centre.smooth_ramp(centre.indentation, constants.smoothing)
-                contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
-                v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-                w = spin[i, 0], spin[i, 1], spin[i, 2]
-                f, m, energy[i], J = load_from_contact(centre, contact, v, w, constants)
-                force[i, 0], force[i, 1], force[i, 2] = f
-                moment[i, 0], moment[i, 1], moment[i, 2] = m
-                tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = J
+            count = min(len(energy) - first, _BLOCK_SIZE)
+            for i in range(count):
+                for axis in range(3):
+                    state[axis, i] = position[first + i, axis]
+                    state[3 + axis, i] = velocity[first + i, axis]
+                    state[6 + axis, i] = spin[first + i, axis]
+            for i in range(count):
+                centre = ball_centre.ball_centre_at(state[0, i], state[1, i], state[2, i], constants.clearance)
+                depth = ball_centre.smooth_ramp(centre.indentation, constants.smoothing)[0]
+                slopes[0, i], slopes[1, i], slopes[2, i] = potential(depth)
+            for i in range(count):
+                centre = ball_centre.ball_centre_at(state[0, i], state[1, i], state[2, i], constants.clearance)
+                depth = ball_centre.smooth_ramp(centre.indentation, constants.smoothing)
+                energy_slopes = slopes[0, i], slopes[1, i], slopes[2, i]
+                contact = reaction.elastic_from_slopes(centre, depth, energy_slopes, constants)
+                v, w = (state[3, i], state[4, i], state[5, i]), (state[6, i], state[7, i], state[8, i])
+                f, m, results[6, i], J = load_from_contact(centre, contact, v, w, constants)
+                results[0, i], results[1, i], results[2, i] = f
+                results[3, i], results[4, i], results[5, i] = m
+                results[7, i], results[8, i], results[9, i], results[10, i], results[11, i], results[12, i] = J
+            for i in range(count):
+                for axis in range(3):
+                    force[first + i, axis], moment[first + i, axis] = results[axis, i], results[3 + axis, i]
+                energy[first + i] = results[6, i]
+                for component in range(6):
+                    tangent[first + i, component] = results[7 + component, i]
 
     return compute_batch
 
@@ -206,7 +229,6 @@ for _formula in (
     ball_centre.rim_share,
     friction.widening_factor,
     friction.drill_lever,
-    friction.friction_coefficient,
     friction.rolling_slip_ratio,
     friction.effective_slip,
     ball_centre.ball_centre_at,
@@ -237,6 +259,11 @@ for _formula in (
     loads_at,
 ):
     jit_formula(_formula)
+
+# without a call of the C library loops over states have vector instructions
+overload(friction.friction_coefficient, strict=False, jit_options={"forceinline": True})(
+    lambda speed, sliding, static, stribeck_speed: vector_formula(friction.friction_coefficient, VECTOR_FUNCTIONS)
+)
 
 for _inlined in (reaction.elastic_from_slopes, load_from_contact):
     inline_formula(_inlined)

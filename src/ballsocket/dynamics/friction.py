@@ -115,8 +115,11 @@ def drill_lever(versine: Array) -> Array:
 
 def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
     """Compute the coefficient of friction μ at a slip speed in mm/s, including the Stribeck effect."""
+    excess = static - sliding
+    if excess == 0.0:
+        return sliding + 0.0 * speed
     speed_ratio = speed / stribeck_speed
-    return sliding + (static - sliding) * exp(-speed_ratio * speed_ratio)
+    return sliding + excess * exp(-speed_ratio * speed_ratio)
 
 
 def rolling_slip_ratio(versine: Array) -> Array:
@@ -162,7 +165,7 @@ def effective_slip(
     numerator = x * axial_sum + p * turning_sum
     ratio, rolling = z * numerator * inverse_denominator, roll * y * z
     denominator_slope = ratio * (2.0 * G + eta * z) * inverse_denominator
-    rolling_slope = rolling * roll / g
+    rolling_slope = rolling * roll * (1.0 / g)
     return (
         total * (1.0 - ratio - rolling) - tilt_squared * slip,
         1.0 - tilt_squared - z * (axial_sum + a * x + t * p) * inverse_denominator + denominator_slope + rolling_slope,

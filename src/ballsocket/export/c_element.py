@@ -305,7 +305,7 @@ class CElement:
             curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
             checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
-            first_touch=c_number(first_load_distance(constants)),
+            first_touch=c_number(_first_load_square(constants)),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
@@ -337,9 +337,10 @@ class CElement:
         return {"version": __version__, "model": self.element.model.name, "joint": comment}
 
 
-def first_load_distance(constants: Constants) -> float:
-    """Return the distance of the centres in mm up to which the ball has no load; negative for a lubricated ball."""
-    return -1.0 if constants.film_damping > 0.0 else constants.clearance - constants.smoothing
+def _first_load_square(constants: Constants) -> float:
+    """Square the distance in mm up to which the ball has no load; -1 for a lubricated or preloaded ball."""
+    distance = constants.clearance - constants.smoothing
+    return distance**2 if distance > 0.0 and constants.film_damping == 0.0 else -1.0
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

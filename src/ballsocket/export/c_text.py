@@ -54,6 +54,8 @@ def _step_statements(step: Recorded) -> Iterator[str]:
 def _step_expression(step: Recorded, operands: list[str]) -> str:
     if step.step == "where":
         return "{} ? {} : {}".format(*operands)
+    if step.step == "scaled_exp":  # the exponential is only computed where it counts
+        return "{0} == 0.0 ? 0.0 : {0} * exp({1})".format(*operands)
     if step.step == "slope":
         return f"{operands[0]}[{step.about}]"
     if step.step == "neg":

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..core.arrays import cos, sin, sqrt
+from ..core.arrays import cos, exp, sin, sqrt
 
 Part = Any
 """A `Recorded`, or a Python number."""
@@ -103,6 +103,8 @@ class Recorded:
         return self.tape.record("-", (operand, self))
 
     def __mul__(self, operand: Part) -> Recorded:
+        if isinstance(operand, Recorded) and operand.step == "exp":
+            return self.tape.record("scaled_exp", (self, *operand.parts))
         return self.tape.record("*", (self, operand))
 
     def __rmul__(self, operand: Part) -> Recorded:
@@ -252,6 +254,7 @@ _PARTIAL_DERIVATIVES: Mapping[str, Callable[..., tuple[Part, ...]]] = {
     "pow": lambda y, a, n: (n * y / a, 0.0),
     "sqrt": lambda y, a: (0.5 / y,),
     "exp": lambda y, a: (y,),
+    "scaled_exp": lambda y, a, b: (exp(b), y),
     "log": lambda y, a: (1.0 / a,),
     "log1p": lambda y, a: (1.0 / (1.0 + a),),
     "sin": lambda y, a: (cos(a),),

@@ -8,11 +8,17 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.exact.modes import ElasticBall, ball_of, socket_of
-from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
+from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.mesh import socket_shape
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator, cached_compliance, make_compliance
 from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
-from ballsocket.elasticity.off_axis.ring_matrices import interpolate_harmonics, liner_numbers, sphere_rings, vary_liner
+from ballsocket.elasticity.off_axis.ring_matrices import (
+    cup_rings,
+    interpolate_harmonics,
+    liner_numbers,
+    sphere_rings,
+    vary_liner,
+)
 from ballsocket.elasticity.off_axis.surfaces import elastic_edges, spring_edges
 
 from ...joints import HIP
@@ -95,6 +101,18 @@ def test_last_eight_compliances_are_cached_for_all_orientations():
     for number in range(1, 9):
         cached(number)
     assert cached(0) is not first
+
+
+@pytest.mark.parametrize("scale", [0.7, 1.0, 1.9])
+def test_bores_of_the_same_shape_share_their_matrices(monkeypatch, scale):
+    """The shape is that of a bore of radius 1: neither the clearance nor the scale nor the modulus is part of it."""
+    grid = graded_grid(CUP.rim, radians(12.0))
+    first = cup_rings(HIP, CUP, grid)
+    monkeypatch.setattr(Harmonics, "ring_compliance", None)
+    bore = scale * HIP.socket_radius
+    joint = HIP.replace(ball_radius=bore - 0.2, clearance=0.2, liner_thickness=scale * HIP.liner_thickness)
+    softer = replace(joint, liner=replace(HIP.liner, young=HIP.liner.young / 2))
+    np.testing.assert_allclose(cup_rings(softer, CUP, grid), 2 * scale * first, rtol=1e-12)
 
 
 def test_edges_have_the_combined_modulus_and_levels_that_are_minus_the_gap_outside_the_contact():

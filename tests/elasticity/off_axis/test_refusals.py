@@ -79,7 +79,7 @@ VALUE_ERRORS = [
     (SCAN, {"points": np.full((300, 3), 2e6)}, r"coordinates \(mm\) are at most 1e\+06"),
     (SCAN, {"points": CLOUD}, "not a bore: its points lie .* mm off a sphere of"),
     (SCAN, {"points": np.vstack([scanned_points(reach=90.0), -scanned_points(reach=90.0)])}, "cover a full sphere"),
-    (SCAN, {"points": scanned_points(reach=10.0)}, "covers 10°.*at least 25°"),
+    (SCAN, {"points": scanned_points(reach=10.0)}, "covers 10°.*needs 25°"),
     (SCAN, {"points": CLOUD * (1.0, 1.0, 0.0)}, "not a bore: its points lie"),
     (SCAN, {"finest": 4.0}, "finest = 4 is not allowed"),
     (SCAN, {"finest": 0.0}, "finest = 0 is not allowed"),

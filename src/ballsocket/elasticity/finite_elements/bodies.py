@@ -51,13 +51,14 @@ class CondensedBody:
         block, unknowns = self.elastic.block, self.elastic.element_unknowns
         return elimination_order(block, unknowns, self.fixed_unknowns, self.normal_unknowns)
 
-    def _factorize_stiffness(self) -> Any:
-        return factorize(self.elastic.stiffness_matrix(), self.free_unknowns)
+    def free_stiffness(self) -> csc_matrix:
+        """Assemble the stiffness of the free unknowns in the order of elimination."""
+        return self.elastic.stiffness_matrix()[self.free_unknowns][:, self.free_unknowns].tocsc()
 
     def surface_compliance(self) -> tuple[Numbers, Numbers]:
         """Compute angles (rad) of the contact nodes and their normal displacements by unit normal forces."""
         count = len(self.contact)
-        lower, upper = last_factors(self._factorize_stiffness(), count)
+        lower, upper = last_factors(factorize(self.free_stiffness()), count)
         stiffness = lower @ upper
         return self.elastic.block.angle[:count], numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
@@ -65,7 +66,7 @@ class CondensedBody:
         """Compute the displacements u_φ and u_r of all nodes, (nodes, 2), under normal forces on contact nodes."""
         load = numpy.zeros(len(self.free_unknowns))
         load[-len(self.contact) :] = forces
-        return self.nodal_displacements(self._factorize_stiffness().solve(load))
+        return self.nodal_displacements(factorize(self.free_stiffness()).solve(load))
 
     def nodal_displacements(self, free_displacements: Numbers) -> Numbers:
         """Return the displacements u_φ and u_r of all nodes, (nodes, 2), from the free unknowns in order."""
@@ -77,10 +78,9 @@ class CondensedBody:
         return solution.reshape(-1, 2)
 
 
-def factorize(matrix: csc_matrix, order: Numbers) -> Any:
-    """Compute the LU factors of a symmetric matrix for the unknowns in this order."""
-    ordered = matrix[order][:, order].tocsc()
-    return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+def factorize(matrix: csc_matrix) -> Any:
+    """Compute the LU factors of a symmetric matrix, whose unknowns are in the order of elimination."""
+    return splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def last_factors(factors: Any, count: int) -> tuple[Numbers, Numbers]:

@@ -67,10 +67,10 @@ class Harmonics:
 
     def _harmonic_slopes(self, m: int, loads: Numbers, slopes: list[StiffnessPowers]) -> Numbers:
         """Compute the derivatives of the compliance matrix between rings for one harmonic: (slopes, rings, rings)."""
-        order, count = self._elimination_order(m)
+        order, count, stiffness = self._ordered_systems[min(m, 2)]
         load = numpy.zeros((len(order), loads.shape[1]))
         load[-count:] = loads[-count:]
-        displacements = factorize(_sum_powers(self.stiffness_powers, m), order).solve(load)
+        displacements = factorize(_sum_powers(stiffness, m)).solve(load)
         forces = [_sum_powers(slope, m)[order][:, order] @ displacements for slope in slopes]
         return numpy.stack([-displacements.T @ force for force in forces])
 
@@ -86,17 +86,27 @@ class Harmonics:
 
     def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
         """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
-        order, count = self._elimination_order(m)
-        lower, upper = last_factors(factorize(_sum_powers(self.stiffness_powers, m), order), count)
+        _, count, stiffness = self._ordered_systems[min(m, 2)]
+        lower, upper = last_factors(factorize(_sum_powers(stiffness, m)), count)
         normal_loads = loads[-count:]
         compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
         return (compliance + compliance.T) / 2
 
-    def _elimination_order(self, m: int) -> tuple[Numbers, int]:
-        """Return the free unknowns in the order of elimination, and the number of contact unknowns at the end."""
-        fixed, normals = self._fixed_unknowns(m), 3 * self.bore + 1
-        normals = normals[~fixed[normals]]
-        return elimination_order(self._block, self._element_unknowns, fixed, normals), len(normals)
+    @cached_property
+    def _ordered_systems(self) -> tuple[tuple[Numbers, int, StiffnessPowers], ...]:
+        """Systems of m = 0, of m = 1 and of all higher m, whose supports differ.
+
+        Each has the free unknowns in the order of elimination, the number of contact unknowns at the end, and the
+        stiffness matrices between these unknowns.
+        """
+        systems = []
+        for m in range(3):
+            fixed, normals = self._fixed_unknowns(m), 3 * self.bore + 1
+            normals = normals[~fixed[normals]]
+            order = elimination_order(self._block, self._element_unknowns, fixed, normals)
+            powers = (power[order][:, order].sorted_indices() for power in self.stiffness_powers)
+            systems.append((order, len(normals), tuple(powers)))
+        return tuple(systems)
 
     def _fixed_unknowns(self, m: int) -> Numbers:
         """Return the mask of unknowns that are zero: on the axis by symmetry, and at the supports.

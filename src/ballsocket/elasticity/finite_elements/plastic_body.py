@@ -91,7 +91,7 @@ class PlasticBody:
     @cached_property
     def _stiffness(self) -> csc_matrix:
         """Elastic stiffness of the free unknowns in order."""
-        matrix = self.body.elastic.stiffness_matrix()[self.free_unknowns][:, self.free_unknowns].tocsc()
+        matrix = self.body.free_stiffness()
         matrix.sort_indices()
         return matrix
 
@@ -110,7 +110,7 @@ class PlasticBody:
         return self._factorize(self._stiffness)
 
     def _factorize(self, matrix: csc_matrix) -> Tangent:
-        return Tangent(factors=factorize(matrix, numpy.arange(len(self.free_unknowns))), count=len(self.body.contact))
+        return Tangent(factors=factorize(matrix), count=len(self.body.contact))
 
     def strain(self, displacement: Numbers) -> Numbers:
         """Compute the strain deviators (elements, points, 3) of the liner."""

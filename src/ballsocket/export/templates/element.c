@@ -25,13 +25,10 @@ $sentences
     return "an unknown status";
 }
 
-/* Return 1 if all numbers and 1e8 times their squares are finite, else 0. */
-static int finite_numbers(const double *numbers, int count)
+/* Return 1 if 1e8 times the square of a vector is finite, else 0. */
+static int is_finite(const double v[3])
 {
-    double none = 0.0;
-    for (; count-- > 0; numbers++)
-        none += 0.0 * (1e8 * *numbers * *numbers);
-    return none == 0.0;
+    return 1e8 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) < INFINITY;
 }
 
 static int fill(double *numbers, int count, double value, int status)
@@ -44,15 +41,15 @@ static int fill(double *numbers, int count, double value, int status)
 /* Return 1 if there is no contact, else 0; the formulas cover the centre. */
 static int apart(const double position[3])
 {
-    const double x = position[0], y = position[1], z = position[2], e = sqrt(x * x + y * y + z * z);
-    return e > 0.0 && e <= $first_touch;
+    const double x = position[0], y = position[1], z = position[2], square = x * x + y * y + z * z;
+    return square > 0.0 && square <= $first_touch;
 }
 
 int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3],
                  double force[3], double moment[3], double *energy)
 {
     int status;
-    if (!finite_numbers(position, 3) || !finite_numbers(velocity, 3) || !finite_numbers(spin, 3)) {
+    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)) {
         fill(force, 3, NAN, 0);
         fill(moment, 3, NAN, 0);
         return fill(energy, 1, NAN, ${NAME}_NO_NUMBER);
@@ -69,7 +66,7 @@ $load
 int ${name}_contact(const double position[3], double *half_angle, double *max_pressure)
 {
     int status;
-    if (!finite_numbers(position, 3)) {
+    if (!is_finite(position)) {
         fill(half_angle, 1, NAN, 0);
         return fill(max_pressure, 1, NAN, ${NAME}_NO_NUMBER);
     }
@@ -80,7 +77,7 @@ $pressed
 int ${name}_tangent(const double position[3], double tangent[9])
 {
     int status;
-    if (!finite_numbers(position, 3))
+    if (!is_finite(position))
         return fill(tangent, 9, NAN, ${NAME}_NO_NUMBER);
     if (apart(position))
         return fill(tangent, 9, 0.0, ${NAME}_FREE);
@@ -92,8 +89,8 @@ int ${name}_slope(const ${name}_parameters *p, const double position[3], const d
                   const double spin[3], const double way[9], double slope[9])
 {
     int status;
-    if (!finite_numbers(position, 3) || !finite_numbers(velocity, 3) || !finite_numbers(spin, 3)
-        || !finite_numbers(way, 9))
+    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)
+        || !is_finite(way) || !is_finite(way + 3) || !is_finite(way + 6))
         return fill(slope, 9, NAN, ${NAME}_NO_NUMBER);
     if (apart(position))
         return fill(slope, 9, 0.0, ${NAME}_FREE);
