@@ -138,7 +138,7 @@ def test_names_that_are_not_ours_are_refused_and_our_own_are_answered(address, p
         assert answer(address, host=own)[0].status == 200
 
 
-ANSWERS = ("GET", "/", 200), ("HEAD", "/", 405), ("GET", "/nothing", 404), ("GET", "/assets/page.js", 200)
+ANSWERS = ("GET", "/", 200), ("HEAD", "/", 200), ("GET", "/nothing", 404), ("GET", "/assets/page.js", 200)
 
 
 @pytest.mark.parametrize(("method", "path", "status"), [*ANSWERS, ("GET", "/socket", 400)])

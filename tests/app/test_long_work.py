@@ -316,7 +316,7 @@ def test_a_click_runs_once_for_all_pages_and_a_change_of_inputs_keeps_the_result
     assert shown(page, "numbers") == "9e+06"
     assert page.channel.shown_value("=press.run")["share"] is None
     edits(page, "load", 2000)
-    assert "belong to an earlier design" in shown(page, "earlier")
+    assert "belong to earlier inputs" in shown(page, "earlier")
     assert shown(page, "numbers") == "9e+06"
     edits(page, "load", 3000)
     assert shown(page, "earlier") == ""
@@ -347,7 +347,7 @@ def test_work_that_is_refused_says_why_and_keeps_the_result(monkeypatch, jobs):
     finish(*jobs[-1])
     assert "force must be at most 5000 N" in shown(page, "trouble")
     assert shown(page, "numbers") == "9e+06"
-    assert "earlier design" in shown(page, "earlier")
+    assert "earlier inputs" in shown(page, "earlier")
 
 
 def test_the_time_left_is_that_of_the_share_so_far(monkeypatch, jobs):

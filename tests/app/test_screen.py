@@ -281,11 +281,10 @@ def test_a_diameter_in_inches_may_be_a_fraction(text):
 
 def test_a_box_shows_a_number_that_can_be_read_in_round_steps():
     inches = 32 / 25.4, 0.2 / 25.4, 0.001 / 25.4, 1.0625
-    assert [box_text(value, "in") for value in inches] == ["1.26", "0.0079", "3.9e-05", "1.0625"]
+    assert [box_text(value, "in") for value in inches] == ["1.26", "0.007874", "3.937e-05", "1.0625"]
     others = (22.225, "mm"), (26.1234567, "mm"), (674.427, "lbf"), (33.35868, "Mpsi"), (1234567.0, "N")
-    assert [box_text(*pair) for pair in others] == ["22.225", "26.123", "674", "33.4", "1234600"]
-    assert [number_text(value, "in") for value in (32 / 25.4, 0.2 / 25.4, 8.0)] == ["1.26", "0.0079", "8"]
-    assert number_text(0.2 / 25.4) == "0.007874"
+    assert [box_text(*pair) for pair in others] == ["22.225", "26.123", "674.4", "33.36", "1234600"]
+    assert [number_text(value) for value in (32 / 25.4, 0.2 / 25.4, 8.0)] == ["1.26", "0.007874", "8"]
     assert list(map(handy_step, (0.0039, 0.2, 11.24, 1450.0))) == pytest.approx([0.002, 0.2, 10.0, 1000.0])
 
 
@@ -323,7 +322,7 @@ def test_no_box_of_a_cup_takes_what_no_cup_has(name):
     [
         (START, "ball_radius", "-5", "Head diameter must be positive, got -5 mm"),
         (screen_with(size="radius"), "ball_radius", "-5", "Ball radius must be positive, got -5 mm"),
-        (INCHES, "ball_radius", "4000", "Head diameter must be 7.9e-05 to 787.4 in .*, got 4000 in"),
+        (INCHES, "ball_radius", "4000", "Head diameter must be 7.874e-05 to 787.4 in .*, got 4000 in"),
         (INCHES, "ball_radius", "wide", "Head diameter must be a number in inches, or a length such as '16 mm', .*"),
         (INCHES, "ball_radius", "1,125", "Head diameter '1,125' could be two numbers: write 1125 or 1.125"),
         (START, "clearance", "-0.1", "Diametral clearance must be zero or positive, got -0.1 mm"),
@@ -371,7 +370,7 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("", "load", "3,000", "Normal force '3,000' could be two numbers: write 3000 or 3.000"),
         ("", "load", HUGE, "the integer is too large"),
         ("", "liner_poisson", "0,7", "ratio of the liner must be -0.999 to 0.5 (the limits of an isotropic solid)"),
-        ("", "clearance", None, "Diametral clearance must be a number in mm, or a length such as '16 mm', got None"),
+        ("", "clearance", True, "Diametral clearance must be a number in mm, or a length such as '16 mm', got True"),
         ("", "clearence", "1", "'clearence' among the inputs is not known"),
         ("", "liner", 3, "3 as liner is not known"),
         ("", "preset", "hip-29", "'hip-29' as preset is not known"),
@@ -506,7 +505,7 @@ def test_a_number_typed_before_a_choice_of_units_has_the_units_before_it():
 
 def test_a_body_weight_is_in_the_units_of_the_page():
     page = Page("view=wear&use.cycle=walking&units=imperial")
-    assert (field(page, "wear.body_weight")["unit"], field(page, "wear.body_weight")["text"]) == ("lbf", "180")
+    assert (field(page, "wear.body_weight")["unit"], field(page, "wear.body_weight")["text"]) == ("lbf", "179.8")
     edits(page, "wear.body_weight", "200")
     assert page.screen.use.body_weight == pytest.approx(200 / LBF, rel=1e-9)
     edits(page, "wear.body_weight", "80 kN")
@@ -527,7 +526,7 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     numbers, section, table = (told(page, f"press-{part}") for part in ("numbers", "section", "table"))
     (first, *_) = re.findall(r"data-value='([^']+)'", numbers)
     assert float(first) == pytest.approx(contact.max_pressure * PSI)
-    assert {"⌀ 1.102 in", "674 lbf"} <= set(re.findall(r"<text[^>]*>([^<]*)</text>", section))
+    assert {"⌀ 1.102 in", "674.4 lbf"} <= set(re.findall(r"<text[^>]*>([^<]*)</text>", section))
     assert METRIC.findall(numbers + section + told(page, "press-charts")) == []
     assert re.findall(r"\[[^\]]*\]", table)[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
     edits(page, "ball_radius", "28 mm")

@@ -1,10 +1,10 @@
 """Views without a browser: a hip in use as `hip` has it, and evidence as the command writes it."""
 
-import base64
 import io
 import json
 import re
 import zipfile
+from base64 import b64decode
 from dataclasses import replace
 from html import unescape
 from math import radians
@@ -20,7 +20,7 @@ from ballsocket.app.jobs import Job
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished
 from ballsocket.app.state.screen import DEFAULT_QUESTION, EvidenceQuestion
-from ballsocket.app.state.use import DEFAULT_USE, Use
+from ballsocket.app.state.use import DEFAULT_USE, UploadedCycle, Use, sample_table
 from ballsocket.app.views import evidence, hip_runs
 from ballsocket.app.views import wear as wear_view
 from ballsocket.app.views.evidence import EvidencePack, gather_pack, write_question
@@ -105,7 +105,7 @@ def test_the_page_plays_what_the_process_found(with_film):
     assert [course["unit"] for course in data["courses"]] == ["N", "MPa", "mm", "nm", "nm", ""]
     assert [course["chart"] for course in data["courses"]] == [0, 1, 2, 3, 3, 4]
     assert data["courses"][1]["values"] == pytest.approx(found.pressure, rel=1e-4)
-    assert base64.b64decode(viewed(page)["bytes"]) == found.frames.cells.tobytes()
+    assert b64decode(viewed(page)["bytes"]) == found.frames.cells.tobytes()
     assert told(page, "gait-at") == str(found.heaviest)
     assert "at 12.5 % of the cycle" in told(page, "gait-flat")
     edits(page, "gait.instant", 7)
@@ -182,19 +182,41 @@ def test_a_patients_load_needs_a_weight(page):
 def test_a_cycle_of_ones_own_is_read_and_is_in_no_link(page):
     edits(page, "gait.own", {"name": "walk <1>.csv", "size": len(OWN), "text": OWN})
     assert "2500 <span class='unit'>N" in told(page, "gait-numbers")
-    assert "walk &lt;1&gt;.csv: a link does not hold it" in told(page, "gait-load")
-    assert "own" not in page.channel.shown_value("link")
-    edits(page, "gait.cycle", "flexion")
-    assert "walk" not in told(page, "gait-load")
+    assert "A link does not hold walk &lt;1&gt;.csv" in told(page, "gait-load")
+    assert page.channel.shown_value("=gait.cycle")["value"] == "walk <1>.csv"
+    link = page.channel.shown_value("link")
+    assert "2500" not in link
+    assert "choose the file again" in told(opened(link), "gait-trouble")
+    edits(page, "gait.cycle", "iso-14242-1")  # the cycle before the table
+    assert "walk" not in told(page, "gait-load") + page.channel.shown_value("link")
+    assert "2998 <span class='unit'>N" in told(page, "gait-numbers")
+    does(page, "open", query=link)  # undone by the browser
+    assert "2500 <span class='unit'>N" in told(page, "gait-numbers")
     idle = re.sub(r", (300|2000|2500),", ", 0,", OWN)
     edits(page, "gait.own", {"name": "idle.csv", "size": len(idle), "text": idle})
     assert "✗ No contact: this cycle never presses" in told(page, "gait-numbers")
     assert "∞" not in told(page, "gait-numbers")
 
 
+@pytest.mark.parametrize(("name", "weight"), [("iso-14242-1", None), ("jogging", 800.0)])
+def test_the_sample_is_a_table_that_is_read_with_and_without_units(asked, name, weight):
+    named, phases = named_cycle(name, body_weight=weight), np.linspace(0.0, 0.98, 50)  # phases of the lines
+    sample = UploadedCycle("sample.csv", sample_table(named))
+    bare = UploadedCycle("bare.csv", re.sub(r" \[.*?\]", "", sample.text))
+    for table in (sample, bare.with_units()):
+        assert table.cycle(800.0).angles(phases) == pytest.approx(named.angles(phases), abs=1e-3)
+        assert table.cycle(800.0).force(phases) == pytest.approx(named.force(phases), rel=1e-3, abs=0.1)
+    page = opened(f"{LINK}&use.cycle={name}")
+    assert b64decode(edits(page, "gait.sample", True)["file"]["content"]).decode() == sample.text
+    edits(page, "gait.own", vars(bare))
+    assert ("bare.csv has heads without units" in told(page, "gait-question"), page.screen.use.table) == (True, "")
+    edits(page, "gait.units", True)
+    assert (told(page, "gait-question"), page.screen.use.table) == ("", "bare.csv")
+
+
 def test_a_cycle_that_cannot_be_pressed_and_a_hip_that_cannot_be_worn_say_why(page, at_once, nothing_is_known):
     edits(page, "gait.own", {"name": "walk.csv", "text": "phase [%], force [N]\n0, 1\n50, few\n100, 1\n"})
-    assert "cycle.csv" in told(page, "gait-trouble")
+    assert "walk.csv" in trouble(page)
     dislocated = opened(LINK.replace("cup.inclination=45", "cup.inclination=90"))
     assert "dislocated" in told(dislocated, "gait-trouble")
     assert told(dislocated, "gait-viewer") == ""
@@ -243,7 +265,7 @@ def test_a_life_is_that_of_python(at_once, nothing_is_known):
     assert told(page, "wear-earlier") == ""
     edits(page, "wear.millions", 1)
     assert told(page, "wear-numbers").replace("earlier design 1", "hip-36") == shown  # nothing is lost
-    assert "belong to an earlier design" in told(page, "wear-earlier")
+    assert "belong to earlier inputs" in told(page, "wear-earlier")
     edits(page, "wear.millions", 0.1)
     assert (told(page, "wear-numbers"), told(page, "wear-earlier")) == (shown, "")
 
@@ -432,7 +454,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     assert b"largest pressure,11.2 MPa" in saved(page, "CSV")
     edits(page, "liner_young", 900)
     assert unescape(told(page, "evidence-found")) == found
-    assert "belong to an earlier design" in unescape(told(page, "evidence-earlier"))
+    assert "belong to earlier inputs" in unescape(told(page, "evidence-earlier"))
     edits(page, "evidence.take", True)
     assert "there is no result for this design yet" in trouble(page)
     page.leave()

@@ -19,7 +19,7 @@ from .widgets.words import alert
 if TYPE_CHECKING:
     from .session import Page
 
-_EARLIER = "<p class='earlier'>These results belong to an earlier design.</p>"
+_EARLIER = "<p class='earlier'>These results belong to earlier inputs.</p>"
 
 
 def long_body(view: str, inputs: str, shown: str) -> str:

@@ -126,7 +126,8 @@ def page_files() -> dict[str, tuple[str, str]]:
         "<!--views-->": _buttons("view", {name: kind.title for name, kind in kinds.items()}),
         "<!--files-->": _buttons("file", {kind: kind for kind in FILE_KINDS}),
         "<!--sections-->": "".join(
-            f'<section class="view" data-view="{name}" aria-label="{kind.title}" hidden>{kind.body}</section>\n'
+            f'<section class="view" data-view="{name}" aria-label="{kind.title}" hidden>'
+            f'<h2 class="unseen">{kind.title}</h2>{kind.body}</section>\n'
             for name, kind in kinds.items()
         ),
     }
@@ -151,6 +152,8 @@ class _File(_Guarded):
         kind, content = files[name]
         self.set_header("Content-Type", kind)
         self.write(content)
+
+    head = get
 
 
 class PageSockets:

@@ -40,6 +40,7 @@ class Page:
         self, query: str, write: Callable[[str], None] = lambda text: None, number: int = 0, origin: str = ""
     ) -> None:
         self.channel = Channel(self._handle_request, write)
+        self._substitute: Screen | None = None  # shown in place of a link that cannot be read
         self.screen = self._read(query)
         self._origin = origin
         self._views: dict[str, View] = {}
@@ -57,7 +58,7 @@ class Page:
         self._refresh()
 
     def _read(self, query: str) -> Screen:
-        """Read the screen of a link; return the start if it is invalid."""
+        """Read the screen of a link; return a copy of the start if it is invalid, which leaves the address as it is."""
         if not query:
             return START
         try:
@@ -65,8 +66,9 @@ class Page:
                 raise ValueError(f"it is longer than {MAX_LINK_LENGTH} characters")
             return read_query(query)
         except ValueError as error:
-            self.refuse(f"This link cannot be read: {error}")
-            return START
+            self.refuse(f"This link cannot be read: {error}. These are the numbers of another joint.")
+            self._substitute = replace(START)
+            return self._substitute
 
     def refuse(self, sentence: str) -> None:
         """Show why a request failed; an empty sentence clears the message."""
@@ -154,8 +156,8 @@ class Page:
 
     def _edit_as_shown(self, name: str, value: Any) -> None:
         """Change an input whose number is in the units of the screen."""
-        if not isinstance(value, str) or value != (self.channel.shown_value(f"={name}") or {}).get("text"):
-            changes = self._reader(name)(value)  # none of a rounded number that nobody has changed
+        if value is not None:  # None forgets a refused text
+            changes = self._reader(name)(value)
             self.refuse("")
             self.ask(**(changes or {}))
         self.channel.accept_field(name)
@@ -181,14 +183,14 @@ class Page:
                 paper = self.screen.reading.units.paper
                 self._printing.ask(name, partial(print_page, content.decode("utf-8"), paper))
                 return
-            self._send_file(name, content)
+            self.send_file(name, content)
         self.channel.send()
 
     def _printed(self, key: Any, news: Any) -> None:
         if isinstance(news, RunRefused):
             self.refuse(news.why)
         elif isinstance(news, RunFinished):
-            self._send_file(key, news.value)
+            self.send_file(key, news.value)
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:
@@ -202,14 +204,15 @@ class Page:
 
     def _save_designs(self, links: Any) -> None:
         """Save designs as a session file."""
-        self._send_file("designs.toml", session_text(_links(links)).encode("utf-8"))
+        self.send_file("designs.toml", session_text(_links(links)).encode("utf-8"))
 
     def _compare_designs(self, links: Any) -> Changes:
         """Compare designs with the one on the screen."""
         check_compared(len(_links(links)))
         return {"beside": tuple(read_query(link).file for link in links), "view": "compare"}
 
-    def _send_file(self, name: str, content: bytes) -> None:
+    def send_file(self, name: str, content: bytes) -> None:
+        """Let the browser save a file."""
         self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
 
     def attempt(self, action: Callable[[], None]) -> None:
@@ -246,7 +249,7 @@ class Page:
         self.channel.put("order", list(self.controls))
         self.channel.put("#behind", joint_words(screen.file.joint))
         self.channel.put("view", screen.view)
-        self.channel.put("link", screen.link)
+        self.channel.put("link", "" if screen is self._substitute else screen.link)
 
     @property
     def view(self) -> View:

@@ -21,9 +21,9 @@ const MOVES = {
     move("load", held.value + (further / now.svg.long) * known("load").high);
   },
   tilt({ x, y }) { move("tilt", Math.max(0, (Math.atan2(x, -y) * 180) / Math.PI) * known("tilt").factor); },
-  border({ radius, svg }) {
-    const further = radius - held.start.radius; // a handle that is only touched moves nothing
-    move(held.name, held.value + (further / svg.scale) * known(held.name).factor);
+  border({ radius, svg }) { // each radius in mm by the scale of its own drawing
+    const further = radius / svg.scale - held.start.radius / held.start.svg.scale;
+    move(held.name, held.value + further * known(held.name).factor);
   },
 };
 function follow() {

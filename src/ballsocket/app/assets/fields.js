@@ -9,7 +9,6 @@ import { limits } from "./limits.js";
  * @type {Map<string, Input>}
  */
 const inputs = new Map(); // by name: the element, what the server said last, and how to show it
-const typed = new Set(); // boxes with text that nobody has confirmed yet
 const stale = new Set(); // inputs that show an edit, until the server has answered it
 const UNITS = ["units", "size", "angle"]; // choices that change what a number means
 
@@ -41,10 +40,14 @@ function errorBelow(node, box, name) {
   };
 }
 
-/** Confirm typed text once; a browser reports no change if the text is the same as before the typing. */
-function confirmTyped(box, name, confirm) {
-  const once = () => { if (typed.delete(name)) confirm(); };
-  box.addEventListener("input", () => typed.add(name));
+/** Mark a box with text that nobody has confirmed; confirm it once, also if it is the text before the typing. */
+export function confirmTyped(box, confirm) {
+  const once = () => {
+    if (!box.dataset.typing) return;
+    delete box.dataset.typing;
+    confirm();
+  };
+  box.addEventListener("input", () => { box.dataset.typing = "yes"; });
   for (const event of ["change", "blur"]) box.addEventListener(event, once);
   box.addEventListener("keydown", (event) => { if (event.key === "Enter" && box.matches("input")) once(); });
 }
@@ -62,14 +65,14 @@ function number(name) {
   const showError = errorBelow(node, box, name);
   let field;
   function set(value) {
-    typed.delete(name);
+    delete box.dataset.typing;
     bar.value = within(value, field);
     box.value = String(within(value, field));
     edit(name, within(value, field));
   }
   function reset() {
-    typed.delete(name);
-    if (field.error) edit(name, field.text);
+    delete box.dataset.typing;
+    if (field.error) edit(name, null); // forgets the refused text
     else show(field);
   }
   function keys(event) {
@@ -86,10 +89,10 @@ function number(name) {
   bar.addEventListener("keydown", keys);
   box.addEventListener("keydown", keys);
   bar.addEventListener("input", () => set(rounded(Number(bar.value), field.step)));
-  confirmTyped(box, name, () => {
+  confirmTyped(box, () => {
     const text = box.value.trim();
-    if (text === field.text || !(text || field.optional)) reset(); // in an emptied box the last value is still true
-    else edit(name, text);
+    if (text || field.optional) edit(name, text);
+    else reset(); // in an emptied box the last value is still true
   });
   function show(next) {
     field = next;
@@ -102,7 +105,7 @@ function number(name) {
       box.setAttribute("list", sizes.id);
     }
     bar.hidden = field.value === null;
-    if (!typed.has(name)) box.value = field.refused ?? field.text;
+    if (!box.dataset.typing) box.value = field.refused ?? field.text;
     if (bar.hidden) return;
     bar.min = field.low;
     bar.max = field.high;
@@ -174,11 +177,11 @@ function words(name, { rows }) {
   const box = rows > 1 ? element("textarea", { rows, ...settings }) : element("input", { type: "text", ...settings });
   const node = element("div", { class: "field words" }, label, box);
   const showError = errorBelow(node, box, name);
-  confirmTyped(box, name, () => edit(name, box.value));
+  confirmTyped(box, () => edit(name, box.value));
   function show(field) {
     label.textContent = field.label;
     showError(field.error);
-    if (!typed.has(name)) box.value = field.refused ?? field.value;
+    if (!box.dataset.typing) box.value = field.refused ?? field.value;
   }
   return { node, show };
 }
@@ -242,7 +245,7 @@ export function arrange(names) {
   // those that stay are not moved: one of them may have the focus
   for (const child of /** @type {HTMLElement[]} */ ([...home.children])) {
     if (nodes.includes(child)) continue;
-    typed.delete(child.dataset.name);
+    for (const box of child.querySelectorAll("input")) delete box.dataset.typing;
     child.remove();
   }
   nodes.forEach((node, index) => {

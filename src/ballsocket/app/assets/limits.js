@@ -1,6 +1,6 @@
 // @ts-check
 // Limits as rows: a quantity, at most or at least, a value with its unit, and a button that removes the row.
-import { element } from "./fields.js";
+import { confirmTyped, element } from "./fields.js";
 
 /** @param {string} name  @param {(name: string, rows: string[][]) => void} edit */
 export function limits(name, edit) {
@@ -26,9 +26,7 @@ export function limits(name, edit) {
     const index = () => [...list.children].indexOf(row);
     quantity.addEventListener("change", () => { box.value = ""; send(rows()); }); // the server gives the present number
     sign.addEventListener("change", () => send(rows()));
-    box.addEventListener("input", () => { box.dataset.typing = "yes"; });
-    box.addEventListener("change", () => {
-      delete box.dataset.typing;
+    confirmTyped(box, () => {
       if (box.value.trim()) send(rows());
       else show(field);
     });

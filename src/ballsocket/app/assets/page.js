@@ -2,7 +2,7 @@
 // The page: what the server answers is shown, and what a server cannot do: clipboard, files, the theme, news.
 import { ask, listen } from "./connection.js";
 import { arrange, showField } from "./fields.js";
-import { record, redo, theme, undo } from "./history.js";
+import { isVisit, record, redo, theme, undo } from "./history.js";
 import { hit } from "./svg.js";
 
 const LARGEST = 100000; // bytes of a joint file or a table; the server has the same limit
@@ -15,8 +15,7 @@ const filled = new Set(); // elements that the server has filled
 let news = 0;
 const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
 // no link holds a table: it is sent again after a lost connection and after a reload, but not to another link
-const [navigation] = /** @type {PerformanceNavigationTiming[]} */ (performance.getEntriesByType("navigation"));
-let table = navigation.type === "reload" ? JSON.parse(sessionStorage.getItem(TABLE)) : null;
+let table = isVisit ? null : JSON.parse(sessionStorage.getItem(TABLE));
 
 /** Show a sentence for some seconds. @param {string} words */
 export function tell(words) {
@@ -32,18 +31,16 @@ listen((message, request) => {
   }
   if (message.order) arrange(message.order);
   if (message.view) showView(message.view);
+  if ("link" in message) page.toggleAttribute("data-unread", !message.link); // the address stays as it is
   if (message.file) save(message.file);
   const expected = message.expected || [];
   if (message.fresh || "expected" in message)
     for (const name of filled) at(name.slice(1)).toggleAttribute("data-expected", expected.includes(name));
   at("inputs").disabled = false;
   if (request) page.dataset.shown = page.dataset.view;
-  if (table && table.cycle !== cycle()) { // another cycle was chosen since
-    table = null;
-    sessionStorage.removeItem(TABLE);
-  }
   if (table && message.fresh) table.lost = true;
-  if (table?.lost && table.name.startsWith(`${page.dataset.view}.`)) sendTable();
+  const wanted = new URLSearchParams(location.search).get("use.table");
+  if (table?.lost && table.value.name === wanted && table.name.startsWith(`${page.dataset.view}.`)) sendTable();
   document.dispatchEvent(new CustomEvent("shown", { detail: message }));
 });
 function fill(name, html) {
@@ -87,16 +84,22 @@ function decode(bytes) { // UTF-8, UTF-16 with a byte order mark, or the code pa
   try { return new TextDecoder(wide ?? "utf-8", { fatal: true }).decode(bytes); }
   catch { return new TextDecoder("windows-1252").decode(bytes); }
 }
-const cycle = () => new URLSearchParams(location.search).get("use.cycle");
 function sendTable() {
   table.lost = false;
   ask("edit", table.name, table.value);
 }
-/** Show each table that is wider than its place as blocks, in which the numbers have the headings of their columns. */
+/**
+ * Show each table that is wider than its place as blocks, in which the numbers have the headings of their columns; that
+ * of the models with its main columns, unless all are asked for.
+ */
 function fitTables() {
   for (const place of document.querySelectorAll(".wide")) {
-    place.classList.remove("cards");
+    place.classList.remove("cards", "compact");
     if (place.scrollWidth <= place.clientWidth) continue;
+    if (place.matches(".models") && !at("press-all").checked) {
+      place.classList.add("compact");
+      continue;
+    }
     const [top, ...rows] = place.querySelector("table").rows;
     const heads = [...top.cells].map((cell) => cell.firstChild?.textContent);
     for (const row of rows)
@@ -126,7 +129,7 @@ at("joint-file").addEventListener("change", (event) =>
 document.addEventListener("change", (event) => {
   const input = hit(event, "input[data-tell-file]");
   if (input) read(input, (name, text) => {
-    table = { name: input.dataset.tellFile, value: { name, size: text.length, text }, cycle: cycle() };
+    table = { name: input.dataset.tellFile, value: { name, size: text.length, text } };
     sessionStorage.setItem(TABLE, JSON.stringify(table));
     sendTable();
   });
@@ -142,6 +145,7 @@ document.addEventListener("click", (event) => {
 new MutationObserver(() => { at("lost").textContent = page.dataset.lost ? LOST : ""; })
   .observe(page, { attributeFilter: ["data-lost"] });
 new ResizeObserver(fitTables).observe(at("view"));
+at("press-all").addEventListener("change", fitTables);
 document.addEventListener("shown", fitTables);
 // answers first where there is little room
 if (innerWidth <= 820) document.querySelector(".side").removeAttribute("open");

@@ -13,7 +13,7 @@ from contourpy import FillType, LineType, contour_generator
 
 Numbers = numpy.ndarray
 _STEPS = 240
-_DIGIT_WIDTH = 8.0  # pixels of a digit in a number below a row of colours, with its share of the space between
+_DIGIT_WIDTH = 12.0  # pixels of a digit in a number below a row of colours in the largest type, with space between
 
 
 def path(x: numpy.ndarray, y: numpy.ndarray) -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
+
+import numpy
 
 from ...core.checks import check_names, require, shown
 from ...core.kinds import Kind
@@ -17,6 +20,7 @@ from ...hip.config import parse_creep, socket_surface, unused_load
 from ...hip.creep_laws import CREEP_LAWS
 from ...hip.cycle_file import read_cycle
 from ...hip.cycle_registry import CYCLES
+from ...hip.cycle_tables import ANGLES, FORCES
 from ...hip.in_vivo_cycles import check_body_weight
 from ...hip.law_fields import Law, LawField
 from ...hip.wear_law import COEFFICIENT
@@ -49,6 +53,7 @@ class Use:
     """Cycle, compliance of the bore, wear law and creep."""
 
     cycle: str = "iso-14242-1"
+    table: str = ""  # file name of a table in place of the cycle in Gait; a link does not hold its content
     body_weight: float = 800.0  # N, for loads measured in patients
     instant: int | None = None  # shown instant of the cycle; None is that of the largest force
     contact: str = "springs"
@@ -183,11 +188,38 @@ class UploadedCycle:
         if Path(self.name).suffix.lower() not in _TABLES:
             raise ValueError(f"{shown(self.name)} is not a table of a cycle, which ends in {', '.join(_TABLES)}")
 
+    @property
+    def per_body_weight(self) -> bool:
+        return "%BW" in self.text
+
+    def with_units(self) -> UploadedCycle:
+        """Return the table with the usual unit behind each head that has none."""
+        text = _BARE_HEAD.sub(lambda head: f"{head[0]} [{_USUAL_UNITS[head[1].lower()]}]", self.text)
+        return replace(self, text=text)
+
     def cycle(self, body_weight: float) -> Cycle:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"cycle{Path(self.name).suffix.lower()}"
             path.write_text(self.text, encoding="utf-8")
-            return read_cycle(path, body_weight=body_weight if "%BW" in self.text else None)
+            try:
+                cycle = read_cycle(path, body_weight=body_weight if self.per_body_weight else None)
+            except ValueError as error:
+                raise ValueError(str(error).replace(path.name, self.name)) from error
+            return replace(cycle, name=self.name)
+
+
+_USUAL_UNITS = {"phase": "%", "time": "s", "force": "N", "flexion": "deg", "adduction": "deg", "rotation": "deg"}
+_BARE_HEAD = re.compile(rf"\b({'|'.join(_USUAL_UNITS)})(?:_[xyz])?(?=[\"'\s]*(?:[,;\t\n]|$))", re.IGNORECASE)
+
+
+def sample_table(cycle: Cycle, n_lines: int = 51) -> str:
+    """Write a named cycle as a table that `UploadedCycle` reads."""
+    phases = numpy.linspace(0.0, 1.0, n_lines)
+    forces = numpy.atleast_2d(cycle.force(phases).T)
+    heads = FORCES if len(forces) == len(FORCES) else ("force",)
+    columns = numpy.vstack([100 * phases, forces, numpy.degrees(cycle.angles(phases))])
+    names = ", ".join(["phase [%]", *(f"{name} [N]" for name in heads), *(f"{name} [deg]" for name in ANGLES)])
+    return "\n".join([names, *(", ".join(f"{value:.5g}" for value in row) for row in columns.T), ""])
 
 
 def hip_of(file: JointFile, use: Use, upload: UploadedCycle | None = None) -> HipSimulation:

@@ -52,21 +52,22 @@ class Press(LongView):
     automatic, result_kind = True, "cup"
     body = """
 <div class="first-view">
-  <div class="drawing">
-    <div id="press-section"></div>
-    <div data-field="press.painted"></div>
-    <p class="quiet">Drag the arrow, the ball or the liner's border; or move to one with Tab, and use the arrow
-    keys.</p>
-    <div data-field="press.shown"></div>
-    <div id="press-charts"></div>
-  </div>
   <div>
     <div data-field="press.answered_by"></div>
     <div id="press-trouble" role="alert"></div>
     <div id="press-offer"></div><div data-field="press.run"></div>
     <div id="press-numbers"></div>
   </div>
+  <div class="drawing">
+    <div id="press-section"></div>
+    <div data-field="press.painted"></div>
+    <p class="quiet">Drag the arrow, the ball or the liner's border; or move to one with Tab, and use the arrow
+    keys.</p>
+    <div id="press-charts"></div>
+    <details class="fold"><summary>Curves of the models</summary><div data-field="press.shown"></div></details>
+  </div>
 </div>
+<label class="tick" for="press-all"><input type="checkbox" id="press-all">All numbers of each model</label>
 <div id="press-table"></div>
 """
 

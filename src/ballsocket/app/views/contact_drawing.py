@@ -79,7 +79,7 @@ def _dimensions(file: JointFile, frame: DrawingFrame, unit: Unit) -> Iterator[st
     """Draw the diameters of head, bore and shell, the clearance, and the thickness of the liner."""
 
     def format_length(value: float) -> str:
-        return f"{number_text(value * unit.factor, unit.text)} {unit.text}"
+        return f"{number_text(value * unit.factor)} {unit.text}"
 
     radius, angle = float(file.joint.ball_radius), radians(118.0)
     yield _both_ways(*frame.at(0.985 * radius, angle), *frame.at(0.985 * radius, angle + pi))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from base64 import b64encode
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
 from math import radians
@@ -17,6 +17,8 @@ from ...core.checks import shown
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED, FIELD, Quantity
 from ...files.joint_file import JointFile
+from ...hip import named_cycle
+from ...hip.cycle_registry import CYCLES
 from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
 from ...reports.pages import picture, table
@@ -28,9 +30,9 @@ from ..pictures.svg import levels_between
 from ..pressing import rounded_up
 from ..running import Work
 from ..state.screen import Screen
-from ..state.use import FIELDS, UploadedCycle
+from ..state.use import CHOICES, FIELDS, UploadedCycle, sample_table
 from ..view import Document
-from ..widgets.controls import Changes, Control, changed, chosen, cycle_controls, segments
+from ..widgets.controls import Changes, Control, changed, choice, chosen, cycle_controls, segments
 from ..widgets.reading import Reading
 from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
 from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
@@ -40,7 +42,9 @@ _FILM_SECONDS = 300.0
 _INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
 <div data-field="gait.contact"></div>
 <div class="field"><label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
-<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div>"""
+<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own">
+<button type="button" class="plain" data-tell="gait.sample">Save a sample</button>
+<div id="gait-question" role="alert"></div></div>"""
 _SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
 <div class="player"><span id="gait-at" data-at hidden></span>
 <div class="transport" hidden><button type="button" class="plain">▶ Play</button>
@@ -65,35 +69,56 @@ class Gait(LongView):
     def begin(self) -> None:
         super().begin()
         self._upload: UploadedCycle | None = None
-        self._cycle = self.page.screen.use.cycle
+        self._doubtful: UploadedCycle | None = None  # table whose units the user is to confirm
         work = LongWork(
             self.page,
             "gait-film",
             "Compute the film",
             self.question_of,
-            lambda screen: partial(simulate_film, screen.file, screen.use, self._upload),
+            lambda screen: partial(simulate_film, screen.file, screen.use, self._table_of(screen)),
             self._show_film,
             automatic=True,
             longest=_FILM_SECONDS,
         )
         self.film = self.add(work)
-        self.actions |= {"gait.own": self._take_upload, "gait.instant": self._take_instant}
+        self.actions |= {
+            "gait.own": self._take_upload,
+            "gait.units": lambda yes: self._with_table(self._doubtful),
+            "gait.sample": self._save_sample,
+            "gait.instant": self._take_instant,
+        }
 
     def controls(self, screen: Screen) -> list[Control]:
-        return [*cycle_controls(screen), chosen(screen, "use.field", "Shown on the cup", FIELDS, segments)]
+        cycle, weight, contact = cycle_controls(screen)
+        use, table = screen.use, self._table_of(screen)
+        options = [*([use.table] if use.table else []), *CHOICES["cycle"]]
+        return [
+            Control(
+                choice("cycle", cycle.field["label"], options, use.table or use.cycle),
+                lambda name: {} if name == use.table else {"use": replace(use, cycle=name, table="")},
+            ),
+            weight if table is None else weight.but(hidden=not table.per_body_weight),
+            contact,
+            chosen(screen, "use.field", "Shown on the cup", FIELDS, segments),
+        ]
 
     def question_of(self, screen: Screen) -> Hashable:
-        return gait_key(screen.file, screen.use, self._upload)
+        return gait_key(screen.file, screen.use, self._table_of(screen))
 
     def work(self, screen: Screen) -> Work:
-        return partial(simulate_gait, screen.file, screen.use, self._upload)
+        table = self._table_of(screen)
+        if screen.use.table and table is None:
+            raise ValueError(f"a link does not hold {screen.use.table}: choose the file again, or another cycle")
+        return partial(simulate_gait, screen.file, screen.use, table)
 
     def show(self, screen: Screen) -> None:
-        if screen.use.cycle != self._cycle:
-            self._upload, self._cycle = None, screen.use.cycle
-        upload_note = "" if self._upload is None else f" {escape(self._upload.name)}: a link does not hold it."
-        self.put(load=f"The load is that of the cycle; the force beside the joint is not used.{upload_note}")
+        table_note = f" A link does not hold {escape(screen.use.table)}." if screen.use.table else ""
+        self.put(load=f"The load is that of the cycle; the force beside the joint is not used.{table_note}")
         super().show(screen)
+
+    def _table_of(self, screen: Screen) -> UploadedCycle | None:
+        """Return the table of the screen's cycle; None for a named cycle, or for a table that is not on this page."""
+        return self._upload if self._upload and self._upload.name == screen.use.table else None
 
     def show_result(self, screen: Screen, result: GaitResult | None) -> None:
         if result is None:
@@ -121,9 +146,34 @@ class Gait(LongView):
             courses=gait_charts(result, film, reading),
         )
 
-    def _take_upload(self, value: Any) -> None:
-        self._upload = _read_upload(value)
-        self.show(self.page.screen)
+    def _take_upload(self, value: Any) -> Changes:
+        upload, weight = _read_upload(value), self.page.screen.use.body_weight
+        self.put(question="")
+        try:
+            upload.cycle(weight)
+        except ValueError:
+            self._doubtful = upload.with_units()
+            if self._doubtful == upload:
+                raise
+            self._doubtful.cycle(weight)
+            self.put(question=_UNITS_QUESTION.format(escape(upload.name)))
+            return {}
+        return self._with_table(upload)
+
+    def _with_table(self, upload: UploadedCycle | None) -> Changes:
+        if upload is None:
+            raise ValueError("no table waits for its units: choose the file again")
+        self._upload, screen = upload, self.page.screen
+        self.put(question="")
+        if screen.use.table == upload.name:  # the same file, chosen again
+            self.show(screen)
+        return changed(screen, "use.table", upload.name)
+
+    def _save_sample(self, value: Any) -> None:
+        use = self.page.screen.use
+        weight = use.body_weight if CYCLES[use.cycle].per_body_weight else None
+        text = sample_table(named_cycle(use.cycle, body_weight=weight))
+        self.page.send_file(f"{use.cycle}.csv", text.encode("utf-8"))
 
     def _take_instant(self, value: Any) -> Changes:
         if not isinstance(value, int) or isinstance(value, bool):
@@ -153,6 +203,12 @@ class Gait(LongView):
             rows=lambda: [heads, *rows],
             sections=lambda: sections,
         )
+
+
+_UNITS_QUESTION = (
+    "<p class='refused'>{} has heads without units. Read phases in %, times in s, forces in N and angles in degrees? "
+    "<button type='button' class='plain' data-tell='gait.units'>Yes</button></p>"
+)
 
 
 def _read_upload(value: Any) -> UploadedCycle:

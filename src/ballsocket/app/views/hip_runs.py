@@ -86,7 +86,7 @@ class GaitFilm:
 def gait_key(file: JointFile, use: Use, upload: UploadedCycle | None) -> Hashable:
     """Return a key of the inputs of a gait result."""
     weight = use.body_weight if upload is not None or CYCLES[use.cycle].per_body_weight else None
-    return without_name(file.joint), file.cup, file.cup.oriented, weight, use.contact, upload or use.cycle
+    return without_name(file.joint), file.cup, file.cup.oriented, weight, use.contact, upload or use.table or use.cycle
 
 
 def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, report: Report) -> GaitResult:
@@ -215,7 +215,7 @@ def wear_key(file: JointFile, use: Use) -> Hashable:
     """Return a key of the inputs of a wear result."""
     weight = use.body_weight if CYCLES[use.cycle].per_body_weight else 0.0
     numbers = tuple((name, use.law_number(name)) for name in use.used_inputs)
-    plain = replace(use, instant=None, law_numbers=numbers)
+    plain = replace(use, instant=None, law_numbers=numbers, table="")
     return without_name(file.joint), file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
 
 

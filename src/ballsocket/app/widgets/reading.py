@@ -13,10 +13,8 @@ from ...core.quantities import JOINT, Quantity
 from ...core.unit_systems import Units
 
 _DIGITS, _BOX_DIGITS = 4, 5
-_INCH_DECIMALS = 4
 _LARGEST_PLAIN = 1e12  # value from which numbers are written with an exponent
-_CONVERTED_DIGITS = {"in": 4, "mil": 3, "lbf": 3, "psi": 3, "ksi": 3, "Mpsi": 3}
-"""Digits in a box of a number that was converted from metric units, by its unit."""
+_CONVERTED = ("in", "mil", "lbf", "psi", "ksi", "Mpsi")  # units of which a box has four digits, unless it is exact
 
 _PSI_MULTIPLES = {"liner_young": ("ksi", 1e-3), "ball_young": ("Mpsi", 1e-6)}
 """Units of Young's moduli on imperial pages, and their factors from psi."""
@@ -57,7 +55,7 @@ class Reading:
         number = value * unit.factor
         if 0 < error < inf:
             number = round(number, max(0, ceil(-log10(error * unit.factor))))
-        return f"{number_text(number, unit.text)}{unit_suffix(unit.text)}"
+        return f"{number_text(number)}{unit_suffix(unit.text)}"
 
     def values_of(self, contact: Any, quantity: Quantity) -> Array:
         """Return a quantity of a contact in its chosen unit."""
@@ -69,40 +67,32 @@ def unit_suffix(unit: str) -> str:
     return unit if unit in ("", "°") else f" {unit}"
 
 
-def number_text(value: float, unit: str = "") -> str:
-    """Format a number with four digits, inches with at most four decimals; NaN and infinity in words."""
+def number_text(value: float) -> str:
+    """Format a number with four digits; NaN and infinity in words."""
     if isnan(value):
         return "no result"
     if 10**_DIGITS <= abs(value) < _LARGEST_PLAIN:
         return f"{value:.0f}"
-    return f"{_in_tenths(value, unit):.{_DIGITS}g}" if abs(value) < inf else "∞"
+    return f"{value:.{_DIGITS}g}" if abs(value) < inf else "∞"
 
 
 def box_text(value: float, unit: str = "") -> str:
-    """Format a number for a box with at most five digits; fewer for one that was converted from metric units.
+    """Format a number for a box with at most five digits, or four if it was converted from metric units.
 
     Examples
     --------
     >>> box_text(32 / 25.4, "in"), box_text(1.0625, "in"), box_text(674.427, "lbf")
-    ('1.26', '1.0625', '674')
+    ('1.26', '1.0625', '674.4')
     """
     text = _digits(value, _BOX_DIGITS)
-    if unit not in _CONVERTED_DIGITS or isclose(float(text), value, rel_tol=1e-9):
-        return text
-    return _digits(_in_tenths(value, unit), _CONVERTED_DIGITS[unit])
+    exact = unit not in _CONVERTED or isclose(float(text), value, rel_tol=1e-9)
+    return text if exact else _digits(value, _DIGITS)
 
 
 def _digits(value: float, digits: int) -> str:
     """Format a number with a number of digits, without an exponent if it is not too large."""
     text = f"{value:.{digits}g}"
     return f"{float(text):.0f}" if "e+" in text and abs(value) < _LARGEST_PLAIN else text
-
-
-def _in_tenths(value: float, unit: str) -> float:
-    """Round inches to four decimals, or to two digits where these are smaller."""
-    if unit != "in" or not 0 < abs(value) < inf:
-        return value
-    return round(value, max(_INCH_DECIMALS, 1 - floor(log10(abs(value)))))
 
 
 def handy_step(step: float) -> float:
