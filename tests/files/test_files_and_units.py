@@ -221,6 +221,7 @@ REFUSED_JOINTS = [
     ("[joint]", "young = 3\n[joint]", "'young' at the top is not known; it belongs in .liner. or .ball. or"),
     ("[joint]", "[joint]\nforce = 3", "'force' in .joint. is not known; it belongs in .load.$"),
     ("[joint]", "[joint]\nshell_thickness = 3", "it is 'thickness' in .shell."),
+    ("[joint]", "[joint]\nfree = true", "it is a value of a key: support = 'free'"),
     ("[joint]", "[joint]\nball = 'steel'", "'ball' in .joint. is not known; it is a separate table, .ball.$"),
     ("[joint]", "[joint]\nthickness = 3", r"'thickness' in .joint. is not known; it belongs in \[shell\] or \[\["),
     ("ball_radius = 17.9", "head_diameter = 0", r"head_diameter = 0 is not allowed: a diameter \(mm\) is above 0"),
