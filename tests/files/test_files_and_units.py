@@ -221,6 +221,7 @@ REFUSED_JOINTS = [
     ("[joint]", "young = 3\n[joint]", "'young' at the top is not known; it belongs in .liner. or .ball. or"),
     ("[joint]", "[joint]\nforce = 3", "'force' in .joint. is not known; it belongs in .load.$"),
     ("[joint]", "[joint]\nshell_thickness = 3", "it is 'thickness' in .shell."),
+    ("[joint]", "[joint]\nfree = true", "it is a value of a key: support = 'free'"),
     ("[joint]", "[joint]\nball = 'steel'", "'ball' in .joint. is not known; it is a separate table, .ball.$"),
     ("[joint]", "[joint]\nthickness = 3", r"'thickness' in .joint. is not known; it belongs in \[shell\] or \[\["),
     ("ball_radius = 17.9", "head_diameter = 0", r"head_diameter = 0 is not allowed: a diameter \(mm\) is above 0"),
@@ -240,6 +241,7 @@ REFUSED_JOINTS = [
     ("[joint]", "[cup]\nanteversion = '3 mm'\n[joint]", "anteversion = '3 mm' is not an angle"),
     ("[joint]", "[cup]\nside = 'port'\n[joint]", "side = 'port' is not allowed: 'right' or 'left'"),
     ("[joint]", "[cup]\nsides = 'left'\n[joint]", "'sides' in .cup. is not known; did you mean 'side'?"),
+    ("[joint]", "[[backing]]\nthickness = 1\nmaterial = 'pom'\n" * 99 + "[joint]", "99 layers are behind the liner"),
     ("[joint]", "backing = 3\n[joint]", NO_ARRAY),
     ("[joint]", 'backing = ["titanium"]\n[joint]', NO_ARRAY),
     ("[joint]", "[backing]\nthickness = 2\n[joint]", NO_ARRAY),
@@ -289,6 +291,7 @@ def test_every_kind_is_read_and_refused_in_its_own_words(kind):
         (b'name = "a"\n\xff\xfe\x00', "it.toml is not text in UTF-8: invalid start byte at byte 11"),
         (b"a=" + b"[" * 30_000, "it.toml is no {kind} file: its brackets are nested too deeply"),
         (b"[joint\n", "it.toml is not TOML: .* line 1"),
+        (b"a" + b".a" * 20 + b" = 1", "it.toml is not TOML: a name of more than 16 parts"),
         (b"joints = 3\n", "it.toml: 'joints' at the top is not known; did you mean 'joint'?"),
     ],
 )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from ballsocket.lubrication.balance import balance_cells
+from ballsocket.lubrication.balance import add_storage, balance_cells
 from ballsocket.lubrication.mesh import FilmMesh, polar_mesh
 from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, solve_steady
 
@@ -46,6 +46,24 @@ def test_spin_about_the_eccentricity_makes_no_pressure():
     film, empty = CLEARANCE - ECCENTRICITY * mesh.direction[:, 2], np.zeros(mesh.cells)
     balance = balance_cells(mesh, np.array([0.0, 0.0, 10.0]), VISCOSITY, film, empty, empty, np.zeros(24))
     assert np.abs(balance.outflow).max() < 1e-12 * 10.0 * RADIUS * CLEARANCE * mesh.width.max()
+
+
+def test_the_matrices_of_a_balance_are_its_derivatives_by_differences():
+    mesh, random = polar_mesh(RADIUS, np.linspace(0.0, np.pi / 2, 6), 8), np.random.default_rng(1)
+    spin, rim, volume = np.array([3.0, -5.0, 2.0]), random.uniform(0.0, 2.0, 8), np.full(mesh.cells, 1e-3)
+    fields = {name: random.uniform(0.2, 0.8, mesh.cells) for name in ("thickness", "pressure", "void")}
+    fields["thickness"] *= 2e-3
+
+    def balance(**changed):
+        now = fields | changed
+        flows = balance_cells(mesh, spin, VISCOSITY, *now.values(), rim, central=0.3)
+        return add_storage(flows, mesh.area, now["thickness"], now["void"], volume, 0.05)
+
+    for name, values in fields.items():
+        change = 1e-4 * values * random.uniform(-1.0, 1.0, mesh.cells)
+        difference = balance(**{name: values + change}).outflow - balance(**{name: values - change}).outflow
+        derivative = 2.0 * getattr(balance(), f"by_{name}") @ change
+        assert derivative == pytest.approx(difference, rel=1e-6, abs=1e-6 * np.abs(difference).max())
 
 
 def strip_mesh(edges):

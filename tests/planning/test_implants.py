@@ -12,6 +12,7 @@ from . import scans
 
 HALF = {"arc_of_cover": 180.0, "steps": 30, "segments": 64}
 SHIFT = np.array([30.0, -50.0, 800.0])
+OVER = scans.liner(arc_of_cover=200.0, steps=24, segments=48)
 PLAIN, SMALL = scans.liner(steps=24, segments=48), scans.liner(steps=6, segments=12)
 
 
@@ -47,7 +48,7 @@ LINERS = {
     "cylinder in its scatter": (scans.scattered(scans.liner(**HALF, cylinder=0.8), 0.02), 180.0, 8.0),
     "over-hemispherical": (scans.liner(wall=4.0, arc_of_cover=200.0, steps=24, segments=48), 200.0, 4.0),
     "inside out": (PLAIN[:, ::-1], 170.0, 8.0),
-    "eccentric": (PLAIN - np.where(np.linalg.norm(PLAIN, axis=2) > 20.0, 1.0, 0.0)[..., None] * [0, 0, 1], 170.0, 9.0),
+    "eccentric": (OVER - np.where(np.linalg.norm(OVER, axis=2) > 20.0, 1.0, 0.0)[..., None] * [0, 0, 1], 200.0, 9.0),
     "bore of two sides": (two_sided(PLAIN), 170.0, 8.0),
     "lipped": (LIPPED, 170.0, 8.0),
 }
@@ -61,7 +62,8 @@ def test_a_liner_is_measured_within_its_tolerances(triangles, arc_of_cover, wall
     assert np.linalg.norm(fit.centre - SHIFT) < 0.02
     assert np.degrees(fit.arc_of_cover) == pytest.approx(arc_of_cover, abs=0.2)
     assert angle(fit.axis, opening) < 0.1
-    assert fit.wall_thickness == pytest.approx(wall, abs=0.01)
+    # an outer sphere 1 mm off the bore is √(24² - sin²72°) + cos 72° - 16 mm thick at 0.8 of 90° from the pole
+    assert (fit.wall_thickness, *fit.wall_range) == pytest.approx((wall, 8.29 if wall == 9.0 else wall, wall), abs=0.01)
     assert any("in two planes" in note for note in fit.notes) == (triangles is LIPPED)
 
 
@@ -82,9 +84,12 @@ def test_a_lip_moves_neither_axis_nor_arc_however_the_file_is_turned(lip, offset
 
 
 def test_two_planes_between_which_nothing_decides_are_called_ambiguous():
-    fit = fit_liner(Mesh(scans.lipped(PLAIN)))  # a concentric sphere, cut like the bore
-    assert fit.ambiguous
-    assert min(angle(plane.normal, UPWARDS) for plane in fit.rim) < 0.01
+    """The outer surface is a sphere, cut like the bore; then it has a ring around the axis between both planes."""
+    lipped, ring = scans.lipped(PLAIN), scans.locked(PLAIN)[len(PLAIN) :] @ scans.rotated(roll=7.5).T
+    for triangles in (lipped, np.concatenate([lipped, ring])):
+        fit = fit_liner(Mesh(triangles))
+        assert fit.ambiguous
+        assert min(angle(plane.normal, UPWARDS) for plane in fit.rim) < 0.01
 
 
 @pytest.mark.parametrize(("steps", "scatter"), [(30, 0.0), (30, 0.02), (10, 0.0)])

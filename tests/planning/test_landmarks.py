@@ -105,6 +105,20 @@ def test_scatter_of_rim_points_gives_the_error_of_the_angles():
     assert make_plan(frame=results[0].frame).notes[0].startswith("the orientation of the cup is not known")
 
 
+def test_notes_name_what_limits_the_angles():
+    names, raised = [*SPINES, "right tubercle", "left tubercle", *NAMES[3:]], POINTS.copy()
+    raised[5] += 8.0 * scans.axis(42.0, 17.0)
+    uneven = np.concatenate([POINTS[:2], POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 12.0]], POINTS[3:]])
+    for landmarks, parts in (
+        ((NAMES, raised), ("mm from their plane (rms), 'rim-3' ", "a standard error of ", "pelvic tilt is not known")),
+        ((NAMES[:6], POINTS[:6]), ("three points on the rim leave no residual",)),
+        ((names, uneven), ("tubercles are 12 mm apart across the line of the spines",)),
+    ):
+        found = oriented(*landmarks)
+        notes = " ".join(map(str, HipPlan(frame=found.frame, orientation=found).notes))
+        assert all(part in notes for part in parts), notes
+
+
 def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
     both = [*("F-1", "F-2", "F-3"), *(f"right {name}" for name in NAMES[3:]), *(f"left rim {k}" for k in range(8))]
     points = np.concatenate([POINTS, scans.pelvis(50.0, 10.0, side="left")[1][3:]])
@@ -116,6 +130,8 @@ def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
         assert angles(cup_orientation(landmarks, frame, side=side).cup()) == pytest.approx(expected, abs=1e-4)
     for call, message in (
         (lambda: cup_orientation(landmarks, frame), "rim points of both sides: choose the side, right or left"),
+        (lambda: cup_orientation(landmarks, frame, side="port"), "side = 'port' is not allowed: right or left"),
+        (lambda: read_landmarks(path, coordinates="ijk"), "coordinates = 'ijk' is not allowed: RAS or LPS"),
         (lambda: read_landmarks(path, rename={"asis": "F-1"}), "landmark 'asis' is not known"),
         (lambda: read_landmarks(path, rename={"rim": "F-9"}), "point 'F-9' does not"),
     ):
@@ -172,6 +188,7 @@ test_impossible_landmarks_are_refused_in_a_sentence = refused_calls(
         ("a.mrk.json", scans.markups(NAMES, POINTS)[:-60], "a.mrk.json: not JSON, or truncated"),
         ("a.mrk.json", "[" * 100_000, "not JSON, or truncated"),
         ("a.mrk.json", "[]", "the list `markups` of a 3D Slicer file is missing"),
+        ("a.mrk.json", '{"markups": [{"coordinateSystem": "LPS", "controlPoints": [3]}]}', "not an object: 3"),
         ("a.mrk.json", scans.markups(NAMES, POINTS, unit="inch"), "coordinateUnits = 'inch' is not allowed"),
         ("a.mrk.json", scans.markups(NAMES, POINTS, scale=np.inf), "is not allowed: coordinates are finite"),
         ("a.mrk.json", scans.markups(NAMES, POINTS).replace("[-125.0", "[1.0, -125.0", 1), "three coordinates, got 4"),

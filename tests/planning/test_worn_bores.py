@@ -1,5 +1,7 @@
 """Wear of a bore from points: a ball that is shifted into a sphere removes a volume of closed form."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from ballsocket.core.kinds import MILLIMETRES
 from ballsocket.core.unit_systems import Sentence, with_error
 from ballsocket.planning import PointCloud, measure_wear, read_points
 
-from ..cli.command import answer
+from ..cli.command import answer, printed, refusal
 from ..extent import some
 from . import scans
 
@@ -35,11 +37,15 @@ def test_the_errors_contain_the_removed_volume_and_the_penetration(name, noise, 
     assert name == "near the noise" or noise == 0.02 or wear.volume_error < 0.15 * volume + 5.0
 
 
-@pytest.mark.parametrize(("tilt", "cover"), some([(0.0, 75.0), (10.0, 90.0), (0.0, 95.0)], 1))
-def test_a_shift_of_an_equal_radius_that_leaves_one_sphere_is_in_the_errors(tilt, cover):
+@pytest.mark.parametrize(("tilt", "cover"), some([(0.0, 75.0), (10.0, 90.0), (0.0, 95.0), (60.0, 90.0)], 2))
+def test_wear_by_a_head_of_the_bores_own_radius_is_in_the_errors(tilt, cover):
+    """It leaves one sphere, or two of which either may be the unworn one; below the rim is (1 + cos tilt)/2 of it."""
     wear = measure_wear(PointCloud(scans.worn_bore(head=16.0, shift=0.1, tilt=tilt, cover=cover, noise=0.004)))
-    assert abs(wear.volume - scans.removed_volume(16.0, 0.1)) < 1.5 * wear.volume_error
-    assert any("the points do not show if the sphere is unworn" in note for note in wear.notes)
+    volume = scans.removed_volume(16.0, 0.1) * (1.0 + np.cos(np.radians(tilt))) / 2.0
+    assert abs(wear.volume - volume) < 1.5 * wear.volume_error
+    assert abs(wear.depth - 0.1) < 1.5 * wear.depth_error
+    sentence = "the worn part is a sphere too" if tilt == 60.0 else "the points do not show if the sphere is unworn"
+    assert any(sentence in note for note in wear.notes)
 
 
 def test_a_gap_in_the_points_is_named():
@@ -93,6 +99,10 @@ REFUSED = {
     "few": (text(POINTS[:50]), "at least 200 points"),
     "plane": (text(POINTS * [1.0, 1.0, 0.0]), "is not a bore"),
     "head": (text(HEAD), "% of its points lie inside the sphere"),
+    "radius of 100 mm": (text(scans.worn_bore(head=100.0, shift=0.0, radius=100.0, cover=40.0)), "a radius of 100 mm;"),
+    "radius of 5 mm": (text(scans.worn_bore(head=6.5, shift=0.0, radius=6.5)), "of radius 6.5 mm; a bore has 7"),
+    "cap": (text(scans.worn_bore(head=30.0, shift=0.0, cover=20.0, radius=30.0)), "a bore has points up to 25°"),
+    "depth": (text(scans.worn_bore(head=12.0, shift=10.0)), "mm outside the sphere of radius 16.00 mm of its bore"),
     "whole liner": (text(scans.liner(steps=12, segments=24).reshape(-1, 3)), "is not a bore: its points lie"),
     "no points": ("# nothing", "has no points"),
 }
@@ -107,8 +117,12 @@ def test_points_of_no_bore_are_refused(tmp_path, content, message):
 
 def test_the_command_prints_the_wear_with_its_error(tmp_path):
     (tmp_path / "a.xyz").write_text(PLAIN, encoding="utf-8")
-    worn = answer("planning", "--worn", "a.xyz", "--head-diameter", "31.6", folder=tmp_path)["worn"]
+    words = "planning", "--worn", "a.xyz"
+    worn = answer(*words, "--head-diameter", "31.6", folder=tmp_path)["worn"]
     assert abs(worn["volume"] - scans.removed_volume(15.8, 0.25)) < worn["volume_error"]
+    cover = re.search(r"points cover (\d+) % within 9\d° of their middle", printed(*words, folder=tmp_path))
+    assert 90 < float(cover[1]) <= 100
+    assert "head_diameter = 34 mm is not allowed" in refusal(*words, "--head-diameter", "34", folder=tmp_path)
 
 
 def test_a_measured_head_acts_or_the_notes_say_that_it_does_not():
