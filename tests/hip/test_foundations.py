@@ -82,7 +82,7 @@ def test_interpolation_is_exact_at_centres_and_for_fields_of_the_polar_angle():
     for azimuth in (0.0, 2.0, -3.0):
         points = np.stack([np.sin(angles) * np.cos(azimuth), np.sin(angles) * np.sin(azimuth), np.cos(angles)])
         between = interpolation_at(SPHERE, points[:, None])
-        assert between.weights.sum(axis=-1) == pytest.approx(1.0)
+        assert between.weights.sum(axis=0) == pytest.approx(1.0)
         assert between.interpolate(polar)[0] == pytest.approx(angles, rel=1e-12)
     beyond_the_rim = np.array([np.sin(1.7), 0.0, np.cos(1.7)])[:, None, None]
     assert interpolation_at(CELLS, beyond_the_rim).weights.sum() == 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from math import cbrt, ceil, log10, pi
+from math import cbrt, ceil, pi
 from typing import Any
 
 import numpy
@@ -22,6 +22,7 @@ from ..question import complete
 from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
+from .pictures.svg import rounded_up
 from .solving import heavy, solved, solved_curve
 from .widgets.reading import Reading
 
@@ -29,6 +30,7 @@ _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
 _WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
+_AXIS_ENDS = 1, 1.5, 2, 3, 5, 7, 10  # times a power of ten
 _SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
 Profile = tuple[numpy.ndarray, numpy.ndarray, bool]  # angles (rad), pressures (MPa), and True where they can be trusted
 
@@ -110,15 +112,9 @@ def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
     return angle, numpy.asarray(contact.pressure(angle))
 
 
-def rounded_up(value: float) -> float:
-    """Round up to 1, 1.5, 2, 3, 5 or 7 times a power of ten, for axes that stay while a slider moves.
-
-    Return 1 for a value that is not positive.
-    """
-    if not value > _SMALLEST_AXIS:
-        return 1.0
-    scale = 10.0 ** (ceil(log10(value)) - 1)
-    return float(next(step * scale for step in (1, 1.5, 2, 3, 5, 7, 10, 15) if step * scale >= value * (1 - 1e-12)))
+def axis_end(value: float) -> float:
+    """Round up to the end of an axis, which stays while a slider moves a little; 1 for a value that is not positive."""
+    return rounded_up(value, _AXIS_ENDS) if value > _SMALLEST_AXIS else 1.0
 
 
 def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
@@ -140,7 +136,7 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
     }
     widest, highest = (max(float(getattr(curve, axis).max()) for curve in curves.values()) for axis in "xy")
     labels = FIELD["angle"].label(angle), FIELD["pressure"].label(pressure)
-    ends = rounded_up(1.02 * widest), rounded_up(1.05 * highest)
+    ends = axis_end(1.02 * widest), axis_end(1.05 * highest)
     return chart("pressure over angle, highest at the pole", *labels, curves, ends)
 
 
@@ -151,7 +147,7 @@ def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
         for name, contact in contacts.items()
     }
     deepest, largest = (max(ends) for ends in zip(*marks.values(), strict=True))
-    top, curves = rounded_up(1.2 * largest), {}
+    top, curves = axis_end(1.2 * largest), {}
     for name, contact in contacts.items():
         press, line = curve(contact, top / force.factor), lines[name]
         if press is None:
@@ -159,4 +155,4 @@ def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
         else:
             course = values_of(press, x, depth), values_of(press, y, force)
             curves[name] = Curve(*course, line, press.valid, marks[name])
-    return chart("force over indentation", x.label(depth), y.label(force), curves, (rounded_up(1.3 * deepest), top))
+    return chart("force over indentation", x.label(depth), y.label(force), curves, (axis_end(1.3 * deepest), top))

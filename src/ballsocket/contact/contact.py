@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
@@ -21,7 +21,7 @@ from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from ..problem import Joint
 from . import describe, strength
-from .outcome import ModelInfo, Outcome
+from .outcome import Finding, ModelInfo, Outcome
 from .stress_ratio import von_mises_ratio
 
 if TYPE_CHECKING:
@@ -200,16 +200,13 @@ class Contact(Outcome):
         """Notes without those that take longer to compute than the contact."""
         return self.notes
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Messages on failed points, points outside the model's validity, and exceeded material limits."""
-        failed, unchecked = self._failed, self.utilisation_note
-        compared = (
-            note
-            for acceptable, text in strength.strength_remarks(self)
-            for note in self._note_on_invalid_points(acceptable | failed, text)
-        )
-        return (*super().notes, *([unchecked] if unchecked and arrays.all_true(failed) is not True else []), *compared)
+    def findings(self) -> Iterator[Finding]:
+        """Yield messages on failed points, points outside the model's validity, and exceeded material limits."""
+        yield from super().findings()
+        if self.utilisation_note and arrays.all_true(self._failed) is not True:
+            yield Finding(False, self.utilisation_note)
+        for acceptable, text in strength.strength_remarks(self):
+            yield Finding(acceptable | self._failed, text)
 
     @property
     def utilisation_note(self) -> str:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy
 
@@ -61,6 +61,24 @@ class ModelInfo(ABC):
         return ()
 
 
+class Finding(NamedTuple):
+    """Sentence on some points of a result, with a mask of the points that it is not about."""
+
+    spared: Array
+    sentence: str
+
+    @property
+    def applies(self) -> bool:
+        """True if the sentence is about a point."""
+        return arrays.all_true(self.spared) is False
+
+
+def notes_of(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Write the sentences that are about points, each after the number of these if there are several."""
+    spared = [(arrays.to_numpy(finding.spared), finding.sentence) for finding in findings if finding.applies]
+    return tuple(text if mask.size == 1 else f"{int((~mask).sum())} of {mask.size}: {text}" for mask, text in spared)
+
+
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class Outcome(ABC):
     """Base class of results, with status, validity and notes of each point."""
@@ -113,24 +131,19 @@ class Outcome(ABC):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Messages on failed points, points outside the model's validity, remarks of the model, and on units."""
-        notes, failed = [], self._failed
+        """Sentences on the points, each with the number of points that it is about."""
+        return notes_of(self.findings())
+
+    def findings(self) -> Iterator[Finding]:
+        """Yield messages on failed points, points outside the model's validity, remarks of the model, and on units."""
         for status in () if arrays.all_true(self.status == int(Status.OK)) else list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
-            notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
+            yield Finding(self.status != int(status), status.sentence + reason)
         limits = () if arrays.all_true(self.valid) else self.model.validity
         for limit in (*limits, *self.model.remarks, *UNIT_REMARKS):
-            acceptable = limit.holds(self) | failed
+            acceptable = limit.holds(self) | self._failed
             if arrays.all_true(acceptable) is False:
-                notes += self._note_on_invalid_points(acceptable, limit.note(self))
-        return tuple(notes)
-
-    def _note_on_invalid_points(self, valid: Array, sentence: str) -> list[str]:
-        """Return a note with the number of points where the mask `valid` is false; [] if there are none."""
-        if arrays.all_true(valid) is not False:
-            return []
-        valid = arrays.to_numpy(valid)
-        return [sentence if valid.size == 1 else f"{int((~valid).sum())} of {valid.size}: {sentence}"]
+                yield Finding(acceptable, limit.note(self))
 
     @cached_property
     def _failed(self) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
@@ -52,6 +53,20 @@ def ascii_text(text: str) -> str:
     written = "".join(_LATIN.get(letter, letter) for letter in unicodedata.normalize("NFC", text))
     plain = (letter for letter in unicodedata.normalize("NFKD", written) if not unicodedata.combining(letter))
     return "".join(letter if " " <= letter <= "~" else "?" for letter in plain)
+
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+
+
+def split_numbers(text: str) -> tuple[str, list[float]]:
+    """Return a text without its numbers, which is the same for all sentences of a kind, and its numbers.
+
+    Examples
+    --------
+    >>> split_numbers("7 of 8: 1.5 times the yield stress")
+    (' of :  times the yield stress', [7.0, 8.0, 1.5])
+    """
+    return _NUMBER.sub("", text), list(map(float, _NUMBER.findall(text)))
 
 
 _LARGEST_PLAIN = 1e9  # value from which numbers have an exponent

@@ -16,34 +16,22 @@ from .wear_law import CycleExposure
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BilinearInterpolation:
-    """Bilinear interpolation from the cells of a grid to points between the cell centres."""
+    """Interpolation from the cells of a grid to points; see `Grid.surrounding_cells`."""
 
-    cells: Numbers  # (n, points, 4), numbers of the four cells around each point
-    weights: Numbers  # (n, points, 4), weights of these cells, with a sum of 1; 0 beyond the end of the grid
+    cells: Numbers  # (4, n, points), numbers of the cells around each point
+    weights: Numbers  # (4, n, points), weights of these cells
 
     def interpolate(self, fields: Numbers) -> Numbers:
         """Interpolate cell values (n or 1, cells) to the points: (n, points)."""
-        instant_count, point_count, corner_count = self.cells.shape
-        fields = numpy.broadcast_to(fields, (instant_count, fields.shape[-1]))
-        values = numpy.take_along_axis(fields, self.cells.reshape(instant_count, -1), axis=1)
-        return numpy.einsum("tpk,tpk->tp", values.reshape(instant_count, point_count, corner_count), self.weights)
+        corners, instant_count, _ = self.cells.shape
+        fields = numpy.broadcast_to(fields, (corners, instant_count, fields.shape[-1]))
+        return numpy.einsum("ktp,ktp->tp", numpy.take_along_axis(fields, self.cells, axis=-1), self.weights)
 
 
 def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
-    """Create the bilinear interpolation from a grid to points given by unit vectors (3, n, points)."""
-    x, y, z = directions
-    polar, azimuth = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x)
-    ring = numpy.clip(numpy.searchsorted(grid.polar, polar) - 1, 0, grid.rings - 2)
-    polar_fraction = numpy.clip((polar - grid.polar[ring]) / (grid.polar[ring + 1] - grid.polar[ring]), 0.0, 1.0)
-    meridian_position = azimuth / (2 * numpy.pi) * grid.meridians - 0.5
-    meridian = numpy.floor(meridian_position).astype(int)
-    meridian_fraction = meridian_position - meridian
-    cells = numpy.stack(
-        [(ring + i) * grid.meridians + (meridian + j) % grid.meridians for i in (0, 1) for j in (0, 1)], axis=-1
-    )
-    shares = 1 - meridian_fraction, meridian_fraction
-    weights = numpy.stack([ring * share for ring in (1 - polar_fraction, polar_fraction) for share in shares], axis=-1)
-    return BilinearInterpolation(cells=cells, weights=weights * (polar <= grid.reach)[..., None])
+    """Create the interpolation from a grid to points given by unit vectors (3, n, points)."""
+    cells, weights = grid.surrounding_cells(directions)
+    return BilinearInterpolation(cells=cells, weights=weights)
 
 
 def ball_directions(grid: Grid) -> Numbers:
@@ -118,7 +106,7 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
         socket_size=len(setup.foundation.areas),
         ball_size=grid.rings * grid.meridians,
         on_socket=interpolation_at(grid, to_socket[[2, 0, 1]]),
-        on_ball=BilinearInterpolation(cells=to_ball.cells[:, ball_cells], weights=to_ball.weights[:, ball_cells]),
+        on_ball=BilinearInterpolation(cells=to_ball.cells[..., ball_cells], weights=to_ball.weights[..., ball_cells]),
     )
 
 

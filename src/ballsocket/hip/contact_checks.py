@@ -6,7 +6,7 @@ a `Contact` of the matching model. That `Contact` supplies validity, utilisation
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import degrees, nan
 from typing import Any
@@ -16,7 +16,7 @@ import numpy
 from ..contact import Contact, Model, strength
 from ..contact.verdict import Bounded, Verdict, error_bar
 from ..core.arrays import Array, Numbers
-from ..core.display import finite_or_none
+from ..core.display import finite_or_none, split_numbers
 from ..core.unit_systems import Sentence
 from ..core.validity import RIGID_BACKING, Status
 from ..elasticity.off_axis.grid import Grid
@@ -241,18 +241,17 @@ def worst_verdict(checks: Iterable[ContactCheck]) -> Verdict:
     return max((check.verdict for check in checks), default=Verdict.UNDECIDED)
 
 
-def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
-    """Yield the notes of contact checks at several stages of a run, each kind of note only once.
+def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> list[str]:
+    """List the notes of contact checks at several stages of a run, each kind of note only once.
 
     A stage has a text ("in the first cycle") and its checks. Notes that differ in numbers alone are of one kind. A
     missing yield stress holds throughout the run: its note names no instant.
     """
-    listed_kinds = set()
+    listed: dict[str, str] = {}
     for stage, checks in stages:
         for check in sorted(checks, key=lambda check: (-(check.utilisation or 0.0), -check.max_pressure)):
             for note in check.notes:
-                kind = "".join(letter for letter in note if not letter.isdigit())
-                if kind not in listed_kinds:
-                    listed_kinds.add(kind)
-                    everywhere = note == check.utilisation_note
-                    yield note if everywhere else Sentence("{} ({}, at {})", note, stage, check.instant)
+                everywhere = note == check.utilisation_note
+                written = note if everywhere else Sentence("{} ({}, at {})", note, stage, check.instant)
+                listed.setdefault(split_numbers(note)[0], written)
+    return list(listed.values())

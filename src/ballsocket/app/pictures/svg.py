@@ -44,22 +44,22 @@ def line(x1: float, y1: float, x2: float, y2: float, kind: str, more: str = "") 
     return f'<line class="{kind}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"{more}/>'
 
 
-def round_step(span: float, max_steps: int) -> float:
-    """Return a round number of which at most `max_steps` make up a span."""
-    scale = 10.0 ** floor(log10(span / max_steps))
-    return next(factor * scale for factor in (1, 2, 2.5, 5, 10) if factor * scale * max_steps >= span * (1 - 1e-9))
+def rounded_up(value: float, factors: Iterable[float] = (1, 2, 2.5, 5, 10)) -> float:
+    """Round a positive number up to one of some factors, from 1 to 10, times a power of ten."""
+    scale = 10.0 ** floor(log10(value))
+    return next(factor * scale for factor in factors if factor * scale >= value * (1 - 1e-9))
 
 
 def ticks_between(low: float, high: float, max_steps: int = 6) -> list[float]:
     """Return the multiples of a round step from `low` to `high`."""
-    step = round_step(high - low, max_steps)
+    step = rounded_up((high - low) / max_steps)
     first, last = ceil(low / step - 1e-9), floor(high / step * (1 + 1e-9))
     return [number * step for number in range(first, last + 1)]
 
 
 def levels_between(low: float, high: float, max_steps: int = 8) -> list[float]:
     """Return at least two round levels that enclose the values from `low` to `high`."""
-    step = round_step(high - low or abs(high) or 1.0, max_steps)
+    step = rounded_up((high - low or abs(high) or 1.0) / max_steps)
     first, last = floor(low / step + 1e-9), ceil(high / step - 1e-9)
     return [number * step for number in range(first, max(last, first + 1) + 1)]
 

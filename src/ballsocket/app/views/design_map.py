@@ -272,7 +272,7 @@ def _handle(number: int, limit: Limit, point: numpy.ndarray, reading: Reading) -
     """Draw the square of a limit, a slider for mouse, keyboard and screen readers."""
     quantity, text = QUANTITIES[limit.name], limit_text(limit, reading)
     value = (limit.high if numpy.isfinite(limit.high) else limit.low) * reading.unit(quantity).factor
-    step = svg.round_step(abs(value) or 1.0, 50)
+    step = svg.rounded_up((abs(value) or 1.0) / 50)
     right = point[0] < 240
     slider = f'role="slider" aria-label="{escape(quantity.title)}" aria-valuenow="{value:.6g}"'
     return (

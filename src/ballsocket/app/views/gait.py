@@ -27,7 +27,7 @@ from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
 from ..pictures.chart import Curve, chart, legend
 from ..pictures.svg import levels_between
-from ..pressing import rounded_up
+from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
 from ..state.use import CHOICES, FIELDS, UploadedCycle, sample_table
@@ -311,7 +311,7 @@ def _empty_chart(charted: tuple[Course, ...], reading: Reading) -> str:
 def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, reading: Reading) -> str:
     unit = charted[0][0].unit(reading)
     known = numpy.concatenate([values[numpy.isfinite(values)] for _, values in charted])
-    highest = rounded_up(1.05 * float(known.max(initial=0.0)))
+    highest = axis_end(1.05 * float(known.max(initial=0.0)))
     curves = {
         course.name: Curve(result.phase, numpy.where(numpy.isfinite(values), values, numpy.nan), course.line)
         for course, values in charted

@@ -20,7 +20,7 @@ from ...reports.style import BLUE, VERMILLION, LineStyle
 from ..long_view import LongView, long_body
 from ..pictures.bore import CELLS_EDGE, METRIC, BoreField, grid_field, load_bore
 from ..pictures.chart import Curve, chart, legend
-from ..pressing import rounded_up
+from ..pressing import axis_end
 from ..results import RESULTS
 from ..running import Work
 from ..state.screen import Screen
@@ -247,7 +247,7 @@ def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METR
         for name, design in designs.items()
     }
     end = max(float(design.cycles[-1]) for design in designs.values())
-    highest = rounded_up(unit.factor * max(float(design.high.max()) for design in designs.values()))
+    highest = axis_end(unit.factor * max(float(design.high.max()) for design in designs.values()))
     sentences = []
     for name, design in designs.items():
         last, low, high = (

@@ -11,6 +11,7 @@ from ...core.arrays import Array
 from ...core.kinds import Kind, Unit
 from ...core.quantities import JOINT, Quantity
 from ...core.unit_systems import Units
+from ..pictures.svg import rounded_up
 
 _DIGITS, _BOX_DIGITS = 4, 5
 _LARGEST_PLAIN = 1e12  # value from which numbers are written with an exponent
@@ -97,5 +98,4 @@ def _digits(value: float, digits: int) -> str:
 
 def handy_step(step: float) -> float:
     """Round down to 1, 2 or 5 times a power of ten."""
-    scale = 10.0 ** floor(log10(step * (1 + 1e-9)))
-    return max(factor * scale for factor in (1, 2, 5) if factor * scale <= step * (1 + 1e-9))
+    return 1 / rounded_up(1 / step, (1, 2, 5, 10))  # the factors divide 10

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, prod
@@ -19,6 +19,7 @@ from ...contact.closed_sphere import (
     hemisphere_indentation_change,
     max_hemisphere_change,
 )
+from ...contact.outcome import Finding, notes_of
 from ...contact.per_joint import JointContacts, SolvedContact
 from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
@@ -129,20 +130,17 @@ class ElasticContact(SolvedContact):
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """Notes of the contact, with one on a hemisphere that differs by more than 1 %."""
-        return (*super().notes, *self._hemisphere_note())
-
-    @property
     def quick_notes(self) -> tuple[str, ...]:
         """Notes without the numbers of a hemisphere."""
         has_solution = not bool(numpy.all(arrays.to_numpy(self._failed)))
         follows = self.hemisphere_change_bound("largest") > NOTED_CHANGE and has_solution
-        return (*super().notes, *((_PREPARING,) if follows else ()))
+        return (*notes_of(super().findings()), *((_PREPARING,) if follows else ()))
 
-    def _hemisphere_note(self) -> list[str]:
+    def findings(self) -> Iterator[Finding]:
+        """Yield messages on the contact, with one on a hemisphere that differs by more than 1 %."""
+        yield from super().findings()
         if self.hemisphere_change_bound("largest") <= NOTED_CHANGE:
-            return []
+            return
         changes = {QUANTITIES[name].symbol: arrays.to_numpy(values) for name, values in self.hemisphere.items()}
         negligible = numpy.all([~(abs(values) > NOTED_CHANGE) for values in changes.values()], axis=0)
         bounded = numpy.all([numpy.isfinite(values) for values in changes.values()], axis=0)
@@ -150,7 +148,7 @@ class ElasticContact(SolvedContact):
         is_noted = not unaffected.all() and bounded.all() and self.joint.strengths()
         if is_noted and prod(self.laws.shape) == 1 and self.single_state.half_angle[0] >= MIN_HALF_ANGLE:
             changes["von Mises"] = numpy.array(self._hemisphere_von_mises_change)
-        return self._note_on_invalid_points(unaffected, _describe_changes(changes))
+        yield Finding(unaffected, _describe_changes(changes))
 
     @cached_property
     def _hemisphere_von_mises_change(self) -> float:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
 
+from ...contact.outcome import Finding
 from ...contact.per_joint import JointContacts, SolvedContact, joint_at
 from ...contact.strength import WORN_ERRORS, rim_errors
 from ...contact.stress_ratio import von_mises_ratio
@@ -221,22 +223,20 @@ class OffAxisContact(SolvedContact):
         patch = self._patch
         return patch.grid.polar, patch.grid.azimuth, patch.pressure
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Sentences about loads without a solution, limits of validity and contact with the rim."""
-        notes = list(super().notes)
+    def findings(self) -> Iterator[Finding]:
+        """Yield sentences about loads without a solution, limits of validity and contact with the rim."""
+        yield from super().findings()
         if self.model.worn is not None and self.joint.liner.strengths:
-            notes.append(_WORN_NOTE.format(*reversed(WORN_ERRORS)))
+            yield Finding(False, _WORN_NOTE.format(*reversed(WORN_ERRORS)))
         if self._is_plain and self.status is Status.DISLOCATED:
-            notes.append(self._dislocation_note)
+            yield Finding(False, self._dislocation_note)
         if not self._all_points_failed:
             unbounded = self.laws.combine(lambda contacts: contacts.state.unbounded) == 1
-            notes += self._note_on_invalid_points(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
+            yield Finding(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             bounded = arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)
             preloaded = arrays.to_numpy(self.joint.clearance) < 0
-            notes += self._note_on_invalid_points(~(bounded & ~preloaded), _RIM_NOTE)
-            notes += self._note_on_invalid_points(~(bounded & preloaded), _PRELOADED_RIM_NOTE)
-        return tuple(notes)
+            yield Finding(~(bounded & ~preloaded), _RIM_NOTE)
+            yield Finding(~(bounded & preloaded), _PRELOADED_RIM_NOTE)
 
     @property
     def _dislocation_note(self) -> str:

@@ -166,17 +166,14 @@ class Grid:
         azimuth = (numpy.arange(self.meridians) + column_share) * (2 * pi / self.meridians)
         return unit_vectors(polar, azimuth).reshape(3, -1).T
 
-    def interpolation_matrix(self, directions: Numbers) -> Any:
-        """Make the sparse matrix (directions, cells) that interpolates between the middles of the cells.
+    def surrounding_cells(self, directions: Numbers) -> tuple[Numbers, Numbers]:
+        """Find the four cells around unit vectors (3, ...) in the frame of the grid, and their weights: both (4, ...).
 
-        It is bilinear in polar angle and azimuth, and passes the pole in a straight line. The field is constant between
-        the last middle and the end of the grid, and 0 beyond.
-        Directions (directions, 3) are unit vectors in the frame of the grid.
+        Fields are bilinear in polar angle and azimuth between the middles of the cells, and pass the pole in a straight
+        line. They are constant between the last middle and the end of the grid, and 0 beyond.
         """
-        from scipy.sparse import csr_matrix  # slow to import
-
-        polar = numpy.arccos(numpy.clip(directions[:, 2], -1.0, 1.0))
-        column = numpy.arctan2(directions[:, 1], directions[:, 0]) * (self.meridians / (2 * pi)) - 0.5
+        x, y, z = directions
+        polar, column = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x) * (self.meridians / (2 * pi)) - 0.5
         nodes = numpy.concatenate([[-self.polar[0]], self.polar])  # the first ring on the other side of the pole
         lower = numpy.clip(numpy.searchsorted(nodes, polar) - 1, 0, len(nodes) - 2)
         ring_share = numpy.clip((polar - nodes[lower]) / (nodes[lower + 1] - nodes[lower]), 0.0, 1.0)
@@ -188,9 +185,15 @@ class Grid:
             for step, by_column in ((0, 1 - column_share), (1, column_share)):
                 cells.append(numpy.maximum(ring, 0) * self.meridians + (left + step + beyond) % self.meridians)
                 weights.append(numpy.where(polar <= self.reach, by_ring * by_column, 0.0))
+        return numpy.stack(cells), numpy.stack(weights)
+
+    def interpolation_matrix(self, directions: Numbers) -> Any:
+        """Make the sparse matrix (directions, cells) that interpolates at unit vectors (directions, 3)."""
+        from scipy.sparse import csr_matrix  # slow to import
+
+        cells, weights = self.surrounding_cells(directions.T)
         rows = numpy.tile(numpy.arange(len(directions)), len(cells))
-        entries = (numpy.concatenate(weights), (rows, numpy.concatenate(cells)))
-        return csr_matrix(entries, (len(directions), self.rings * self.meridians))
+        return csr_matrix((weights.ravel(), (rows, cells.ravel())), (len(directions), self.rings * self.meridians))
 
     def integrate_product(self, first: Numbers, second: Numbers) -> Numbers:
         """Integrate the product of two fields (..., rings, meridians) over a unit sphere."""

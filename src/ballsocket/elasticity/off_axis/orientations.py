@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +16,7 @@ from ...contact.verdict import Bounded, error_bar
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
+from ...core.display import split_numbers
 from ...core.quantities import CUP
 from ...core.validity import Status, is_missing
 from ...problem import Joint
@@ -24,8 +24,6 @@ from ...version import __version__
 from ..finite_elements.progress import report_progress
 from .contact import OffAxisContact
 from .model import Sphere, check_sphere
-
-_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,10 +89,10 @@ class Orientations:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes of the contacts; one with the largest numbers stands for all that differ in numbers alone."""
-        outcomes = {status.sentence for status in Status}
-        texts = {re.sub(r"^\d+ of \d+: ", "", note) for contact in self.contacts for note in contact.notes} - outcomes
-        ordered = sorted(texts, key=lambda text: list(map(float, _NUMBER.findall(text))))
-        return tuple({_NUMBER.sub("", text): text for text in ordered}.values())
+        findings = (finding for contact in self.contacts for finding in contact.findings() if finding.applies)
+        texts = {finding.sentence for finding in findings} - {status.sentence for status in Status}
+        ordered = sorted(texts, key=lambda text: split_numbers(text)[1])
+        return tuple({split_numbers(text)[0]: text for text in ordered}.values())
 
     def best(self, field: Numbers) -> tuple[float, float, int]:
         """Return the inclination and anteversion in rad at which a field is largest, and its flat index."""
