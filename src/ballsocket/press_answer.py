@@ -14,7 +14,7 @@ from .contact.verdict import Verdict, rim_verdict
 from .core.answers import PAGE, Answer, Column, Row, Table
 from .core.arrays import to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
-from .core.quantities import CONTACT, HEADLINE, LOADS
+from .core.quantities import CONTACT, HEADLINE, LOADS, PLASTIC
 from .core.unit_systems import Amount, Sentence
 from .design_checks import checks_of, strength_lines, unchecked_text, verdict_of
 from .model_catalogue import JUDGE, OFF_AXIS, reference
@@ -38,6 +38,8 @@ def describe_press(comparison: Comparison, remarks: Iterable[str] = ()) -> Answe
         comparison = replace(comparison, contacts={reference.name: exact, **comparison.contacts})
     contacts = comparison.contacts
     quantities = quantities_of(comparison.joint)
+    if any(contact.yields for contact in contacts.values()):
+        quantities += tuple(PLASTIC.values())
     off_pole = any(contact.valid and contact.max_pressure_angle > 0 for contact in contacts.values())
     hidden = () if off_pole else _OFF_THE_POLE
     columns = [
@@ -76,7 +78,7 @@ def _percent(number: float, truth: float) -> str:
 
 def describe_curve(contact: Contact) -> Answer:
     """Describe contacts at increasing loads by their main quantities."""
-    quantities = [CONTACT[name] for name in HEADLINE]
+    quantities = [CONTACT[name] for name in HEADLINE] + ([*PLASTIC.values()] if contact.yields else [])
     columns = [to_numpy(getattr(contact, quantity.name)).tolist() for quantity in quantities]
     rows = [
         Row((*numbers, bool(valid)), None if valid else Verdict.UNDECIDED)

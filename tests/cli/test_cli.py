@@ -323,6 +323,18 @@ def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
 
 
 @pytest.mark.long
+def test_press_with_a_liner_that_yields_shows_its_set_beside_the_elastic_result(tmp_path):
+    words = ("press", EXAMPLE, "--plastic", "--hardening", "10:0, 14 MPa:0.05", "--force", "8 kN")
+    exact, fem = (result for _, result in sorted((one["model"], one) for one in answer(*words)["results"]))
+    assert fem["permanent_set"] > 1e-3
+    assert "permanent_set" not in exact
+    assert fem["max_pressure"] < exact["max_pressure"]
+    figure = tmp_path / "zone.png"
+    assert "us permanent set" in printed(*words, "--section", str(figure), columns=200)
+    assert figure.stat().st_size > 20_000
+
+
+@pytest.mark.long
 def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     file = tmp_path / "cup.toml"
     file.write_text(Path(EXAMPLE).read_text(encoding="utf-8") + '\n[cup]\narc_of_cover = "100 deg"\nchamfer = "1 mm"\n')

@@ -102,6 +102,8 @@ orient {hip} --points 2 --gap round => gap 'round' is not known; known: linear, 
 curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models with one: exact, fem, sphere
 
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
+press {hip} --plastic --half-angle '40 deg' => a yielding liner is pressed by force or indentation
+press {hip} --plastic --hardening 20 => hardening = '20' must be points 'stress:plastic strain'
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
 press {hip} --model fem --element triangle => element = 'triangle' is not known
 press {hip} --model fem --element-size '9 mm' => liner_thickness = 6.75 is not allowed: a layer must have

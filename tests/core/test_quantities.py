@@ -74,7 +74,15 @@ def test_tables_studies_and_json_use_the_same_quantities():
 
 def test_names_symbols_and_titles_are_unique():
     groups = [CONTACT, BEARING, JOINT, FIT, STRESS_LIMITS, DERIVED, quantities.MATERIAL, quantities.PARTS]
-    groups += [quantities.SHELL, quantities.LAYER, quantities.CUP, quantities.AIM, quantities.FIELD, quantities.WEAR]
+    groups += [
+        quantities.PLASTIC,
+        quantities.SHELL,
+        quantities.LAYER,
+        quantities.CUP,
+        quantities.AIM,
+        quantities.FIELD,
+        quantities.WEAR,
+    ]
     assert len(QUANTITIES) == sum(map(len, groups))
     shared = {each.symbol for each in (*quantities.MATERIAL.values(), *quantities.PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]

@@ -330,6 +330,17 @@ def test_strengths_are_read_with_units_and_written_again_and_so_is_one_that_is_n
     assert again.liner.yield_stress is None
 
 
+def test_a_hardening_is_read_with_units_and_written_again():
+    pytest.importorskip("tomli_w")
+    text = STRONG.replace("23 MPa", '23 MPa"\nhardening = "0.02 GPa:0, 24:0.01')
+    file = parse_joint(text.encode(), "file")
+    assert file.joint.liner.hardening == bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01))
+    assert parse_joint(toml_of(file).encode(), "file").joint.liner == file.joint.liner
+    assert "hardening" not in tables_of(JointFile(bs.joints["hip-28"], {}))["liner"]
+    with pytest.raises(ValueError, match="hardening = '0.02 GPa, 24:0.01' must be points 'stress:plastic strain'"):
+        parse_joint(text.replace("GPa:0", "GPa").encode(), "file")
+
+
 def test_an_angle_is_written_with_the_digits_that_were_typed_and_read_back_to_the_last_bit():
     """The nearest degrees of some angles give another angle; a neighbour gives the same."""
     for degrees in (30.0, 84.8, 0.1, 33.3, 35.668, 22.123456789, 120.000000001):

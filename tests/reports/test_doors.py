@@ -78,6 +78,11 @@ def best():
     return optimise(bs.HessForsbach(), joint, ranges, load=load, limits=LIMITS, minimise="indentation")
 
 
+def yielding():
+    model = bs.FiniteElement(plastic=True, meshes=1, spacing=bs.Adapted(elements=24))
+    return bs.compare(bs.joints["hip-28"], models={"fem": model}, force=8000.0)
+
+
 def surroundings():
     return local_uncertainty(bs.joints["hip-28"], Cup(), {"force": 3000.0}, SPREAD)
 
@@ -92,6 +97,7 @@ ANSWERS |= {
     "study with materials": lambda: describe_study(plain_study(liner=[bs.UHMWPE, bs.POM], force=[1.0, 3000.0])),
     "map": lambda: describe_map(plain_study(**SPACE), LIMITS),
     "front": lambda: describe_front(pareto(plain_study(**SPACE), limits=LIMITS)),
+    "yielding liner": lambda: describe_press(yielding()),
     "optimum": lambda: describe_optimum(best()),
     "sensitivity": lambda: describe_sensitivity(shares(second_order=True)),
     "tolerances": lambda: Answer(title="tolerances", tables=uncertainty_tables(surroundings())),

@@ -26,6 +26,10 @@ ModelNames = Annotated[
     ),
 ]
 
+Yielding = Annotated[
+    bool, typer.Option("--plastic", help=f"{JUDGE}: let the liner yield, by its hardening or yield stress.")
+]
+
 if TYPE_CHECKING:
     from ..elasticity.finite_elements.model import FiniteElement
     from ..elasticity.finite_elements.spacing import Spacing
@@ -56,14 +60,14 @@ class MeshTable(FileTable, frozen=True, kw_only=True):
     ] = None
     element: Annotated[ElementName | None, meaning("element type", default="biquadratic")] = None
 
-    def model(self, meshes: int) -> FiniteElement:
-        """Return the finite-element model, on one mesh or on two for error estimates."""
+    def model(self, meshes: int, plastic: bool) -> FiniteElement:
+        """Return the finite-element model, on one mesh or on two for error estimates, with a liner that may yield."""
         from ..elasticity.finite_elements.model import FiniteElement
         from ..elasticity.finite_elements.spacing import Adapted, Element, Uniform
 
         element = Element[(self.element or "biquadratic").upper()]
         spacing: Spacing = Adapted() if self.element_size is None else Uniform(size=float(self.element_size))
-        return FiniteElement(spacing=spacing, element=element, meshes=meshes)
+        return FiniteElement(spacing=spacing, element=element, meshes=meshes, plastic=plastic)
 
 
 def refuse_mesh_options(options: Mapping[str, Any]) -> None:

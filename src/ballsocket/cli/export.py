@@ -28,7 +28,7 @@ from ..problem.cup import AXIAL_TILT, Cup
 from ..question import complete
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
-from .elasticity_options import MeshTable, solver_progress
+from .elasticity_options import MeshTable, Yielding, solver_progress
 from .model_file import requested_model
 from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
 from .root import app, echo_path, print_message
@@ -243,6 +243,7 @@ def deck(
         ),
     ] = 1e-3,
     mesh: MeshTable,
+    plastic: Yielding = False,
     run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
 ) -> None:
     """Write a finite-element input file for CalculiX or Abaqus.
@@ -259,10 +260,12 @@ def deck(
         )
     load = needed_load(file)
     if file.tilt > AXIAL_TILT:
+        if plastic:
+            raise ValueError("--plastic is for loads along the axis of the cup, and this one is tilted")
         _write_tilted(file, load, file.tilt, out, mesh, run)
         return
     with solver_progress("finite elements"):
-        contact: Any = replace(mesh.model(meshes=1), cup=file.cup).press(file.joint, **load)
+        contact: Any = replace(mesh.model(meshes=1, plastic=plastic), cup=file.cup).press(file.joint, **load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.calculix import run as run_ccx

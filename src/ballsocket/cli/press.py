@@ -31,6 +31,7 @@ from .elasticity_options import (
     MeshTable,
     ModelNames,
     RingTable,
+    Yielding,
     orientation_remark,
     orientation_summary,
     refuse_mesh_options,
@@ -63,12 +64,14 @@ class ModelOptions:
     model: ModelNames = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
     gap: GapName = None
+    plastic: Yielding = False
 
     @property
     def names(self) -> list[str]:
         """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
         known = (*catalogue, JUDGE, OFF_AXIS)
-        return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
+        names = [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
+        return names if JUDGE in names or not self.plastic else [*names, JUDGE]
 
     @property
     def has_finite_elements(self) -> bool:
@@ -80,7 +83,7 @@ class ModelOptions:
         if self.every:
             custom = [requested_model(name) for name in self.names if is_model_file(name)]
             return {**{model.name: model for model in custom}, **every_model(file)}
-        models = [mesh.model(meshes) if name == JUDGE else requested_model(name) for name in self.names]
+        models = [mesh.model(meshes, self.plastic) if name == JUDGE else requested_model(name) for name in self.names]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):
             raise ValueError("two of the models have one name: give each custom model a different name")

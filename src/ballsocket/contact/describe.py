@@ -12,7 +12,7 @@ from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import needs
 from ..core.kinds import Kind, Unit
-from ..core.quantities import BEARING, CONTACT, Quantity
+from ..core.quantities import BEARING, CONTACT, PLASTIC, Quantity
 from ..problem import Joint
 
 if TYPE_CHECKING:
@@ -39,8 +39,15 @@ def quantities_of(joint: Joint) -> tuple[Quantity, ...]:
     return (*CONTACT.values(), *(quantity for name, quantity in ratios.items() if name in known))
 
 
+def quantities_of_contact(contact: Any) -> dict[str, Quantity]:
+    """Return the printed quantities of a contact by name, with those of its liner if that may yield."""
+    return {**CONTACT, **(PLASTIC if contact.yields else {})}
+
+
 def number_of(contact: Any, quantity: Quantity) -> float:
     """Return a quantity of a single contact in internal units; NaN without a result or a strength."""
+    if quantity.name in PLASTIC and not contact.yields:
+        return nan
     return float(pressure_ratio(contact) if quantity is PRESSURE_RATIO else getattr(contact, quantity.name))
 
 
@@ -65,7 +72,10 @@ UTILISATION_NOTE = "utilisation_note"
 
 def to_summary(contact: Any) -> dict[str, Any]:
     """Return a dictionary of a contact for JSON."""
-    numbers = {quantity.key: arrays.to_list(values_of(contact, quantity)) for quantity in CONTACT.values()}
+    numbers = {
+        quantity.key: arrays.to_list(values_of(contact, quantity))
+        for quantity in quantities_of_contact(contact).values()
+    }
     strength = {
         UTILISATION.key: arrays.to_list(values_of(contact, UTILISATION)),
         PRESSURE_RATIO.key: arrays.to_list(pressure_ratio(contact)),
@@ -80,7 +90,10 @@ def to_frame(contact: Any) -> pandas.DataFrame:
     needs("study", "pandas")
     import pandas
 
-    columns = {quantity.column: arrays.to_numpy(values_of(contact, quantity)).ravel() for quantity in CONTACT.values()}
+    columns = {
+        quantity.column: arrays.to_numpy(values_of(contact, quantity)).ravel()
+        for quantity in quantities_of_contact(contact).values()
+    }
     return pandas.DataFrame({**columns, "valid": arrays.to_numpy(contact.valid).ravel()})
 
 
@@ -129,7 +142,7 @@ def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
     digits = 6 if is_single else 5
     rows = [
         (name, number_text(values_of(contact, quantity), digits, "no answer"), quantity.written.text)
-        for name, quantity in CONTACT.items()
+        for name, quantity in quantities_of_contact(contact).items()
     ]
     if is_single and contact.joint.strengths():
         value = contact.utilisation

@@ -305,6 +305,17 @@ BEARING = _make_quantity_table(
 )
 """Stresses of a contact relative to the strengths."""
 
+PLASTIC = _make_quantity_table(
+    Quantity("permanent_set", "us", "permanent set", Kind.LENGTH,
+             "Largest outward displacement of the bore that remains after the load is removed.", Unit("µm", 1e3)),
+    Quantity("plastic_strain", "εp", "plastic strain", Kind.NUMBER, "Largest equivalent plastic strain in the liner."),
+    Quantity("plastic_fraction", "Vp/V", "plastic fraction", Kind.NUMBER,
+             "Fraction of the liner's volume that has yielded."),
+    Quantity("plastic_work", "Wp", "plastic work", Kind.ENERGY,
+             "Work that yielding has dissipated since the first load."),
+)
+"""Results of a liner that yields."""
+
 FIELD = _make_quantity_table(
     Quantity("angle", "φ", "polar angle", Kind.ANGLE, "Angle from the axis of the load, at the centre of the socket.",
              allows=_is_within_half_turn, allowed="a polar angle lies between -pi and pi, in radians"),
@@ -384,7 +395,20 @@ HEADLINE = ("force", "indentation", "half_angle", "max_pressure", "area", "stiff
 """Quantities of a short table of contacts."""
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
-    {**CONTACT, **BEARING, **JOINT, **FIT, **SHELL, **MATERIAL, **STRESS_LIMITS, **PARTS, **LAYER, **CUP, **AIM}
+    {
+        **CONTACT,
+        **BEARING,
+        **PLASTIC,
+        **JOINT,
+        **FIT,
+        **SHELL,
+        **MATERIAL,
+        **STRESS_LIMITS,
+        **PARTS,
+        **LAYER,
+        **CUP,
+        **AIM,
+    }
     | {**FIELD, **DERIVED, **WEAR}
 )
 """All quantities by name."""

@@ -18,8 +18,9 @@ from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import DEFAULT_CUP, AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, canonical, resolve_lengths
+from ..problem.hardening import Hardening
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
-from .schema import Angle, FileTable, Force, Length, PlainNumber, Pressure, Text, Value, choices_schema, meaning
+from .schema import Angle, FileTable, Force, Length, Parsed, PlainNumber, Pressure, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
@@ -64,6 +65,26 @@ class MaterialTable(FileTable, frozen=True, kw_only=True):
     yield_stress: Pressure | None = None
     fatigue_limit: Pressure | None = None
     allowable_pressure: Pressure | None = None
+
+
+class HardeningCurve(Parsed):
+    """Points 'stress:plastic strain' with commas between them, such as '20 MPa:0, 24 MPa:0.01'."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "string", "pattern": ":"}
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Hardening:
+        """Convert a text to a curve; stresses may have units."""
+        return Hardening.parse(check_text(name, value), lambda stress: parse(name, stress, Kind.MODULUS))
+
+
+class LinerTable(MaterialTable, frozen=True, kw_only=True):
+    """Material of the liner: a preset by name, numbers, or both; it may yield."""
+
+    hardening: Annotated[
+        HardeningCurve | None,
+        meaning("yield stress over plastic strain", example="20:0, 24:0.01", default="perfectly plastic"),
+    ] = None
 
 
 class LayerTable(MaterialTable, frozen=True, kw_only=True):
@@ -129,7 +150,7 @@ class JointTables(FileTable, frozen=True, kw_only=True):
     """Tables that describe a joint in every kind of file."""
 
     joint: Annotated[LengthsTable | str | None, meaning("name of a preset, or path of a joint file")] = None
-    liner: MaterialTable | None = None
+    liner: LinerTable | None = None
     ball: MaterialTable | None = None
     shell: ShellTable | None = None
     backing: list[LayerTable] | None = None
@@ -231,7 +252,7 @@ def details_in(folder: Path, details: ReportDetails) -> ReportDetails:
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
     """Create joint and cup from the tables that describe them."""
     lengths = tables.joint if isinstance(tables.joint, LengthsTable) else LengthsTable()
-    liner = _material("liner", tables.liner or MaterialTable())
+    liner = _material("liner", tables.liner or LinerTable())
     ball = None if tables.ball is None else _material("ball", tables.ball)
     layers = tables.backing or []
     if len(layers) > _MAX_LAYERS:
@@ -384,6 +405,8 @@ def _shell(
 def _material(name: str, table: MaterialTable, present: Material | None = None) -> Material:
     """Create a material from a preset, from numbers that win over its own, or from the present material."""
     numbers: Any = quantities_of(table, *(key for key in MaterialTable.__struct_fields__ if key != "material"))
+    if isinstance(table, LinerTable) and table.hardening is not None:
+        numbers["hardening"] = table.hardening.value
     preset = present if table.material is None else named_material(name, table.material)
     missing = [key for key in ("young", "poisson") if key not in numbers]
     if missing and preset is None:

@@ -12,10 +12,12 @@ from .joint_file import (
     NO_DETAILS,
     CupTable,
     Direction,
+    HardeningCurve,
     JointFile,
     JointFileTable,
     LayerTable,
     LengthsTable,
+    LinerTable,
     LoadTable,
     MaterialName,
     MaterialTable,
@@ -57,7 +59,7 @@ def _file_table(file: JointFile) -> JointFileTable:
         report=file.report if file.report != NO_DETAILS else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
-        liner=MaterialTable(**_material(joint.liner)),
+        liner=LinerTable(**_material(joint.liner)),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
         or None,
@@ -97,8 +99,10 @@ def _material(material: Material) -> dict[str, Any]:
     """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
     numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
     values = {name: (PlainNumber if name == "poisson" else Pressure)(value) for name, value in numbers.items()}
+    hardening = {} if material.hardening is None else {"hardening": HardeningCurve(material.hardening)}
     for key, preset in materials.items():
         if preset.name == material.name and set(preset.stress_limits) <= set(values):
             changed = {name: value for name, value in values.items() if getattr(preset, name) != value}
-            return {"material": MaterialName(key), **changed}
-    return values
+            unchanged = preset.hardening == material.hardening
+            return {"material": MaterialName(key), **changed, **({} if unchanged else hardening)}
+    return {**values, **hardening}

@@ -61,6 +61,8 @@ def _write(value: Any, with_units: bool) -> Any:
         return value.write(with_units)
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, Parsed):
+        return str(value.value)
     if isinstance(value, list):
         return [_write(item, with_units) for item in value]
     return ", ".join(map(repr, value)) if isinstance(value, tuple) else value

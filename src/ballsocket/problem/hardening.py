@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
@@ -65,11 +66,11 @@ class Hardening:
             require("stress of hardening", after, before <= after, "stresses do not descend: softening is not solved")
 
     @classmethod
-    def parse(cls, text: str) -> Hardening:
+    def parse(cls, text: str, read_stress: Callable[[str], float] = float) -> Hardening:
         """Read a curve from text, points "stress:plastic strain" with commas between them; stresses in MPa."""
         points = [point.split(":") for point in text.split(",")]
         try:
-            stresses, strains = zip(*((float(stress), float(strain)) for stress, strain in points), strict=True)
+            stresses, strains = zip(*((read_stress(stress), float(strain)) for stress, strain in points), strict=True)
         except ValueError:
             raise ValueError(
                 f"hardening = {shown(text)} must be points 'stress:plastic strain', such as '21:0, 25:0.05'"
@@ -77,7 +78,9 @@ class Hardening:
         return cls(stress=stresses, plastic_strain=strains)
 
     def __str__(self) -> str:
-        return ", ".join(f"{s:g}:{e:g}" for s, e in zip(self.stress, self.plastic_strain, strict=True))
+        return ", ".join(
+            f"{stress!r}:{strain!r}" for stress, strain in zip(self.stress, self.plastic_strain, strict=True)
+        )
 
     @property
     def offset_yield(self) -> float:

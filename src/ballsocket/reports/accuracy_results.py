@@ -154,6 +154,8 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
     columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
     angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
     for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
+        if F == 0:  # after unloading
+            continue
         forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
         pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
         table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")

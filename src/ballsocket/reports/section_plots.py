@@ -46,6 +46,9 @@ _FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MAX_GAP = 0.09  # largest drawn gap beside the ball, relative to the socket radius
 
 
+_PLASTIC_EDGE = 1e-4  # plastic strain at the drawn edge of the plastic zone
+
+
 def radii_of(joint: Joint) -> list[float]:
     """Return the radii (mm) of the bore, and outwards behind the liner and each layer."""
     bore = float(joint.socket_radius)
@@ -242,7 +245,8 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
         where = (0.02, 0.98 - 0.07 * number)
         axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=7, va="top", arrowprops=arrow)
     arc = numpy.degrees(contact.model.cup.arc_of_cover)
-    axes.set_title(f"arc of cover {arc:.4g}°, outside {joint.support.value}", fontsize=8)
+    zone = "; line: edge of the plastic zone" if contact.section["liner"].plastic_strain.any() else ""
+    axes.set_title(f"arc of cover {arc:.4g}°, outside {joint.support.value}{zone}", fontsize=8)
 
 
 def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
@@ -254,6 +258,8 @@ def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
     triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
     levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
     mesh = Triangulation(part.position[0], part.position[1], triangles)
+    if part.plastic_strain.any():
+        axes.tricontour(mesh, part.plastic_strain, levels=[_PLASTIC_EDGE], colors=INK, linewidths=1.2)
     return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")
 
 
