@@ -101,7 +101,7 @@ REFUSED = {
     "head": (text(HEAD), "% of its points lie inside the sphere"),
     "radius of 100 mm": (text(scans.worn_bore(head=100.0, shift=0.0, radius=100.0, cover=40.0)), "a radius of 100 mm;"),
     "radius of 5 mm": (text(scans.worn_bore(head=6.5, shift=0.0, radius=6.5)), "of radius 6.5 mm; a bore has 7"),
-    "cap": (text(scans.worn_bore(head=30.0, shift=0.0, cover=20.0, radius=30.0)), "a bore has points up to 25°"),
+    "cap": (text(scans.worn_bore(head=30.0, shift=0.0, cover=20.0, radius=30.0)), "a bore needs 25°"),
     "depth": (text(scans.worn_bore(head=12.0, shift=10.0)), "mm outside the sphere of radius 16.00 mm of its bore"),
     "whole liner": (text(scans.liner(steps=12, segments=24).reshape(-1, 3)), "is not a bore: its points lie"),
     "no points": ("# nothing", "has no points"),
