@@ -1,4 +1,4 @@
-"""Roots of increasing functions by a bracketed Newton iteration, and the largest pressure of a solved contact."""
+"""Roots of functions and ends of conditions within brackets, and the largest pressure of a solved contact."""
 
 from __future__ import annotations
 
@@ -51,6 +51,19 @@ def increasing_root(
         return value - target, slope
 
     return implicit_root(residual, solve, start)
+
+
+def bisect(low: float, high: float, holds: Callable[[float], bool], steps: int = 200, tolerance: float = 0.0) -> float:
+    """Find the end of a condition that holds at `low` and not at `high`, by bisection; it holds at the result.
+
+    The result has a relative tolerance, or is exact to rounding by default, unless that takes too many steps.
+    """
+    for _ in range(steps):
+        middle = (low + high) / 2
+        if not low < middle < high or high - low < tolerance * high:
+            break
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
 
 
 def implicit_root(residual: Increasing, solve: Callable[[Array], Array], start: Array) -> Array:

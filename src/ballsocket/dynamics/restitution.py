@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..contact.roots import bisect
 from ..core.checks import require
 from ..core.sources import Source
 
@@ -73,24 +74,13 @@ def restitution_of(damping: float) -> float:
         """Check if the energy balance of the impact, ∫ x/(1 + x) dx from -h e to h, is positive."""
         return h * e < 1.0 and h + math.log1p(-h * e) + h * e - math.log1p(h) > 0
 
-    return _bisect(min(1.0, 1.0 / h), is_below_root)
-
-
-def _bisect(high: float, is_below_root: Callable[[float], bool]) -> float:
-    """Find the root between 0 and `high` to rounding, from below."""
-    low = 0.0
-    for _ in range(200):
-        middle = (low + high) / 2
-        if not low < middle < high:
-            break
-        low, high = (middle, high) if is_below_root(middle) else (low, middle)
-    return low
+    return bisect(0.0, min(1.0, 1.0 / h), is_below_root)
 
 
 exact = Relation(
     name="the exact solution",
     law="h (1 + e) = ln[(1 + h)/(1 - h e)]",
-    formula=lambda e: 0.0 if e == 1.0 else _bisect(1.0 / e, lambda h: restitution_of(h) > e),
+    formula=lambda e: 0.0 if e == 1.0 else bisect(0.0, 1.0 / e, lambda h: restitution_of(h) > e),
     sources=(Source("gonthier2004"),),
 )
 """h (1 + e) = ln[(1 + h)/(1 - h e)]."""

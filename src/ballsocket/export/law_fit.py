@@ -56,12 +56,10 @@ def _fit_stiffness(depths: Numbers, forces: Numbers, exponent: float) -> tuple[f
 
 
 def _find_minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
-    """Find the position of the minimum of a function with one minimum, by golden-section search."""
-    ratio = (5.0**0.5 - 1.0) / 2.0
-    for _ in range(60):
-        inner_low, inner_high = high - ratio * (high - low), low + ratio * (high - low)
-        low, high = (low, inner_high) if function(inner_low) < function(inner_high) else (inner_low, high)
-    return (low + high) / 2.0
+    """Find the position of the minimum of a function with one minimum."""
+    from scipy.optimize import minimize_scalar  # slow to import
+
+    return float(minimize_scalar(function, bounds=(low, high), options={"xatol": 1e-12 * high}).x)
 
 
 @dataclass(frozen=True, kw_only=True)

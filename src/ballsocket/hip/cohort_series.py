@@ -10,6 +10,7 @@ from math import log, pi
 
 import numpy
 
+from ..contact.roots import bisect
 from ..core.arrays import Numbers
 from ..core.checks import known_name
 from ..core.executors.processes import Engine
@@ -252,11 +253,7 @@ def _extend(
 
     if _keeps_loads_inside(similarity, move_ends(1.0)):
         return move_ends(1.0)
-    low, high = 0.0, 1.0
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if _keeps_loads_inside(similarity, move_ends(middle)) else (low, middle)
-    return move_ends(low)
+    return move_ends(bisect(0.0, 1.0, lambda share: _keeps_loads_inside(similarity, move_ends(share)), _BISECTIONS))
 
 
 def _keeps_loads_inside(similarity: Similarity, ranges: Mapping[str, tuple[float, float]]) -> bool:

@@ -11,6 +11,7 @@ import numpy
 
 from ...contact.coordinates import LIMIT
 from ...contact.per_joint import JointContacts
+from ...contact.roots import bisect
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import AbelState
@@ -86,12 +87,8 @@ class LoadCurve:
         if is_contact.all():
             return _MAX_ANGLE
         first = int(numpy.argmin(is_contact))
-        low, high = (_ANGLES[first - 1] if first else 0.0), _ANGLES[first]
-        for _ in range(16):
-            middle = (low + high) / 2
-            exists = _is_contact(self.state(numpy.array([middle]), _GRIDS[0])).all()
-            low, high = (middle, high) if exists else (low, middle)
-        return float(low)
+        low, high = (float(_ANGLES[first - 1]) if first else 0.0), float(_ANGLES[first])
+        return bisect(low, high, lambda e: bool(_is_contact(self.state(numpy.array([e]), _GRIDS[0])).all()), 16)
 
     @property
     def ratio(self) -> float:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ...contact.assembly import check_joint
+from ...contact.roots import bisect
 from ...contact.strength import MAX_ELASTIC_UTILISATION
 from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
@@ -109,15 +110,10 @@ class Preload:
             contact = self.displace(start + distance * vector / numpy.linalg.norm(vector))
             return bool((contact.pressure_map[2] > 0).all())
 
-        low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
-        if not is_closed(low):
+        if not is_closed(0.0):
             return 0.0
-        for _ in range(_MAX_BISECTIONS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if is_closed(middle) else (low, middle)
-            if high - low < _RELATIVE_TOLERANCE * high:
-                break
-        return low
+        farthest = _MAX_INTERFERENCES * float(self.joint.interference)
+        return bisect(0.0, farthest, is_closed, _MAX_BISECTIONS, _RELATIVE_TOLERANCE)
 
     def wear_depth_to_loosen(self) -> float:
         """Compute the uniform wear of the bore in mm at which the ball loses its preload.
