@@ -21,6 +21,7 @@ from ballsocket.app.session import Page
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, link_of_file, read_link
+from ballsocket.app.state.use import Use
 from ballsocket.app.widgets.controls import by_name, fields_of, refusal_of
 from ballsocket.app.widgets.joint_controls import cup_controls, joint_controls
 from ballsocket.app.widgets.reading import box_text, handy_step, number_text
@@ -121,8 +122,9 @@ def test_presets_make_short_links_and_the_link_to_a_file_opens_its_joint():
     opened = read_link(parse_qs(link_of_file(file).removeprefix("?"))).file
     assert (opened.joint, opened.joint.given_lengths, opened.load) == (file.joint, file.joint.given_lengths, file.load)
     assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
-    bare = replace(START, shown=())  # without curves
-    assert read_link(parse_qs(bare.link, keep_blank_values=True)) == bare
+    for changes in ({"shown": ()}, {"use": Use(instant=0, spread=5.0, millions=50.0)}):  # no curves; ends of ranges
+        changed = replace(START, **changes)
+        assert read_link(parse_qs(changed.link, keep_blank_values=True)) == changed
 
 
 def test_a_massive_socket_is_written_and_arrays_are_not():
@@ -430,7 +432,8 @@ def test_a_value_that_no_input_takes_gets_one_sentence_and_stays_in_its_box(aske
         ("use.cycle=dance", "'dance' as cycle"),
         ("use.body_weight=-1", "body_weight = -1"),
         ("use.coefficient=-1", "coefficient = -1"),
-        ("use.millions=1000", "millions = 1000"),
+        ("use.millions=50.1", "millions = 50.1"),
+        ("use.spread=5.1", "spread = 5.1"),
         ("use.speed=1", "'speed' of a hip in use in the link"),
         *((f"use.instant={number}", "instant = ") for number in ("inf", "nan", "1e400", "2.5", "-1")),
         ("joint.ball_radiuss=3", "'ball_radiuss' in [joint] is not known; did you mean 'ball_radius'?"),

@@ -335,6 +335,7 @@ def test_methods_bands_and_wear_are_drawn_at_their_numbers():
     left, right = figures.bands_figure(RECORD).axes
     (bar,) = left.patches
     assert (bar.get_x(), bar.get_x() + bar.get_width()) == pytest.approx((-10.0, 20.0))
+    assert left.get_xlim()[0] < -10.0
     assert [bar.get_width() for bar in right.patches] == [0.8, 0.2]
     wear = figures.wear_figure(RECORD).axes[0]
     assert wear.lines[0].get_ydata()[-1] == 61.0

@@ -79,6 +79,7 @@ def test_heads_that_differ_stand_with_their_design(tmp_path, monkeypatch):
     differing = page({"customer": "Acme", "author": "A. B."}, {"customer": "Other", "author": "A. B."})
     assert differing.index("id='comparison'") < differing.index("id='design-1'") < differing.index("id='design-2'")
     assert "Acme (cup 1), Other (cup 2)" in differing
+    assert all(f"<th>cup {number}</th>" in differing for number in (1, 2))
     assert "A. B. (" not in differing
     assert "<meta name='author' content='A. B.'>" in differing
     logos = [tmp_path / name for name in ("one.svg", "two.svg")]
@@ -140,6 +141,7 @@ def test_the_report_of_a_tilted_cup_has_its_head_the_place_of_the_contact_and_to
     text = (folder / "cup.html").read_text("utf-8")
     assert "<dd>&lt;b&gt;Bones&lt;/b&gt; &amp; Sons</dd>" in text
     assert "<h1>cup &lt;52&gt;</h1>" in text
+    assert "backing 1</td><td>1.35 mm of titanium" in text
     assert "class='logo' alt='logo' src='data:image/svg+xml;base64," in text
     contact = next(row for row in numbers["results"] if row["model"] == "sphere")
     assert f"{contact['edge_distance']:.1f} mm from the rim (CPER)" in text

@@ -123,7 +123,9 @@ def check_page(path, *texts):
 
 def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(paper_report, "_write_picture", lambda *words: b"picture")  # drawn in the long form
-    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1", claims.SCALE)
+    name = "peak pressure, worst, %"
+    number = f"{name}: {CLAIMS[0]['numbers'][name]:.3g}<br>"
+    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1", claims.SCALE, number)
     paper_report.print_verdicts(JUDGED)
     assert all(f"{row['name']} " in capsys.readouterr().out for row in CLAIMS[:1])
     worst = max(read_table(tmp_path / "accuracy.csv"), key=lambda row: float(row["worst"]))

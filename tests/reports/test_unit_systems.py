@@ -115,5 +115,9 @@ def test_axes_are_drawn_in_the_unit_that_they_name():
     assert bands.get_xlabel() == "indentation d [µm]"
     assert bands.lines[0].get_xdata()[-1] == pytest.approx(60.0)
     assert "median" in bands.get_legend_handles_labels()[1]
+    inches = study_plots.band_figure(study, units=Units.IMPERIAL).axes[0].xaxis
+    ticks = inches.get_major_locator().tick_values(20.0, 60.0) / 25.4  # 0.8 to 2.4 mil, at round numbers
+    assert inches.get_label_text() == "indentation d [mil]"
+    assert [float(inches.get_major_formatter()(25.4 * tick)) for tick in ticks] == pytest.approx(ticks, rel=1e-9)
     with pytest.raises(ValueError, match="a map needs two axes"):
         study_plots.design_map(study.isel(indentation=0))

@@ -50,9 +50,9 @@ def test_an_enlarged_block_has_the_results_of_small_ones(monkeypatch):
 
 
 def test_the_time_left_is_the_rest_over_the_rate():
-    """40 points in 8 s are 5 a second: 50 more take 10 s. Stored points count as done, not as computed."""
-    progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=8.0)
-    assert (progress.rate, progress.seconds_left) == (5.0, 10.0)
+    """40 points in 80 s are half a point a second: 50 more take 100 s. Stored points count as done, not as computed."""
+    progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=80.0)
+    assert (progress.rate, progress.seconds_left) == (0.5, 100.0)
     assert Progress(n_done=0, n_points=100, n_stored=0, seconds=8.0).seconds_left == inf
     described = _as_plain_data(np.arange(100_000.0) + 3)  # in the identity of a stored study
     assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)

@@ -79,7 +79,9 @@ def test_a_calibration_uses_three_loads_and_the_exact_model_by_default():
 
 def test_the_command_prints_table_and_json(monkeypatch):
     monkeypatch.setattr("ballsocket.cli.identify.refit_table_3", table_3)
-    assert "C1, paper" in printed("calibrate")
+    table = printed("calibrate")
+    assert "C1, paper" in table
+    assert "outer radius 24 mm, c 0.1 mm, steel head on 1 GPa" in table
     said = answer("calibrate", "hip-28", "--force", "1 kN", "--force", "2kN")
     assert said["force"] == [1000.0, 2000.0]
     assert said["constants"][0] == pytest.approx(bs.calibrate(bs.joints["hip-28"], force=[1e3, 2e3]).wanted)

@@ -279,9 +279,9 @@ def test_phrases_of_the_shell():
     ):
         limit = parse_limit(phrase)
         assert (limit.name, getattr(limit, end)) == (name, pytest.approx(value, rel=1e-12))
-    for phrase in ("ball_radius", "ball_radius=11", "outer_radius=26", "ball_radios=11..23"):
+    for phrase in ("ball_radius", "ball_radius=11", "outer_radius=26", "outer_radius==26", "ball_radios=11..23"):
         with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
-            (parse_limit if "<" in phrase else parse_range)(phrase)
+            (parse_limit if "26" in phrase else parse_range)(phrase)
 
 
 STUDY = """
