@@ -24,13 +24,17 @@ NAME = "bouncing"
 
 @dataclass(frozen=True, kw_only=True)
 class Bounce:
-    """A ball of 1 kg under its weight along -z: where and how fast it begins in mm and mm/s, and the times in s."""
+    """A ball of 1 kg under its weight along -z: where and how fast it begins in mm and mm/s, and the times in s.
+
+    `gravity` is in m/s².
+    """
 
     element: bs.ForceElement
     position: tuple[float, float, float] = (0.05, 0.0, 0.02)
     velocity: tuple[float, float, float] = (60.0, 20.0, 80.0)
     duration: float = 0.02
     samples: int = 201
+    gravity: float = 9.81
 
     @property
     def times(self) -> numpy.ndarray:
@@ -47,16 +51,13 @@ class Bounce:
         return 1e-3 * numpy.array(self.position), 1e-3 * numpy.array(self.velocity)
 
 
-GRAVITY = 9.81
-
-
 def by_load(bounce: Bounce, load: Callable[[Any, Any, Any], tuple[Any, Any]]) -> Path3:
     """Dormand and Prince of order 8 on a load in SI units, tolerance 1e-11."""
     from scipy.integrate import solve_ivp
 
     def rate(_: float, y: numpy.ndarray) -> numpy.ndarray:
         force, moment = load(y[:3], y[3:6], y[6:])
-        pulled = numpy.array(force) - [0.0, 0.0, GRAVITY]
+        pulled = numpy.array(force) - [0.0, 0.0, bounce.gravity]
         return numpy.concatenate([y[3:6], pulled, numpy.array(moment) / bounce.turning])
 
     start = numpy.concatenate([*bounce.si, numpy.zeros(3)])
@@ -82,6 +83,7 @@ _LOADED: set[str] = set()
 
 
 def _mujoco_steps(mj: Any, bounce: Bounce, model: Any) -> Path3:
+    model.opt.gravity[:] = (0.0, 0.0, -bounce.gravity)
     data = mj.MjData(model)
     data.qpos[:3], data.qvel[:3] = bounce.si
     found = [1e3 * data.qpos[:3].copy()]
@@ -111,6 +113,46 @@ def mujoco_callback(bounce: Bounce, folder: Path) -> Path3:
             mj.set_mjcb_passive(None)
 
 
+def warp(bounce: Bounce, folder: Path) -> Path3:
+    """The functions of Warp in double precision, with steps of 0.2 µs of second order."""
+    import warp as wp
+
+    with module(folder, f"{NAME}_warp") as made:
+        laws = made.laws(wp.float64)
+    vector, count = laws.vec3, round(bounce.duration / (bounce.samples - 1) / 2e-7)
+    half = wp.constant(wp.float64(0.5 * bounce.duration / (bounce.samples - 1) / count))
+    weight, turning = wp.constant(wp.float64(bounce.gravity)), wp.constant(wp.float64(bounce.turning))
+
+    @wp.kernel
+    def march(table: wp.array2d(dtype=wp.float64), state: wp.array(dtype=vector), steps: int):  # type: ignore
+        r, v, w = state[0] + vector(), state[1] + vector(), state[2] + vector()
+        half_v, half_w = vector(), vector()  # changes of velocity and spin in the half of a step, of the step before
+        for _ in range(steps):
+            r += half * v
+            force, moment, _energy = laws.load(table, r, v + half_v, w + half_w)
+            force[2] -= weight
+            half_v, half_w = half * force, half / turning * moment
+            v += wp.float64(2.0) * half_v
+            w += wp.float64(2.0) * half_w
+            r += half * v
+        state[0] = r
+        state[1] = v
+        state[2] = w
+
+    state, table = wp.array(numpy.array([*bounce.si, numpy.zeros(3)]), dtype=vector, device="cpu"), laws.table_on("cpu")
+    found = [1e3 * bounce.si[0]]
+    for _ in bounce.times[1:]:
+        wp.launch(march, 1, [table, state, count], device="cpu")
+        found.append(1e3 * state.numpy()[0])
+    return numpy.array(found)
+
+
+def c(bounce: Bounce, folder: Path) -> Path3:
+    """The program in C by its module of Python, order 8."""
+    with module(folder, NAME) as made:
+        return by_load(bounce, lambda r, v, w: made.load(r, v, w)[:2])
+
+
 def drake(bounce: Bounce, folder: Path) -> Path3:
     """The LeafSystem, with Runge and Kutta's third order, accuracy 1e-10."""
     from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
@@ -122,7 +164,7 @@ def drake(bounce: Bounce, folder: Path) -> Path3:
     plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
     radius = 1e-3 * bounce.element.constants.ball_radius
     body = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(1.0, radius))
-    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -GRAVITY])
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -bounce.gravity])
     plant.Finalize()
     with module(folder, f"{NAME}_drake") as made:
         made.add_joint(builder, plant, body)
@@ -170,7 +212,7 @@ def _exudyn(bounce: Bounce, add: Callable[..., Any]) -> Path3:
         referencePosition=[0.0, 0.0, 0.0],
         initialDisplacement=list(position),
         initialVelocity=list(velocity),
-        gravity=[0.0, 0.0, -GRAVITY],
+        gravity=[0.0, 0.0, -bounce.gravity],
     )
     add(mbs, socket, mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ball, localPosition=[0.0, 0.0, 0.0])))
     place = mbs.AddSensor(
@@ -196,7 +238,7 @@ def opensim(bounce: Bounce, folder: Path) -> Path3:
     osim.Logger.setLevelString("Error")
     osim.Logger.removeFileSink()
     model = osim.Model(str(folder / f"{NAME}.osim"))
-    model.setGravity(osim.Vec3(0.0, 0.0, -GRAVITY))
+    model.setGravity(osim.Vec3(0.0, 0.0, -bounce.gravity))
     state = model.initSystem()
     coordinates = [model.getCoordinateSet().get(name) for name in ("x", "y", "z")]
     for coordinate, place, speed in zip(coordinates, *bounce.si, strict=True):

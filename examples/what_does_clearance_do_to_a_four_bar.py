@@ -104,10 +104,10 @@ def ask(element, position, velocity, spin):
     return load.force, load.moment, load.dissipation
 
 
-def fallen(times):
+def fallen(times, element=ELEMENT):
     """The states of the mechanism (12, times) with its element, in Python."""
     options = {"method": "LSODA", "rtol": 1e-9, "atol": 1e-10, "max_step": 1e-3}
-    given = lambda _, y: rates(ask, ELEMENT, y.tolist())  # noqa: E731
+    given = lambda _, y: rates(ask, element, y.tolist())  # noqa: E731
     return solve_ivp(given, (0.0, times[-1]), START, t_eval=times, **options).y
 
 

@@ -53,34 +53,35 @@ def swing(joint: bs.ForceElement):
     return times, solve_ivp(rates, (0.0, SECONDS), start, method="LSODA", t_eval=times, rtol=1e-11, atol=1e-11).y
 
 
-figure = Figure(figsize=(9.0, 3.9), layout="constrained")
-swung, climbed, went = figure.subplots(1, 3)
-for coefficient, colour in ((0.0, "#0072B2"), (0.1, "#D55E00"), (0.3, "#009E73")):
-    joint = element(coefficient)
-    times, y = swing(joint)
-    loads = [load_of(joint, state) for state in y.T]
-    stored = np.array([load.energy for load in loads])
-    moving = MASS * (y[3] ** 2 + y[4] ** 2) / 2 + INERTIA * y[5] ** 2 / 2 + MASS * GRAVITY * y[1]
-    total = stored + moving + y[6]
-    x, z = y[0] - LENGTH * np.sin(y[2]), y[1] + LENGTH * np.cos(y[2])
-    label = f"friction {coefficient:g}" if coefficient else "no friction"
-    swung.plot(times, np.degrees(y[2]), color=colour, label=label)
-    climbed.plot(times, np.degrees(np.arctan2(x, -z) - y[2]), color=colour)
-    went.plot(times, y[6], color=colour)
-    went.plot(times[::20], (stored + moving)[0] - (stored + moving)[::20], "o", color=colour, fillstyle="none")
-    print(
-        f"{label:12s}: swings back to {np.degrees(y[2].max(where=times > 0.6, initial=0.0)):.1f}°, "
-        f"{y[6, -1]:6.2f} N mm lost, moment up to {max(abs(load.moment[2]) for load in loads):4.1f} N mm, "
-        f"balanced to {np.ptp(total) / np.ptp(moving):.0e}"
-    )
-swung.set_xlabel("time [s]")
-swung.set_title("angle of the rod [°]", fontsize=10)
-climbed.set_xlabel("time [s]")
-climbed.set_title("the contact, less where the rod points [°]", fontsize=10)
-went.set_xlabel("time [s]")
-went.set_title("energy lost; circles: balance [N mm]", fontsize=10)
-for panel in (swung, climbed, went):
-    panel.grid(color="0.9", linewidth=0.6)
-    panel.spines[["top", "right"]].set_visible(False)
-went.legend(*swung.get_legend_handles_labels(), frameon=False, fontsize=8)
-figure.savefig("what_does_clearance_do_to_a_pendulum.png", dpi=150)
+if __name__ == "__main__":
+    figure = Figure(figsize=(9.0, 3.9), layout="constrained")
+    swung, climbed, went = figure.subplots(1, 3)
+    for coefficient, colour in ((0.0, "#0072B2"), (0.1, "#D55E00"), (0.3, "#009E73")):
+        joint = element(coefficient)
+        times, y = swing(joint)
+        loads = [load_of(joint, state) for state in y.T]
+        stored = np.array([load.energy for load in loads])
+        moving = MASS * (y[3] ** 2 + y[4] ** 2) / 2 + INERTIA * y[5] ** 2 / 2 + MASS * GRAVITY * y[1]
+        total = stored + moving + y[6]
+        x, z = y[0] - LENGTH * np.sin(y[2]), y[1] + LENGTH * np.cos(y[2])
+        label = f"friction {coefficient:g}" if coefficient else "no friction"
+        swung.plot(times, np.degrees(y[2]), color=colour, label=label)
+        climbed.plot(times, np.degrees(np.arctan2(x, -z) - y[2]), color=colour)
+        went.plot(times, y[6], color=colour)
+        went.plot(times[::20], (stored + moving)[0] - (stored + moving)[::20], "o", color=colour, fillstyle="none")
+        print(
+            f"{label:12s}: swings back to {np.degrees(y[2].max(where=times > 0.6, initial=0.0)):.1f}°, "
+            f"{y[6, -1]:6.2f} N mm lost, moment up to {max(abs(load.moment[2]) for load in loads):4.1f} N mm, "
+            f"balanced to {np.ptp(total) / np.ptp(moving):.0e}"
+        )
+    swung.set_xlabel("time [s]")
+    swung.set_title("angle of the rod [°]", fontsize=10)
+    climbed.set_xlabel("time [s]")
+    climbed.set_title("the contact, less where the rod points [°]", fontsize=10)
+    went.set_xlabel("time [s]")
+    went.set_title("energy lost; circles: balance [N mm]", fontsize=10)
+    for panel in (swung, climbed, went):
+        panel.grid(color="0.9", linewidth=0.6)
+        panel.spines[["top", "right"]].set_visible(False)
+    went.legend(*swung.get_legend_handles_labels(), frameon=False, fontsize=8)
+    figure.savefig("what_does_clearance_do_to_a_pendulum.png", dpi=150)

@@ -22,6 +22,7 @@ from .library import needs_compiler, skip_without
 PAGE = (ROOT / "docs" / "how-to" / "export.md").read_text(encoding="utf-8")
 PROGRAMS = dict(re.findall(r"```\{code-block\} python\n# (\w+)(.*?)```", PAGE, re.DOTALL))
 PACKAGES = {"FMU": "fmpy", "MuJoCo": "mujoco", "Drake": "pydrake", "Exudyn": "exudyn", "OpenSim": "opensim"}
+PACKAGES["Warp"] = "newton"
 
 
 @needs_compiler

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ballsocket.core import arrays
-from ballsocket.export.c_text import c_number, c_statements
+from ballsocket.export.c_text import C, c_number
 from ballsocket.export.recorder import FUNCTIONS, Recorded, Tape, directional_derivatives, where
 
 NAMES = {"+": "add", "-": "sub", "*": "mul", "/": "truediv", "<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq"}
@@ -94,9 +94,9 @@ def test_equal_steps_are_recorded_once_and_constants_have_no_slope():
 def test_small_powers_are_products():
     x = Tape().input("x")
     for exponent in (1, 2, 3):
-        assert "pow" not in c_statements({"out": x**exponent})
+        assert "pow" not in C.statements({"out": x**exponent})
         assert evaluate(x**exponent, {"x": 1.7}) == pytest.approx(1.7**exponent, rel=1e-15)
-    assert "= pow(x, 0.5);" in c_statements({"out": x**0.5})
+    assert "= pow(x, 0.5);" in C.statements({"out": x**0.5})
 
 
 @pytest.mark.parametrize("name", ["gt", "ge", "ne", "eq", "lt", "le"])
@@ -124,7 +124,7 @@ def test_statements_hold_only_the_steps_that_a_target_needs_in_their_order():
     condition = ((x < y) & (x <= 2.0)) | ((x == y) ^ True)
     chosen = where(condition, -x, abs(y))
     value, slope = tape.curve("law", chosen, 2)
-    text = c_statements({"out": value + slope})
+    text = C.statements({"out": value + slope})
     assert " ".join(text.split()) == (
         "const int t3 = x < y; const int t4 = x <= 2.0; const int t5 = t3 && t4; const int t6 = x == y; "
         "const int t7 = !t6; const int t8 = t5 || t7; const double t9 = -x; const double t10 = fabs(y); "

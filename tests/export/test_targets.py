@@ -2,6 +2,7 @@
 
 import ctypes
 import re
+import sys
 from dataclasses import replace
 from importlib import import_module
 from math import exp, pi, sqrt
@@ -261,6 +262,7 @@ def test_the_plugin_is_compiled_with_the_headers_and_the_library_of_mujoco(
     if library:
         (package / library).touch()
     monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    monkeypatch.delitem(sys.modules, "mujoco", raising=False)  # of an earlier test
     paths, missing = written("mujoco", PLAIN, tmp_path / "hip", name="hip")
     assert missing == ""
     assert all(path.exists() for path in paths)
@@ -382,7 +384,7 @@ def test_elements_with_a_state_are_not_exported_or_compiled(element, said):
 
 @pytest.mark.long
 @needs_compiler
-@pytest.mark.parametrize("program", ["mujoco", "mujoco_callback", "drake", "exudyn", "opensim"])
+@pytest.mark.parametrize("program", ["mujoco", "mujoco_callback", "drake", "exudyn", "opensim", "warp"])
 def test_a_ball_bounces_in_each_program_as_in_python(program, tools, tmp_path):
     target = program.removesuffix("_callback")
     skip_without({"drake": "pydrake"}.get(target, target))

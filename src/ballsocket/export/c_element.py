@@ -25,7 +25,7 @@ from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
 from ..version import __version__
-from .c_text import c_number, c_statements
+from .c_text import C, c_number
 from .recorder import Part, Recorded, Tape, directional_derivatives
 from .tunable import TUNABLES
 
@@ -306,10 +306,10 @@ class CElement:
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
             checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(_first_load_square(constants)),
-            load=c_statements({**recording.status, **recording.load}),
-            pressed=c_statements({**recording.status, **recording.contact_size}),
-            tangent=c_statements({**recording.status, **recording.tangent}),
-            slope=c_statements({**recording.status, **recording.slope}),
+            load=C.statements({**recording.status, **recording.load}),
+            pressed=C.statements({**recording.status, **recording.contact_size}),
+            tangent=C.statements({**recording.status, **recording.tangent}),
+            slope=C.statements({**recording.status, **recording.slope}),
             sentences="\n".join(f'    case {state.value}: return "{text}";' for state, text in sentences.items()),
             **self.about,
         )

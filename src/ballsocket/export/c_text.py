@@ -1,13 +1,12 @@
-"""Translation of a recorded tape to C statements."""
+"""Translation of a recorded tape to statements of C or another language."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 from .recorder import BOOLEAN, CURVE_SLOPES, Part, Recorded
-
-_C_OPERATORS = {"&": "&&", "|": "||"}
 
 
 def c_number(value: float) -> str:
@@ -20,12 +19,84 @@ def c_number(value: float) -> str:
     return f"({text})" if value < 0 else text
 
 
-def c_statements(targets: Mapping[str, Part]) -> str:
-    """Translate recorded steps to C statements that assign a value to each target variable."""
-    steps = _required_steps(list(targets.values()))
-    lines = [line for step in steps for line in _step_statements(step)]
-    lines += [f"{name} = {_c_operand(part)};" for name, part in targets.items()]
-    return "\n".join(f"    {line}" for line in lines)
+@dataclass(frozen=True, kw_only=True)
+class Language:
+    """Words of a programming language for the steps of a tape, as formats.
+
+    Attributes
+    ----------
+    number : function
+        Literal of a number.
+    operators : dict
+        Operators by those of the tape, where they differ.
+    formats : dict
+        Formats of the steps "where", "not" and "scaled_exp".
+    function : str
+        Format of a function's name.
+    functions : dict
+        Names of functions by those of C, where that format does not give them.
+    assignment : dict
+        Formats of an assignment to a new variable by its type, "int" or "double"; of one to a target by "target".
+    curve : str
+        Format of the evaluation of a curve: name of the curve, argument, variable and number of values.
+    """
+
+    number: Callable[[float], str]
+    operators: Mapping[str, str]
+    formats: Mapping[str, str]
+    function: str
+    functions: Mapping[str, str]
+    assignment: Mapping[str, str]
+    curve: str
+
+    def statements(self, targets: Mapping[str, Part], indent: int = 4) -> str:
+        """Translate recorded steps to statements that assign a value to each target variable."""
+        steps = _required_steps(list(targets.values()))
+        lines = [self._statement(step) for step in steps if step.step != "input"]
+        lines += [self.assignment["target"].format(name, self._operand(part)) for name, part in targets.items()]
+        return "\n".join(f"{'':{indent}}{line}" for line in lines)
+
+    def _statement(self, step: Recorded) -> str:
+        """Write the statement that computes a recorded step."""
+        variable, operands = self._operand(step), [self._operand(part) for part in step.parts]
+        if step.step == "curve":
+            return self.curve.format(step.about, operands[0], variable, CURVE_SLOPES)
+        kind = "int" if step.step in BOOLEAN else "double"
+        return self.assignment[kind].format(variable, self._expression(step, operands))
+
+    def _expression(self, step: Recorded, operands: list[str]) -> str:
+        """Write the expression of a recorded step from the texts of its operands."""
+        if step.step in self.formats:
+            return self.formats[step.step].format(*operands)
+        if step.step == "slope":
+            return f"{operands[0]}[{step.about}]"
+        if step.step == "neg":
+            return f"-{operands[0]}"
+        if len(operands) == 2 and not step.step.isalnum():
+            return f"{operands[0]} {self.operators.get(step.step, step.step)} {operands[1]}"
+        return f"{self.functions.get(step.step, self.function.format(step.step))}({', '.join(operands)})"
+
+    def _operand(self, part: Part) -> str:
+        """Write a part as an operand: a literal, an input or a variable such as "t12"."""
+        if not isinstance(part, Recorded):
+            return self.number(part)
+        return str(part.about) if part.step == "input" else f"t{part.number}"
+
+
+C = Language(
+    number=c_number,
+    operators={"&": "&&", "|": "||"},
+    formats={
+        "where": "{} ? {} : {}",
+        "not": "!{}",
+        "scaled_exp": "{0} == 0.0 ? 0.0 : {0} * exp({1})",  # the exponential is only computed where it counts
+    },
+    function="{}",
+    functions={},
+    assignment={"int": "const int {} = {};", "double": "const double {} = {};", "target": "{} = {};"},
+    curve="double {2}[{3}]; {0}({1}, {2});",
+)
+"""C99."""
 
 
 def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
@@ -38,37 +109,3 @@ def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
             required[part.number] = part
             pending.extend(part.parts)
     return [required[number] for number in sorted(required)]
-
-
-def _step_statements(step: Recorded) -> Iterator[str]:
-    if step.step == "input":
-        return
-    if step.step == "curve":
-        yield f"double {_c_operand(step)}[{CURVE_SLOPES}];"
-        yield f"{step.about}({_c_operand(step.parts[0])}, {_c_operand(step)});"
-        return
-    kind = "int" if step.step in BOOLEAN else "double"
-    yield f"const {kind} {_c_operand(step)} = {_step_expression(step, [_c_operand(part) for part in step.parts])};"
-
-
-def _step_expression(step: Recorded, operands: list[str]) -> str:
-    if step.step == "where":
-        return "{} ? {} : {}".format(*operands)
-    if step.step == "scaled_exp":  # the exponential is only computed where it counts
-        return "{0} == 0.0 ? 0.0 : {0} * exp({1})".format(*operands)
-    if step.step == "slope":
-        return f"{operands[0]}[{step.about}]"
-    if step.step == "neg":
-        return f"-{operands[0]}"
-    if step.step == "not":
-        return f"!{operands[0]}"
-    if len(operands) == 2 and not step.step.isalnum():
-        return f"{operands[0]} {_C_OPERATORS.get(step.step, step.step)} {operands[1]}"
-    return f"{step.step}({', '.join(operands)})"
-
-
-def _c_operand(part: Part) -> str:
-    """Return a part as a C operand: a literal, an input or a variable such as "t12"."""
-    if not isinstance(part, Recorded):
-        return c_number(part)
-    return str(part.about) if part.step == "input" else f"t{part.number}"

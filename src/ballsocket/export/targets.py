@@ -15,6 +15,7 @@ from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .job import NOT_CENTRAL, ExportJob, Texts
 from .law_tables import pivot_texts, table_texts, two_axes_note
 from .tunable import TUNABLES
+from .warp import warp_texts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,6 +237,7 @@ TARGETS: Mapping[str, Target] = {
             note=two_axes_note,
             without=tuple(name for name in FEATURES if name != "the rim of the cup"),
         ),
+        Target(name="warp", title="functions of Warp, for Newton and MuJoCo Warp", texts=warp_texts, central=True),
         Target(
             name="ross",
             title="force, indentation and stiffness of a pivot, for ROSS",
