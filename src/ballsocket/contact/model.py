@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -109,17 +109,23 @@ class Model(PressModel):
         reject_unnamed_loads(unnamed)
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
-        value = broadcast_load(value, joint.strengths())
         types = {*map(type, (*joint.numbers(), value))}
-        all_plain = all(issubclass(number_type, int | float) for number_type in types)
-        if self.accepts_floats and all_plain and all(type(number) in (float, int) for number in self.parameters):
-            float_joint, load = joint.with_floats(), float(value)
-            try:  # Python floats are faster than arrays
-                check_domain((*self.fits, *self.domain), float_joint, self.name)
-                result = self._solve(float_joint, kind, load)
-                return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
-            except ArithmeticError:
-                pass  # where Python floats raise, NumPy numbers become infinite or NaN
+        if (
+            self.accepts_floats
+            and types <= {float, int, numpy.float64}
+            and {*map(type, self.parameters)} <= {float, int}
+        ):
+            try:
+                float_joint = _float_joint(self, joint)
+            except TypeError:  # a strength is an array, or a field of the model has no hash
+                float_joint = None
+            if float_joint is not None:
+                try:
+                    result = self._solve(float_joint, kind, float(value))
+                    return make_scalar_contact(self, self.contact_type, joint, kind, float(value), result)
+                except ArithmeticError:
+                    pass  # where Python floats raise, NumPy numbers become infinite or NaN
+        value = broadcast_load(value, joint.strengths())
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
         with arrays.silent_numpy(load):  # a failed point gets a status, not a warning
@@ -244,6 +250,21 @@ class Model(PressModel):
         touching = (squared_length > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
         return -displacement * (force / length)[..., None]
+
+
+@lru_cache(maxsize=256)
+def _float_joint(model: Model, joint: Joint) -> Joint | None:
+    """Return a joint of plain numbers with floats, for a press that is faster than with arrays; from a cache.
+
+    The result is None if a strength is an array.
+
+    Raises OutsideDomainError: a joint outside the domain of the model.
+    """
+    if not all(map(arrays.is_plain_number, joint.strengths())):
+        return None
+    float_joint = joint.with_floats()
+    check_domain((*model.fits, *model.domain), float_joint, model.name)
+    return float_joint
 
 
 def _declared_attribute_names(base: type) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, floor, inf, isclose, isnan, log10
+from math import ceil, inf, isclose, isnan, log10
 from typing import Any
 
 from ...contact.describe import values_of
