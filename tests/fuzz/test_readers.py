@@ -25,10 +25,11 @@ from ballsocket.hip.cycle_file import TableOptions, read_cycle
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identification.file import read_identify
 from ballsocket.mcp.call import command_line
+from ballsocket.planning import fit_liner, read_mesh
 
 from ..cli.command import run
 from ..places import EXAMPLES
-from ..planning.scans import binary
+from ..planning.scans import ascii_stl, binary, liner
 from . import damage
 from .limits import check_command, check_run, check_sentence, folder_with, inputs, within_limits
 from .words import mistyped, number, odd_text, quantity
@@ -154,19 +155,21 @@ PLY = ["ply", "format ascii 1.0", f"element vertex {len(ROWS)}", *(f"property fl
 PLY += [f"element face {len(FACES)}", "property list uchar int vertex_indices", "end_header", *ROWS]
 PLY += [f"3 {i} {j} {k}" for i, j, k in FACES]
 OBJ = ["v " + row for row in ROWS] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in FACES]
-MESHES = {"ply": "\n".join(PLY).encode(), "obj": "\n".join(OBJ).encode()}
-MESHES["stl"] = binary(POINTS_OF_BORE[numpy.array(FACES)])
+MESHES = {"bore.ply": "\n".join(PLY).encode(), "bore.obj": "\n".join(OBJ).encode()}
+MESHES["bore.stl"] = binary(POINTS_OF_BORE[numpy.array(FACES)])
+MESHES |= {"liner.stl": binary(liner(steps=12, segments=24)), "ascii.stl": ascii_stl(liner(steps=6, segments=12))}
 _wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
 wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
 
 
 @inputs(2)
-@given(kind=st.sampled_from(tuple(MESHES)), wounds=wounds, cut=st.integers(0, 4))
-def test_scans(kind, wounds, cut):
+@given(name=st.sampled_from(tuple(MESHES)), wounds=wounds, cut=st.integers(0, 4))
+def test_scans(name, wounds, cut):
     pytest.importorskip("meshio")
-    raw = reduce(lambda damaged, wound: damage.with_bytes(damaged, *wound), wounds, MESHES[kind])
-    with refused_in_a_sentence({f"bore.{kind}": raw[: len(raw) // cut] if cut > 1 else raw}) as folder:
-        read_scan(folder / f"bore.{kind}")
+    raw = reduce(lambda damaged, wound: damage.with_bytes(damaged, *wound), wounds, MESHES[name])
+    for read in (read_scan, lambda path: fit_liner(read_mesh(path))):
+        with refused_in_a_sentence({name: raw[: len(raw) // cut] if cut > 1 else raw}) as folder:
+            read(folder / name)
 
 
 _STREAM = io.BytesIO()

@@ -48,10 +48,9 @@ def second_antiderivative(u):
 
 def hat_potentials(points, middles):
     """∫ hat_j(S) ln|X - S| dS at the middles; the ends of the grid have no hat."""
-    step = np.diff(points)
-    moment = second_antiderivative(middles[:, None] - points[None, :])
+    slope = -np.diff(second_antiderivative(middles[:, None] - points[None, :])) / np.diff(points)
     hats = np.zeros((len(middles), len(points)))
-    hats[:, 1:-1] = (moment[:, :-2] - moment[:, 1:-1]) / step[:-1] - (moment[:, 1:-1] - moment[:, 2:]) / step[1:]
+    hats[:, 1:-1] = -np.diff(slope)
     return hats
 
 
@@ -97,9 +96,7 @@ def solve_inlet(finest):
     root = root_correction(points, middles)
     (tail, log_tail), (mass, log_mass) = tail_potentials(end, middles)
     slope = (np.eye(count)[1:] - np.eye(count)[:-1]) / step[:, None]
-    weight = np.zeros(count)
-    weight[:-1] += step / 2
-    weight[1:] += step / 2
+    weight = (np.append(step, 0.0) + np.append(0.0, step)) / 2
     dry_excess = weight @ dry - 2 / 3 * end**1.5
     pressure, eigenvalue = estimate(points), 2.42
     last = np.zeros(count)

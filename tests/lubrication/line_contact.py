@@ -13,6 +13,8 @@ E* = 2 p_H R/a.
 
 import numpy as np
 
+from .inlet_problem import hat_potentials
+
 LEFT, RIGHT, COARSEST = -4.0, 2.0, 0.02
 
 
@@ -30,21 +32,10 @@ def graded_points(finest):
     return np.unique(np.concatenate(parts).round(12))
 
 
-def deflections(points):
-    """Matrix of film thicknesses per nodal pressure; the pressure is linear between the points."""
-    distance = np.abs(points[:, None] - points[None, :])
-    moment = distance**2 / 2 * np.log(np.where(distance > 0, distance, 1.0)) - 0.75 * distance**2
-    step = np.diff(points)
-    slope = (moment[:, :-1] - moment[:, 1:]) / step
-    matrix = np.zeros(distance.shape)
-    matrix[:, 1:-1] = slope[:, :-1] - slope[:, 1:]
-    return -matrix / np.pi
-
-
 def solve_contact(number, start=None):
     """Solve the film at λ = `number`; return points, pressure, film and its level H0."""
     points = graded_points(max(0.0375 * number**0.4 + 2e-5, 2e-4))
-    count, step, bend = len(points), np.diff(points), deflections(points)
+    count, step, bend = len(points), np.diff(points), -hat_potentials(points, points) / np.pi
     pressure = np.sqrt(np.maximum(1 - points**2, 0.0)) if start is None else np.interp(points, *start[:2])
     level = -0.25 if start is None else start[3]
     weight = (np.append(step, 0.0) + np.append(0.0, step)) / 2
