@@ -32,6 +32,17 @@ def states(count, seed=1, deepest=0.08):
     return position, random.normal(scale=100.0, size=(count, 3)), random.normal(scale=5.0, size=(count, 3))
 
 
+def test_lists_and_tuples_of_vectors_are_states_of_an_array():
+    element, (r, v, w) = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY), states(4)
+    wanted = element(r, v, w)
+    for kind in (list, tuple):
+        load = element(*(kind(map(kind, part.tolist())) for part in (r, v, w)))
+        assert np.array_equal(load.force, wanted.force)
+        assert np.array_equal(load.moment, wanted.moment)
+    with pytest.raises(ValueError, match=r"position of shape \(3, 4\) is not allowed: its last axis holds x, y, z"):
+        element(tuple(r.T))
+
+
 @pytest.mark.parametrize("name", LAWS)
 def test_force_in_any_direction_equals_that_of_the_model(name):
     model = bs.catalogue[name]

@@ -118,6 +118,22 @@ def test_nearly_circular_orbit_conserves_energy_and_angular_momentum():
         assert np.ptp(motion.indentation) < 2e-4 * distance
 
 
+def test_the_error_of_the_position_is_estimated_and_missing_without_steps_of_second_order():
+    """The energy is conserved at both steps; the phase of the bounces is not."""
+    thrown = THROW | {"duration": 0.01}
+    motion, fine = (simulate(FREE, **thrown | {"step": step}) for step in (4e-5, 2e-6))
+    error = np.linalg.norm(motion.position - fine.position[::20], axis=1).max()
+    assert motion.drift < 1e-12
+    assert 1e-3 < error == pytest.approx(motion.position_error, rel=0.1)
+    assert (
+        simulate(replace(FREE, friction=Bristles(coefficient=0.1)), **thrown | {"duration": 1e-4}).position_error
+        is None
+    )
+    late = simulate(FREE, **thrown | {"velocity": (0.0, 0.0, 1e6), "step": 1e-4})
+    assert late.end_reason
+    assert late.position_error is None
+
+
 def test_motion_converges_with_second_order_to_another_integrator():
     def rates(_, state):
         return [*state[3:], *(1e3 * component for component in FREE(tuple(state[:3].tolist())).force)]

@@ -165,6 +165,7 @@ def test_reports_increase_with_wear_and_their_number_does_not_change_the_results
     often = hip(**QUICK).after(5e6, [3e6, 1e5, 1e6, 1e5])
     assert often.last.volume == pytest.approx(report_after(hip(**QUICK), 5e6).volume, rel=5e-4)
     assert [report.cycles for report in often.reports] == [1e5, 1e6, 3e6, 5e6]
+    assert hip(**QUICK).after([5e6, 3e6, 1e5], [1e6]).last.volume == often.last.volume
     for name in ("volume", "penetration"):
         values = [getattr(report, name) for report in often.reports]
         assert values == sorted(values)

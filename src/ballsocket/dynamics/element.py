@@ -181,7 +181,7 @@ class ForceElement(OneLine):
         ----------
         position : (3,) or array (..., 3)
             Position of the ball centre relative to the socket centre in mm. Tuples and lists of numbers return tuples,
-            which is fastest; arrays of any library return arrays for all states at once.
+            which is fastest; arrays of any library, and lists of vectors, return arrays for all states at once.
         velocity : (3,) or array (..., 3)
             Velocity of the ball centre relative to the socket in mm/s.
         spin : (3,) or array (..., 3)
@@ -196,7 +196,7 @@ class ForceElement(OneLine):
         ValueError
             A vector without three components.
         """
-        if type(position) in _SEQUENCES:
+        if is_one_vector(position):
             load = self._load_of_numbers(components(position), components(velocity), components(spin), attached)
         else:
             load = self._load_of_arrays(position, velocity, spin, attached)
@@ -275,6 +275,13 @@ class ForceElement(OneLine):
     def max_pressure(self, indentation: Array) -> Array:
         """Compute the largest contact pressure in MPa at an indentation in mm; 0 without contact."""
         return evaluate_curve(self.curves[1], indentation)
+
+
+def is_one_vector(value: Any) -> bool:
+    """Check if a value is a tuple or list of numbers; arrays, and lists of vectors, hold many vectors."""
+    if type(value) not in _SEQUENCES:
+        return False
+    return not value or not (type(value[0]) in _SEQUENCES or getattr(value[0], "ndim", 0) > 0)
 
 
 def components(value: Any, name: str = "a state") -> Vector:

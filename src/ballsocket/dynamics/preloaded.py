@@ -27,7 +27,7 @@ from ..problem import Joint
 from .ball_centre import Constants, Vector
 from .bristles import Bristles
 from .damping import Damping
-from .element import components, loss_constants, split_states
+from .element import components, is_one_vector, loss_constants, split_states
 from .friction import Friction, friction_coefficient
 from .load import ContactState, describe_load, is_finite_state, tangent_matrix, to_contact_state
 from .matrices import join_vector
@@ -467,7 +467,7 @@ class PreloadedElement(OneLine):
 
         Raises ValueError: a vector without three components.
         """
-        if type(position) in (tuple, list):
+        if is_one_vector(position):
             return self._load(tuple, components(position), components(velocity), components(spin))
         r, v, w = split_states(position, velocity, spin)
         return self._load(object, r, v, w)

@@ -237,7 +237,7 @@ class HipSimulation(HipSetup):
 
     def after(
         self,
-        cycles: float,
+        cycles: float | Sequence[float],
         report_at: Sequence[float] = (),
         progress: Callable[[float], None] = lambda cycles: None,
         lubricant: Lubricant | None = None,
@@ -247,7 +247,8 @@ class HipSimulation(HipSetup):
 
         Parameters
         ----------
-        cycles : float
+        cycles : float or sequence of float
+            The largest of several is the end of the run, and the others are reported.
         report_at : sequence of float
             Cycle counts of the reports; the last report is always at `cycles`.
         progress : function
@@ -263,6 +264,8 @@ class HipSimulation(HipSetup):
             Numbers of cycles that are not allowed or would wear the liner through many times; a store with another
             run.
         """
+        if isinstance(cycles, Sequence):
+            report_at, cycles = (*report_at, *cycles), max(cycles, default=0)
         counts = check_cycles(cycles, report_at)
         check_total_wear(self, cycles)
         stored, (volume, depth) = None if store is None else make_checkpoint(self, store), self.discretization_error
