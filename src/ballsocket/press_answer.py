@@ -143,7 +143,6 @@ def _sphere_remark(contact: Any, seconds: float) -> str:
 
 
 def _rim_sentence(contact: OffAxisContact) -> str:
-    """Describe the distance of a contact to the rim of its cup."""
     distance = Amount(abs(float(contact.edge_distance)), MILLIMETRES, decimals=1)
     if contact.edge_loaded and contact.joint.clearance < 0:
         return "contact up to the rim"

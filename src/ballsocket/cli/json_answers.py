@@ -293,7 +293,6 @@ def _joint_name(arguments: Arguments) -> list[str]:
 
 
 def _without_options(arguments: Arguments, *options: str) -> list[str]:
-    """Return the arguments without some options and their values."""
     return [arguments[0], *chain(*(words for name, _, words in _split(arguments) if name not in options))]
 
 

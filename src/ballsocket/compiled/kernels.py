@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -62,12 +61,6 @@ def foundation_kernel(formula: Formula, motion: Kinematics) -> Any:
     return compile_loop(solve_contacts)
 
 
-@overload(kinematics.angle_of, strict=False, jit_options={"forceinline": True})
-def _overload_angle_of(versine: Any) -> Callable[..., Any]:
-    """Replace `kinematics.angle_of` by a polynomial in compiled code."""
-    return _angle_polynomial
-
-
 def _angle_polynomial(versine: float) -> float:
     """Compute the angle in rad, 0 to π/2, from its versine by a polynomial that compilers can vectorise.
 
@@ -96,6 +89,8 @@ def _angle_polynomial(versine: float) -> float:
     p = p * versine + 0.9999999999999999
     return math.sqrt(2 * versine) * p
 
+
+overload(kinematics.angle_of, strict=False, jit_options={"forceinline": True})(lambda versine: _angle_polynomial)
 
 for _formula in (
     scaled_modulus,

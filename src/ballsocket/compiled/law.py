@@ -109,7 +109,6 @@ def _foundation_function(motion: Kinematics) -> Any:
 
 @cache
 def _curve_function() -> Any:
-    """Return the compiled force law of a curve."""
     derivatives_at = vector_formula(octave_curve.derivatives_at, VECTOR_FUNCTIONS)
 
     @njit(error_model="numpy", fastmath={"contract"})
@@ -147,7 +146,6 @@ make_attribute_wrapper(_LawType, "numbers", "numbers")
 
 @unbox(_LawType)
 def _unbox_law(kind: _LawType, value: Any, context: Any) -> NativeValue:
-    """Convert a `CompiledLaw` of Python to its form in compiled code."""
     numbers = context.pyapi.object_getattr_string(value, "numbers")
     native = context.unbox(kind.numbers, numbers)
     context.pyapi.decref(numbers)

@@ -58,40 +58,18 @@ for _name in ("sqrt", "exp", "log", "log1p", "sin", "cos", "asin"):
     overload(getattr(arrays, _name), strict=False)(_overload_elementwise(getattr(math, _name)))
 
 
-@overload(arrays.short_sine, strict=False, jit_options={"forceinline": True})
-def _overload_short_sine(x: Any) -> Callable[..., Any]:
-    """Replace `arrays.short_sine` by its series in compiled code."""
-    return arrays.short_sine_series
+_FOR_NUMBERS: dict[Any, Callable[..., Any]] = {
+    arrays.atan2: lambda y, x: lambda y, x: math.atan2(y, x),
+    arrays.where: lambda condition, yes, no: lambda condition, yes, no: yes if condition else no,
+    arrays.clip: lambda x, low, high: lambda x, low, high: min(max(x, low), high),
+    arrays.all_true: lambda condition: lambda condition: condition,
+    arrays.logical_not: lambda condition: lambda condition: not condition,
+}
+"""Functions for numbers in compiled code: the outer one receives types, the inner one is compiled."""
 
-
-@overload(arrays.atan2, strict=False)
-def _overload_atan2(y: Any, x: Any) -> Callable[..., Any]:
-    """Implement `arrays.atan2` for numbers in compiled code."""
-    return lambda y, x: math.atan2(y, x)
-
-
-@overload(arrays.where, strict=False)
-def _overload_where(condition: Any, yes: Any, no: Any) -> Callable[..., Any]:
-    """Implement `arrays.where` for numbers in compiled code."""
-    return lambda condition, yes, no: yes if condition else no
-
-
-@overload(arrays.clip, strict=False)
-def _overload_clip(x: Any, low: Any, high: Any) -> Callable[..., Any]:
-    """Implement `arrays.clip` for numbers in compiled code."""
-    return lambda x, low, high: min(max(x, low), high)
-
-
-@overload(arrays.all_true, strict=False)
-def _overload_all_true(condition: Any) -> Callable[..., Any]:
-    """Implement `arrays.all_true` for numbers in compiled code."""
-    return lambda condition: condition
-
-
-@overload(arrays.logical_not, strict=False)
-def _overload_logical_not(condition: Any) -> Callable[..., Any]:
-    """Implement `arrays.logical_not` for numbers in compiled code."""
-    return lambda condition: not condition
+for _function, _implementation in _FOR_NUMBERS.items():
+    overload(_function, strict=False)(_implementation)
+overload(arrays.short_sine, strict=False, jit_options={"forceinline": True})(lambda x: arrays.short_sine_series)
 
 
 @overload(roots.increasing_root, strict=False)

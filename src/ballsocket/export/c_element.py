@@ -362,7 +362,6 @@ def _curve_function_code(name: str, curve: OctaveCurve) -> str:
 
 
 def _read_template(name: str) -> str:
-    """Read a template file of this package."""
     return (files(__package__) / "templates" / name).read_text(encoding="utf-8")
 
 

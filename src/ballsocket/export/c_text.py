@@ -57,7 +57,6 @@ class Language:
         return "\n".join(f"{'':{indent}}{line}" for line in lines)
 
     def _statement(self, step: Recorded) -> str:
-        """Write the statement that computes a recorded step."""
         variable, operands = self._operand(step), [self._operand(part) for part in step.parts]
         if step.step == "curve":
             return self.curve.format(step.about, operands[0], variable, CURVE_SLOPES)

@@ -42,7 +42,6 @@ class Platform:
 
 
 def _this_platform() -> Platform:
-    """Determine the platform of this machine."""
     processor = platform.machine().lower()
     processor = _PROCESSORS.get(processor, processor)
     if sys.maxsize < 2**32 and processor == "x86_64":

@@ -159,8 +159,6 @@ def _record_clip(x: Part, low: float, high: float) -> Part:
 
 
 def _recording_function(step_name: str) -> Callable[..., Recorded]:
-    """Make a function that records its call as a step with this name."""
-
     def record_call(*parts: Part) -> Recorded:
         tape = next(part.tape for part in parts if isinstance(part, Recorded))
         return tape.record(step_name, parts)

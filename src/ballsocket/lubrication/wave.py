@@ -58,7 +58,6 @@ class FilmWave:
 
     @cached_property
     def _cells(self) -> Numbers:
-        """Numbers of the cells in contact."""
         return numpy.flatnonzero(self.contact.inside)
 
     @cached_property

@@ -220,7 +220,6 @@ def figure_5_pressures(series: str, case: str, models: Models) -> Figure:
 
 
 def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
-    """Compute the panel of force by indentation."""
     forces = 4000.0 * numpy.linspace(0.06, 1.0, _STEPS) ** 2
     depth, force = CONTACT["indentation"], CONTACT["force"]
     lines = []

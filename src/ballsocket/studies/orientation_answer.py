@@ -126,7 +126,6 @@ def _joined(limits: Sequence[Limit]) -> Sentence:
 
 
 def _counts(codes: Numbers) -> list[int]:
-    """Count the orientations by their verdict."""
     return [int((codes == verdict).sum()) for verdict in Verdict]
 
 
