@@ -194,6 +194,17 @@ def test_fmpy_compiles_the_sources_of_the_unit(version, folder, fmpy, tmp_path):
     assert_allclose(found["energy"], reference["energy"], rtol=1e-12)
 
 
+def test_a_terminal_has_the_motion_and_the_load_of_the_ball_in_the_form_of_the_standard(folder):
+    with zipfile.ZipFile(folder / "hip3.fmu") as archive:
+        text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")
+    members = [each.get("variableName") for each in fromstring(text).iter("TerminalMemberVariable")]
+    variables = [each for each in description(folder / "hip3.fmu").find("ModelVariables") if each.get("name") != "time"]
+    assert members == [each.get("name") for each in variables if each.get("causality") != "parameter"]
+    fmpy, etree = pytest.importorskip("fmpy"), pytest.importorskip("lxml.etree")
+    schema = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.fromstring(text))
+
+
 GOOD, DISCARD, ERROR = 0, 2, 3
 PRESSED = {"position": (0.0, 1e-5, 1.2e-4), "velocity": (0.001, 0.0, 0.02), "spin": (0.0, 1.0, 2.0)}
 

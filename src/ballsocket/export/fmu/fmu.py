@@ -111,6 +111,17 @@ def build_description(information: UnitInformation) -> bytes:
     return _xml_bytes(root)
 
 
+def terminals_description(variables: Sequence[Variable]) -> bytes:
+    """Return the XML file `terminalsAndIcons.xml` of FMI 3.0 as bytes: one terminal with all inputs and outputs."""
+    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    terminal = SubElement(SubElement(root, "Terminals"), "Terminal", name="ball", matchingRule="bus")
+    for variable in variables:
+        if variable.causality != "parameter":
+            name = {"variableName": variable.name, "memberName": variable.name}
+            SubElement(terminal, "TerminalMemberVariable", {**name, "variableKind": "signal"})
+    return _xml_bytes(root)
+
+
 def _description_root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
     """Make the root element of a model description in XML, with the capabilities of the FMU."""
     texts = {
@@ -330,6 +341,7 @@ class Fmu:
         files["documentation/licenses/license.txt"] = fill_template("license.txt").encode()
         if self.version == 3:
             files["sources/buildDescription.xml"] = build_description(self.information)
+            files["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_description(variables(self.element))
         binaries, failures = self._compile_binaries()
         for platform, binary in binaries.items():
             files[f"binaries/{self.standard.folder(platform)}/{self.name}{platform.library_ending}"] = binary
