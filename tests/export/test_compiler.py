@@ -1,5 +1,6 @@
 """Platform of compiled libraries: it is read from their header."""
 
+import os
 import re
 import shutil
 import zipfile
@@ -79,6 +80,25 @@ def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version,
         assert [name for name in archive.namelist() if name.startswith("bin")] == [f"binaries/{folder}/hip.dll"]
     assert written.missing.startswith("the binary is for x86_64-windows, the platform of its compiler")
     assert written.missing.endswith(f"; the binary for {THIS_PLATFORM} is missing")
+
+
+@needs_compiler
+@needs_scripts
+def test_an_fmu_has_the_binary_of_an_installed_cross_compiler_beside_that_of_this_machine(tmp_path, monkeypatch):
+    set_compiler(monkeypatch, tmp_path, [writes(WINDOWS_HEADER)])
+    monkeypatch.delenv("CC")
+    (tmp_path / "script gcc").rename(tmp_path / MINGW)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    written = Fmu(element=ELEMENT, name="hip", version=2).write(tmp_path / "hip.fmu")
+    assert written.missing == ""
+    with zipfile.ZipFile(written.path) as archive:
+        names = {name for name in archive.namelist() if name.startswith("bin")}
+    assert len(names) == 2
+    assert "binaries/win64/hip.dll" in names
+    set_compiler(monkeypatch, tmp_path, ["sys.exit(3)"])
+    monkeypatch.delenv("CC")
+    (tmp_path / "script gcc").rename(tmp_path / MINGW)
+    assert f"{MINGW} ended with 3" in Fmu(element=ELEMENT, name="hip").write(tmp_path / "hip.fmu").missing
 
 
 @needs_scripts

@@ -18,6 +18,7 @@ from ballsocket.export.fmu.variables import reference_loads, states_in_si, traje
 from ..cli.command import run
 from ..extent import some
 from ..joints import HIP
+from ..places import ROOT
 from .library import Host, needs_compiler, table
 
 LOSSES = {"damping": Damping(hysteresis=0.004), "friction": Friction(coefficient=0.05)}
@@ -54,6 +55,11 @@ def test_files_of_an_archive_are_readable_have_one_date_and_the_order_of_their_n
     assert names == sorted(names)
     assert {"modelDescription.xml", "sources/hip.c", "sources/hip.h", f"sources/fmi{version}.c"} <= set(names)
     assert ("sources/buildDescription.xml" in names) == (version == 3)
+    with zipfile.ZipFile(folder / f"hip{version}.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+        licence = archive.read("documentation/licenses/license.txt").decode()
+    assert "an explicit integration is stable below" in page
+    assert licence == (ROOT / "LICENSE").read_text("utf-8")
     for entry in entries:
         assert entry.date_time == (1980, 1, 1, 0, 0, 0)
         assert (entry.create_system, entry.external_attr >> 16) == (3, 0o644)  # files of Unix
@@ -83,9 +89,9 @@ def test_loads_depend_on_the_state_and_the_contact_on_the_position(version, tag,
     state = {f"{name}[{axis}]" for name in ("position", "velocity", "spin") for axis in (1, 2, 3)}
     position = {name for name in state if name.startswith("position")}
     loads = {f"{name}[{axis}]" for name in ("force", "moment") for axis in (1, 2, 3)}
-    expected = dict.fromkeys(loads, state) | dict.fromkeys(("energy", "half_angle", "max_pressure"), position)
+    expected = dict.fromkeys(loads, state) | dict.fromkeys(("energy", "half_angle", "max_pressure", "status"), position)
     assert {name: {names[each] for each in numbers.split()} for name, numbers in dependencies.items()} == expected
-    assert [int(each.get("valueReference")) for each in variables if each.get("name") != "time"] == list(range(1, 26))
+    assert [int(each.get("valueReference")) for each in variables if each.get("name") != "time"] == list(range(1, 27))
 
 
 def test_units_are_powers_of_the_base_units_and_starts_are_in_si(folder):
@@ -143,7 +149,7 @@ def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     state = np.array([[0.0, 0.01, 0.12, 1.0, 0.0, 20.0, 0.0, 1.0, 2.0]])
     load = ELEMENT(*state.reshape(3, 3).tolist())
     wanted = [*load.force, *(part / 1e3 for part in load.moment), load.energy / 1e3, load.half_angle]
-    assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure], rtol=1e-12)
+    assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure, 1.0], rtol=1e-12)
     assert_allclose(states_in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
 
 
@@ -186,6 +192,17 @@ def test_fmpy_compiles_the_sources_of_the_unit(version, folder, fmpy, tmp_path):
     given, reference = table(folder / f"hip{version}_in.csv"), table(folder / f"hip{version}_ref.csv")
     found = fmpy.simulate_fmu(unzipped, fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
     assert_allclose(found["energy"], reference["energy"], rtol=1e-12)
+
+
+def test_a_terminal_has_the_motion_and_the_load_of_the_ball_in_the_form_of_the_standard(folder):
+    with zipfile.ZipFile(folder / "hip3.fmu") as archive:
+        text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")
+    members = [each.get("variableName") for each in fromstring(text).iter("TerminalMemberVariable")]
+    variables = [each for each in description(folder / "hip3.fmu").find("ModelVariables") if each.get("name") != "time"]
+    assert members == [each.get("name") for each in variables if each.get("causality") != "parameter"]
+    fmpy, etree = pytest.importorskip("fmpy"), pytest.importorskip("lxml.etree")
+    schema = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.fromstring(text))
 
 
 GOOD, DISCARD, ERROR = 0, 2, 3
@@ -248,10 +265,11 @@ def test_a_state_of_nan_has_a_status_and_one_message(host):
 
 @needs_compiler
 def test_a_force_beyond_its_validity_or_its_range_is_reported_once(host):
-    for depth in (1e-3, 2e-3, 8e-3):
+    for depth, code in ((5e-5, 0), (1e-3, 1), (2e-3, 1), (8e-3, 4)):
         host.set(position=(0.0, 0.0, depth))
-        status, force = host.get("force[3]")
-        assert (status, np.isfinite(force)) == (GOOD, True)
+        status, (force, contact) = host.get("force[3]", "status")
+        assert (status, np.isfinite(force), contact) == (GOOD, True, code)
+    assert host.directional("status", "position[3]")[1] == 0.0
     assert [text.partition(" beyond")[0] for _, text in host.messages] == ["hess-forsbach is not valid"]
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _COMPILER_NAMES = ("cc", "gcc", "clang")
+_CROSS_COMPILERS = ("x86_64-w64-mingw32-gcc",)
 _SHARED_LIBRARY_FLAGS = ("-shared",) if sys.platform == "win32" else ("-fPIC", "-shared")
 _SYSTEMS = {"linux": "linux", "darwin": "darwin", "win32": "windows"}
 _LIBRARY_ENDINGS = {"windows": ".dll", "darwin": ".dylib"}
@@ -84,16 +85,28 @@ def compiler() -> list[str]:
     return [installed]
 
 
-def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
+def cross_compilers() -> list[list[str]]:
+    """Return the commands of the installed compilers for other platforms; none beside a compiler that CC names."""
+    return [] if os.environ.get("CC") else [[path] for path in filter(None, map(shutil.which, _CROSS_COMPILERS))]
+
+
+def compile_library(
+    sources: Sequence[str],
+    library: Path,
+    folder: Path,
+    options: Sequence[str] = (),
+    program: Sequence[str] = (),
+) -> Platform:
     """Compile C sources of a folder into a shared library, and return the platform in its header.
 
-    The environment variables CC and CFLAGS apply; a cross-compiler builds for another platform than this machine.
+    `program` is the command of the compiler; empty is that of `compiler`. The environment variable CFLAGS applies. A
+    cross-compiler builds for another platform than this machine.
 
     Raises NoCompiler: a missing compiler, a failed one (with its first error message), or an unknown output format.
     """
     flags = _split_environment_variable("CFLAGS")
     command = [
-        *compiler(),
+        *(program or compiler()),
         "-std=c99",
         "-O2",
         *flags,

@@ -99,3 +99,14 @@ class ExportJob:
         """Return the texts of the C program and of the Python module that loads it, by file name."""
         module = fill_template("module.py.txt", **self.template_context)
         return {**self.program_texts(), f"{self.name}.py": module}
+
+    def readme(self, title: str, beyond_range: str = "", notes: str = "") -> str:
+        """Return the text of a page on the use of the files: model, joint, time steps, range and notes."""
+        return fill_template(
+            "readme.txt",
+            title=title,
+            beyond_range=beyond_range or BEYOND[self.beyond],
+            notes=notes,
+            time_steps=str(self.time_steps),
+            **self.template_context,
+        )

@@ -10,7 +10,7 @@ from pathlib import Path
 from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics.ball_centre import Constants
 from ..problem import Joint
-from .c_element import BEYOND, fill_template
+from .c_element import fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .job import NOT_CENTRAL, ExportJob, Texts
 from .law_tables import pivot_texts, table_texts, two_axes_note
@@ -71,14 +71,8 @@ class Target:
 
     def file_texts(self, job: ExportJob) -> Texts:
         """Return the contents of all files of a job by name: those of the program, and a page on their use."""
-        page = fill_template(
-            "readme.txt",
-            title=self.title,
-            beyond_range=self.beyond_range or BEYOND[job.beyond],
-            notes="\n".join(filter(None, (self._omitted_features(job), self.note(job)))),
-            time_steps=str(job.time_steps),
-            **job.template_context,
-        )
+        notes = "\n".join(filter(None, (self._omitted_features(job), self.note(job))))
+        page = job.readme(self.title, self.beyond_range, notes)
         return {**self.texts(job), f"{job.name}_readme.txt": page}
 
     def _omitted_features(self, job: ExportJob) -> str:

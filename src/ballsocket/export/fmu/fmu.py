@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
+from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
@@ -18,7 +19,14 @@ from ...dynamics import ForceElement, PreloadedElement
 from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
-from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
+from ..compiler import (
+    LIBRARY_ENDING,
+    THIS_PLATFORM,
+    NoCompiler,
+    Platform,
+    compile_library,
+    cross_compilers,
+)
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
 from ..tunable import TUNABLES
@@ -100,6 +108,17 @@ def build_description(information: UnitInformation) -> bytes:
     files = SubElement(configuration, "SourceFileSet", language="C99")
     for source in information.sources:
         SubElement(files, "SourceFile", name=source)
+    return _xml_bytes(root)
+
+
+def terminals_description(variables: Sequence[Variable]) -> bytes:
+    """Return the XML file `terminalsAndIcons.xml` of FMI 3.0 as bytes: one terminal with all inputs and outputs."""
+    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    terminal = SubElement(SubElement(root, "Terminals"), "Terminal", name="ball", matchingRule="bus")
+    for variable in variables:
+        if variable.causality != "parameter":
+            name = {"variableName": variable.name, "memberName": variable.name}
+            SubElement(terminal, "TerminalMemberVariable", {**name, "variableKind": "signal"})
     return _xml_bytes(root)
 
 
@@ -317,32 +336,41 @@ class Fmu:
             "modelDescription.xml": self.standard.describe(self.information, variables(self.element))
         }
         files |= {f"sources/{name}": text.encode() for name, text in self.sources.items()}
+        page = escape(self._job.readme(f"functional mock-up unit of FMI {self.standard.version}"))
+        files["documentation/index.html"] = f'<!doctype html><meta charset="utf-8"><pre>{page}</pre>\n'.encode()
+        files["documentation/licenses/license.txt"] = fill_template("license.txt").encode()
         if self.version == 3:
             files["sources/buildDescription.xml"] = build_description(self.information)
-        missing = ""
-        try:
-            platform, binary = self._compile_binary()
+            files["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_description(variables(self.element))
+        binaries, failures = self._compile_binaries()
+        for platform, binary in binaries.items():
             files[f"binaries/{self.standard.folder(platform)}/{self.name}{platform.library_ending}"] = binary
-            if platform != THIS_PLATFORM:
-                missing = (
-                    f"the binary is for {platform}, the platform of its compiler; "
-                    f"the binary for {THIS_PLATFORM} is missing"
-                )
-        except NoCompiler as error:
-            missing = f"{error}; the archive contains the sources without a binary"
+        if not binaries:
+            failures.append("the archive contains the sources without a binary")
+        elif THIS_PLATFORM not in binaries:
+            failures.append(
+                f"the binary is for {', '.join(map(str, binaries))}, the platform of its compiler; "
+                f"the binary for {THIS_PLATFORM} is missing"
+            )
         with write_atomically(Path(path)) as draft, zipfile.ZipFile(draft, "w") as archive:
             for name in sorted(files):
                 entry = zipfile.ZipInfo(name, _ARCHIVE_DATE)
                 entry.external_attr, entry.create_system = 0o644 << 16, 3
                 archive.writestr(entry, files[name], zipfile.ZIP_DEFLATED, 9)
-        return FmuFile(path=Path(path), missing=missing)
+        return FmuFile(path=Path(path), missing="; ".join(failures))
 
-    def _compile_binary(self) -> tuple[Platform, bytes]:
-        """Compile the C sources; return the platform and the bytes of the shared library."""
+    def _compile_binaries(self) -> tuple[dict[Platform, bytes], list[str]]:
+        """Compile the C sources for this machine and by each cross-compiler; return the libraries, and errors."""
+        binaries, errors = {}, []
         with TemporaryDirectory() as temporary:
             folder = Path(temporary)
             for name, text in self.sources.items():
                 (folder / name).write_text(text, encoding="utf-8")
             library = folder / f"{self.name}{LIBRARY_ENDING}"
-            platform = compile_library(self.information.sources, library, folder)
-            return platform, library.read_bytes()
+            for program in ((), *cross_compilers()):
+                try:
+                    platform = compile_library(self.information.sources, library, folder, program=program)
+                    binaries[platform] = library.read_bytes()
+                except NoCompiler as error:
+                    errors.append(str(error))
+        return binaries, errors

@@ -10,7 +10,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.storage.atomic_files import write_text
-from ...dynamics import ForceElement, PreloadedElement
+from ...dynamics import ContactState, ForceElement, PreloadedElement
 from ..tunable import TUNABLES
 
 UNITS: Mapping[str, Mapping[str, int]] = {
@@ -47,6 +47,7 @@ class Variable:
     needs: tuple[int, ...] = ()
 
 
+_STATUSES = [f"{state.value} {state.name.lower().replace('_', ' ')}" for state in ContactState]
 _VECTORS = {
     "position": ("m", "position of the ball centre relative to the socket centre, in axes fixed to the socket"),
     "velocity": ("m/s", "velocity of the ball centre relative to the socket"),
@@ -60,6 +61,7 @@ _SCALARS = {
     "energy": ("J", "elastic energy of the contact"),
     "half_angle": ("rad", "half angle of the contact"),
     "max_pressure": ("Pa", "largest contact pressure"),
+    "status": ("1", f"status of the contact: {', '.join(_STATUSES)}"),
 }
 _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
@@ -153,7 +155,7 @@ def states_in_si(state: Numbers) -> Numbers:
 def reference_loads(element: ForceElement | PreloadedElement, state: Numbers) -> Numbers:
     """Compute the outputs of the Python element at given states, in the order and units of the FMU."""
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
-    scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
+    scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure, numpy.asarray(load.status, dtype=float))
     return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
 
 

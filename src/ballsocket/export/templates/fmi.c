@@ -1,6 +1,6 @@
 /* The joint as an FMU of version $standard, for model exchange and co-simulation. Written by ballsocket $version.
-   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, 10..18 force, moment,
-   energy, half angle and largest pressure, 19..25 parameters. The unit has no continuous states. */
+   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, 10..19 force, moment,
+   energy, half angle, largest pressure and status, 20..26 parameters. The unit has no continuous states. */
 #define FMI $fmi
 
 #include <math.h>
@@ -74,7 +74,7 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 #define UNIT fmi${fmi}$handle c
 #define REFERENCES const fmi${fmi}ValueReference vr[], size_t n
 
-enum { INPUTS = 9, OUTPUTS = 9, PARAMETERS = $parameters, VARIABLES = 1 + INPUTS + OUTPUTS + PARAMETERS };
+enum { INPUTS = 9, OUTPUTS = 10, PARAMETERS = $parameters, VARIABLES = 1 + INPUTS + OUTPUTS + PARAMETERS };
 typedef fmi${fmi}Status result;
 enum { OK = fmi${fmi}OK, WARNING = fmi${fmi}Warning, DISCARD = fmi${fmi}Discard, ERROR = fmi${fmi}Error };
 
@@ -98,7 +98,7 @@ typedef struct {
 
 /* Units of the force element in SI units. */
 static const double input_unit[INPUTS] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0};
-static const double output_unit[OUTPUTS] = {1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1e6};
+static const double output_unit[OUTPUTS] = {1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1e6, 1.0};
 static const double parameter_unit[PARAMETERS] = {$units};
 
 /* Log one message of each level, not one at each step; return the level. */
@@ -177,6 +177,7 @@ static result evaluate(instance *i)
     complaint = ${name}_complaint(&p);
     status = ${name}_load(&p, state, state + 3, state + 6, y, y + 3, y + 6);
     ${name}_contact(state, y + 7, y + 8);
+    y[9] = status;
     for (k = 0; k < OUTPUTS; k++)
         y[k] = complaint ? NAN : y[k] * output_unit[k];
     i->status = complaint ? report(i, ERROR, complaint) : report_status(i, status, state);
@@ -236,7 +237,7 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
                           double *sensitivity)
 {
     instance *i = (instance *)c;
-    double direction[INPUTS] = {0.0}, slope[OUTPUTS], state[INPUTS];
+    double direction[INPUTS] = {0.0}, slope[OUTPUTS] = {0.0}, state[INPUTS];
     ${name}_parameters p;
     int status;
     size_t k;
