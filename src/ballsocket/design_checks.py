@@ -144,7 +144,8 @@ def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
         return Verdict.UNDECIDED, f"Undecided: {_uses(near)}"
     if not any(row.quantity in ("max_pressure", "von_mises") for row in kept):
         return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in undecided)}"
-    return Verdict.KEPT, f"Kept: {_uses(kept[:1])}, the highest ratio"
+    near_limit = ", near the limit" if kept[0].is_near else ""
+    return Verdict.KEPT, f"Kept{near_limit}: {_uses(kept[:1])}, the highest ratio"
 
 
 def unchecked_text(rows: Sequence[Check]) -> str:

@@ -175,3 +175,26 @@ def test_a_server_that_is_killed_and_started_again_heals(browser):
             user.open("?view=gait")  # another link does not get it
             assert user.page.locator("text=walk.csv").count() == 0
             assert not user.errors
+
+
+def test_a_load_slider_is_answered_from_the_curve_of_the_joint_until_the_server_confirms(browser, address):
+    with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
+        user = User(profile, proxy.address).open()
+        user.page.locator("#press-charts svg").first.wait_for()  # the curve comes with them
+        numbers = user.page.locator("#press-numbers")
+        cell = numbers.locator("dd[data-name=max_pressure]")
+
+        def shown():
+            return float(cell.evaluate("(cell) => cell.firstChild.nodeValue"))
+
+        proxy.stop()
+        user.nudge("load", times=3)
+        assert shown() == pytest.approx(pressure(force=3150.0), rel=1e-3)  # between 40 points
+        assert numbers.get_attribute("data-quick") == "yes"
+        user.nudge("clearance")
+        user.nudge("load")  # now of another joint, whose curve is not here
+        assert shown() == pytest.approx(pressure(force=3150.0), rel=1e-3)
+        proxy.go_on()
+        assert user.answered().shows("max_pressure", pressure(force=3200.0, clearance=0.105))
+        assert numbers.get_attribute("data-quick") is None
+        assert not user.errors

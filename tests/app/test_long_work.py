@@ -136,12 +136,37 @@ def test_a_run_that_waits_for_the_processor_goes_on_and_one_that_hangs_ends(monk
     monkeypatch.setattr(running, "processor_seconds", lambda pid: used[0])
     ends = (61.0, 61.0, "60 s of processor time, the"), (661.0, 59.0, "661 s without a result")
     for seconds, processor, why in ends:
-        run, now[0], used[0] = Run(BUSY), 0.0, 59.0
+        run, now[0], used[0] = Run(BUSY), 0.0, 0.0
         assert run.news() is None
-        now[0] = 659.0
+        now[0], used[0] = 659.0, 59.0
         assert run.news() is None
         now[0], used[0] = seconds, processor
         assert why in run.news().why
+
+
+def test_a_worker_that_waits_takes_the_next_run_and_one_that_has_ended_takes_none():
+    workers = running.Workers()
+    workers.prepare()
+    waiting, _ = workers._ready
+    workers.prepare()  # one is enough
+    process, pipe = workers.take()
+    assert process is waiting
+    pipe.send(partial(operator.add, 1))  # a run calls its work with a function for news
+    assert isinstance(pipe.recv(), RunRefused)
+    process.join()
+    workers.prepare()
+    ended = workers._ready[0]
+    ended.kill()
+    ended.join()
+    process, _ = workers.take()
+    assert process.is_alive()
+    assert process is not ended
+    process.kill()
+    process.join()
+    workers.prepare()
+    waiting = workers._ready[0]
+    workers.close()
+    assert not waiting.is_alive()
 
 
 def test_processor_time_includes_that_of_children():

@@ -66,6 +66,10 @@ def played(page):
     return json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "gait-courses"))[1]))
 
 
+def drawn(page):
+    return [json.loads(unescape(data)) for data in re.findall(r"data-chart='([^']*)'", told(page, "gait-courses"))]
+
+
 def viewed(page):
     return json.loads(re.search(r"data-viewer='([^']*)'", told(page, "gait-viewer"))[1])
 
@@ -139,12 +143,12 @@ def test_rim_contact_is_named_and_red(page):
     edge, numbers = simulated(page).edge, told(page, "gait-numbers")
     share = f"Rim contact in {100 * (edge <= 0).mean():.0f} % of the cycle (9 to 19 %, 44 to 53 %)"
     assert f"<p class='trust no'>✗ {share}" in numbers
-    assert told(page, "gait-courses").count('class="flagged"') == 2
+    assert [len(chart["flagged"]) for chart in drawn(page)] == [0, 0, 2, 0, 0]
     assert numbers.index("✗ Exceeded: reach of the contact") < numbers.index("✓ kept")
     assert played(page)["rim"] == (edge <= 0).tolist()
     free = opened(LINK.replace("inclination=45", "inclination=30"))
     assert "✓ No rim contact" in told(free, "gait-numbers")
-    assert "flagged" not in told(free, "gait-courses")
+    assert not any(chart["flagged"] for chart in drawn(free))
 
 
 @pytest.mark.long
@@ -303,7 +307,7 @@ def test_two_designs_are_beside_each_other_in_one_scale():
     assert "largest pressure, new [psi]" in wear_numbers(found, inches)
     chart = penetration_chart(found)
     assert "one: 200 µm after 2 million cycles, 100 µm to 400 µm" in chart
-    assert chart.count('opacity="0.2"') == 2
+    assert chart.count('"band":[[') == 2
     scales = re.findall(r"worn depth \[µm\].*?</svg>", depth_maps(found), flags=re.DOTALL)
     assert len(scales) == 2
     assert scales[0].split("worn depth")[-1] == scales[1].split("worn depth")[-1]

@@ -10,8 +10,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from . import results
-from .jobs import Job
-from .running import MAX_SECONDS, Reached, RunFinished, RunRefused, Work
+from .jobs import Job, call_later
+from .running import MAX_SECONDS, PREPARE_AFTER, WORKERS, Reached, RunFinished, RunRefused, Work
 from .state.screen import Screen
 from .view import View
 from .widgets.words import alert
@@ -50,6 +50,7 @@ class LongWork:
     _start: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
+        call_later(PREPARE_AFTER, WORKERS.prepare)
         self._job = Job(lambda key, news: self.page.attempt(partial(self._hear, key, news)), self.longest)
 
     def show(self, screen: Screen) -> None:
@@ -118,6 +119,7 @@ class LongWork:
             self.put_button()
         elif isinstance(news, RunFinished):
             results.RESULTS.put(question, news.value)
+            call_later(PREPARE_AFTER, WORKERS.prepare)
             self._shown = news.value
             self.show(self.page.screen)
 

@@ -27,6 +27,7 @@ from .solving import heavy, solved, solved_curve
 from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
+_LOADS = numpy.linspace(0.0, 1.0, 40) ** 2
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
 _WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
@@ -93,6 +94,15 @@ def curve(contact: Contact, largest: float) -> Contact | None:
 def _cached_curve(joint: Joint, name: str, half_angle: float) -> Contact | None:
     try:
         return catalogue[name].press(joint, half_angle=half_angle * _POINTS)
+    except OutsideDomainError:
+        return None
+
+
+@lru_cache(maxsize=256)
+def load_curve(joint: Joint, name: str, kind: str, largest: float) -> Contact | None:
+    """Press a joint by loads from zero to the largest, dense at zero; None without a result."""
+    try:
+        return catalogue[name].press(joint, **{kind: largest * _LOADS})
     except OutsideDomainError:
         return None
 

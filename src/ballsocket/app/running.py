@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from importlib import import_module
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
@@ -67,6 +68,43 @@ class RunFinished:
     value: Any
 
 
+class Workers:
+    """Processes for one run each, of which one is started before it is needed."""
+
+    def __init__(self) -> None:
+        self._ready: tuple[Any, Connection] | None = None
+
+    def prepare(self) -> None:
+        """Start a process that waits for its work, unless one waits already."""
+        self._ready = self._ready or self._started()
+
+    def take(self) -> tuple[Any, Connection]:
+        """Return a process and the connection to it, which takes the work and brings the news."""
+        ready, self._ready = self._ready, None
+        return ready if ready is not None and ready[0].is_alive() else self._started()
+
+    def close(self) -> None:
+        """End the process that waits."""
+        if self._ready is not None:
+            process, pipe = self._ready
+            process.kill()
+            process.join()
+            pipe.close()
+            self._ready = None
+
+    def _started(self) -> tuple[Any, Connection]:
+        context = get_context("spawn")
+        pipe, there = context.Pipe()
+        process = context.Process(target=_run, args=(there,), daemon=True)
+        with limit_threads():
+            process.start()
+        there.close()
+        return process, pipe
+
+
+WORKERS = Workers()  # of all pages
+
+
 @dataclass(eq=False)
 class Run:
     """Run of some work, at most `longest` seconds of processor time; poll `news`, which first waits in the queue."""
@@ -76,6 +114,7 @@ class Run:
     _process: Any = field(default=None, init=False)
     _pipe: Connection | None = field(default=None, init=False)
     _start: float = field(default=0.0, init=False)
+    _before: float = field(default=0.0, init=False)
 
     def news(self) -> Any:
         """Return the news since the last call, or None; the last news is `RunFinished` or `RunRefused`."""
@@ -91,13 +130,13 @@ class Run:
         if self._pipe.poll():
             try:
                 message = self._pipe.recv()
-            except EOFError:
+            except (EOFError, ConnectionError):
                 message = RunRefused(why="the process ended unexpectedly, perhaps for lack of memory")
             if isinstance(message, RunFinished | RunRefused):
                 self.stop()
             return message
         taken = time.monotonic() - self._start
-        if taken > self.longest and processor_seconds(self._process.pid) > self.longest:
+        if taken > self.longest and processor_seconds(self._process.pid) - self._before > self.longest:
             self.stop()
             return RunRefused(why=f"stopped after {self.longest:g} s of processor time, the limit of a run")
         if taken > self.longest + MAX_WAITING_SECONDS:
@@ -106,13 +145,11 @@ class Run:
         return None
 
     def _begin(self) -> None:
-        context = get_context("spawn")
-        pipe, there = context.Pipe(duplex=False)
-        process = context.Process(target=_run, args=(there, self.work), daemon=True)
-        with limit_threads():
-            process.start()
-        there.close()
+        process, pipe = WORKERS.take()
         self._process, self._pipe, self._start = process, pipe, time.monotonic()
+        self._before = processor_seconds(process.pid)  # of its start
+        with suppress(ConnectionError):  # of a worker that has ended: `news` finds the end of its pipe
+            pipe.send(self.work)
 
     def stop(self) -> None:
         """End the run, and free its place for the next."""
@@ -122,6 +159,10 @@ class Run:
             self._process.join()
         if self._pipe is not None:
             self._pipe.close()
+
+
+PREPARE_AFTER = 2.0  # s after the opening of a page, or after a run
+_IMPORTED = (".views.hip_runs", ".views.finite_elements", ".views.real_cup")  # modules of most runs
 
 
 def processor_seconds(pid: int) -> float:
@@ -137,9 +178,16 @@ def processor_seconds(pid: int) -> float:
     return total
 
 
-def _run(pipe: Connection, work: Work) -> None:
+def _run(pipe: Connection) -> None:
     exit_with_parent()
     limit_memory()
+    for module in _IMPORTED:
+        if not pipe.poll():
+            import_module(module, __package__)
+    try:
+        work: Work = pipe.recv()
+    except EOFError:  # nothing was to be done
+        return
     try:
         pipe.send(RunFinished(work(pipe.send)))
     except (ValueError, OutsideDomainError, ImportError) as error:

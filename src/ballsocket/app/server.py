@@ -27,6 +27,7 @@ from ..core.checks import require, shown
 from .channel import read_request
 from .jobs import PageThread
 from .pressing import pressed
+from .running import WORKERS
 from .session import Page
 from .state.screen import START
 from .view import FILE_KINDS
@@ -293,6 +294,7 @@ class ExplorerServer:
         self._server.stop()
         for connection in list(self.application.settings["sockets"].pages):
             connection.on_close()
+        WORKERS.close()
 
 
 def server(

@@ -137,14 +137,20 @@ class Check:
         return verdict if self.trusted else max(verdict, Verdict.UNDECIDED)
 
     @property
+    def is_near(self) -> bool:
+        """True if the verdict is kept at more than 90 % of the capacity."""
+        return self.ratio is not None and self.verdict is Verdict.KEPT and self.ratio.value > _NEAR
+
+    @property
     def result(self) -> str:
         """Sign and word of the verdict, with the reason for an undecided one."""
-        reason = ""
+        reason = ", near the limit" if self.is_near else ""
         if self.verdict is Verdict.UNDECIDED:
             reason = ": limit not known" if self.capacity is None else _UNTRUSTED if not self.trusted else _BAR
         return f"{self.verdict.sign} {self.verdict.word}{reason}"
 
 
+_NEAR = 0.9  # ratio of demand to capacity from which a kept limit is near
 _UNTRUSTED, _BAR = ": outside the range of the model", ": the error bar contains the limit"
 
 

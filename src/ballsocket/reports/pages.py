@@ -200,7 +200,7 @@ def _cells(row: Check, write: Writer) -> dict[str, Any]:
         "capacity": "–" if row.capacity is None else f"{write(quantity, row.capacity)} ({row.limit})",
         "ratio": "–" if ratio is None else f"{percent(ratio.value)} %",
         "width": f"{min(100.0, 100 * ratio.value) if ratio else 0.0:.1f}",
-        "state": "unknown" if ratio is None else row.verdict.word,
+        "state": "unknown" if ratio is None else "near" if row.is_near else row.verdict.word,
         "result": row.result,
         "source": row.source,
     }

@@ -22,6 +22,7 @@ export function element(tag, attributes = {}, ...content) {
 function edit(name, value) {
   stale.add(name);
   ask("edit", name, value, { units: inputs.get(name).units }); // another choice of units may be on its way
+  document.dispatchEvent(new CustomEvent("edited", { detail: { name, value } }));
 }
 const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
 /** @param {number} value  @param {Field} field */

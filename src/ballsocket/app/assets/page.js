@@ -1,5 +1,6 @@
 // @ts-check
 // The page: what the server answers is shown, and what a server cannot do: clipboard, files, the theme, news.
+import { drawCharts } from "./charts.js";
 import { ask, listen } from "./connection.js";
 import { arrange, showField } from "./fields.js";
 import { isVisit, record, redo, theme, undo } from "./history.js";
@@ -49,6 +50,7 @@ function fill(name, html) {
   filled.add(name);
   const handle = element.contains(document.activeElement) ? document.activeElement.getAttribute("data-drag") : null;
   element.innerHTML = html;
+  drawCharts(element);
   const again = handle && element.querySelector(`[tabindex][data-drag="${handle}"]`);
   if (again) again.focus(); // a handle that is moved by keys is a new one after each answer
 }

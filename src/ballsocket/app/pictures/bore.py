@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -235,5 +234,5 @@ def viewer(name: str, label: str, scale: str, **data: Any) -> str:
     keys = "drag or arrow keys turn it, wheel or + and - zoom, Home looks into its opening"
     return (
         f'<div class="viewer" data-name="{name}" data-label="{escape(label)}; {keys}" '
-        f"data-viewer='{json.dumps(data, separators=(',', ':'))}'>{scale}</div>"
+        f"{svg.attribute('viewer', data)}>{scale}</div>"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import pairwise
@@ -14,6 +15,12 @@ from contourpy import FillType, LineType, contour_generator
 Numbers = numpy.ndarray
 _STEPS = 240
 _DIGIT_WIDTH = 12.0  # pixels of a digit in a number below a row of colours in the largest type, with space between
+
+
+def attribute(name: str, data: Any) -> str:
+    """Return plain data as the attribute "data-<name>" of an element, for a script."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("&", "&amp;").replace("'", "&#39;")
+    return f"data-{name}='{text}'"
 
 
 def path(x: numpy.ndarray, y: numpy.ndarray) -> str:

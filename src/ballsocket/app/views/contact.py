@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 from ...comparison import Comparison, successful_contacts
 from ...contact import Contact
-from ...core.quantities import BEARING, FIELD
+from ...core.quantities import BEARING, CONTACT, FIELD
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
 from ...model_catalogue import catalogue, reference
@@ -23,10 +23,11 @@ from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
 from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..long_view import LongView
-from ..pictures.chart import swatch
+from ..pictures.chart import plain_numbers, swatch
 from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ..pressing import fine_curves, is_waiting, press_charts, pressed
+from ..pressing import fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..running import Work
+from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
 from ..widgets.controls import Control, chosen, fields_of, segments, several
@@ -74,6 +75,8 @@ class Press(LongView):
     def begin(self) -> None:
         super().begin()
         self._real: OffAxisContact | None = None
+        self._curve_key: Hashable = None
+        self._curve: dict[str, Any] | None = None  # numbers over the load, from which a page answers at once
         self._requested: Hashable = None  # bore for which the real cup was requested
         self.actions["press.run"] = self._request_cup
 
@@ -99,7 +102,9 @@ class Press(LongView):
         self._real = None
         self.expect("charts", "table")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
-        if self._needs_cup(screen, comparison):
+        needs_cup = bool(self._needs_cup(screen, comparison))
+        self.channel.put("curve", None if needs_cup or self._curve_key != self._key_of(screen) else self._curve)
+        if needs_cup:
             self.long.show(screen)
         else:
             self._show_axial(screen, comparison)
@@ -196,7 +201,25 @@ class Press(LongView):
             self.put(charts=_AXIAL_CURVES + charts, table=models_table(_with_real(self._real, comparison), reading))
         else:
             self.put(charts=charts, table=models_table(comparison, reading))
+            self._put_curve(screen)
             self.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
+
+    def _key_of(self, screen: Screen) -> tuple[Any, ...]:
+        """Return what the curve depends on: joint, model, kind and largest load of the slider, and the units."""
+        (kind,) = screen.file.load
+        largest = self.page.controls["load"].field["high"] / screen.reading.unit(CONTACT[kind]).factor
+        return screen.file.joint, screen.answered_by, kind, largest, screen.reading
+
+    def _put_curve(self, screen: Screen) -> None:
+        """Send the numbers over the load, from zero to the end of the slider, unless the page has them."""
+        key, reading = self._key_of(screen), screen.reading
+        if key == self._curve_key or heavy(screen.file.joint, screen.answered_by):
+            return
+        contact, self._curve_key, self._curve = load_curve(*key[:4]), key, None
+        if contact is not None:
+            shown = {name: plain_numbers(reading.values_of(contact, CONTACT[name]), 5) for name in CONTACT}
+            self._curve = {"load": shown.pop(key[2]), "values": shown}
+        self.channel.put("curve", self._curve)
 
     def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
         by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))

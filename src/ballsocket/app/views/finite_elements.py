@@ -13,12 +13,15 @@ import numpy
 
 from ...comparison import relative_deviation
 from ...contact.describe import to_summary
+from ...core.answers import Check
 from ...core.quantities import BEARING, CONTACT, JOINT
 from ...core.validity import OutsideDomainError
+from ...design_checks import checks_of
 from ...elasticity.finite_elements.model import MeshedContact
 from ...elasticity.finite_elements.section import Part
 from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference
+from ...question import complete
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table
 from ...reports.section_plots import section_figure
@@ -35,7 +38,7 @@ from ..view import Document, field_places
 from ..widgets.controls import Control
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading, number_text
-from ..widgets.words import distinct_quantities, notes_list, percent
+from ..widgets.words import checked, distinct_quantities, notes_list, percent
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
@@ -47,6 +50,9 @@ _TO_COME = (
 _WIDTH, _MIDDLE, _REACH = 480.0, 240.0, 225.0
 _TOP = 34.0
 _MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
+
+_BALL_DEPTH = 0.3
+"""Depth over the radius to which the stress of the ball is drawn: deeper it depends on how the ball is pushed."""
 
 _MAX_SHARE = 99.5
 """Percentile of the stresses in ball or backing at the end of the colours, which leaves out sharp corners."""
@@ -135,7 +141,7 @@ def _numbers(result: ElementResult, screen: Screen) -> str:
         rows.append(row)
     heads = ["quantity", "finite elements", "mesh error", "exact", "difference"]
     return (
-        f"<div class='narrow'>{table(heads, rows)}</div>"
+        f"{checked(result.checks, screen.reading)}<div class='narrow'>{table(heads, rows)}</div>"
         f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact solution is that of a "
         f"complete shell, without a rim.</p>{notes_list(result.notes, screen.reading)}"
     )
@@ -177,13 +183,19 @@ def section_drawing(contact: MeshedContact) -> SectionDrawing:
             peak = (
                 section.peak_stress.von_mises
                 if kind == "liner"
-                else max(float(numpy.percentile(part.stress.von_mises, _MAX_SHARE)) for part in drawn)
+                else max(float(numpy.percentile(part.stress.von_mises[_is_shown(part)], _MAX_SHARE)) for part in drawn)
             )
             levels = svg.levels_between(0.0, peak, 6)
             paths = zip(*(_bands(part, levels, project) for part in drawn), strict=True)
             bands[kind] = StressBands(levels=tuple(levels), paths=tuple("".join(parts) for parts in paths))
     mesh = "".join(_edges(part, project(part.position, -1.0)) for part in parts)
     return SectionDrawing(height=_TOP + scale * (highest - lowest) + 8, mesh=mesh, bands=bands)
+
+
+def _is_shown(part: Part) -> numpy.ndarray:
+    """Return True at the nodes whose stress is drawn: those near the surface of the ball, and all of other parts."""
+    radius = numpy.hypot(*part.position)
+    return numpy.asarray(radius >= (1 - _BALL_DEPTH) * radius.max() * part.name.startswith("ball"))
 
 
 def _edges(part: Part, points: numpy.ndarray) -> str:
@@ -203,6 +215,7 @@ def _bands(part: Part, levels: list[float], project: Any) -> list[str]:
 
     a, b, c, d = part.elements[:4]
     triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
+    triangles = triangles[_is_shown(part)[triangles].all(axis=-1)]
     triangulation = Triangulation(part.position[0], part.position[1], triangles)
     ends = [*levels[:-1], max(levels[-1], float(part.stress.von_mises.max()) * (1 + 1e-9))]
     filled = Figure().subplots().tricontourf(triangulation, part.stress.von_mises, levels=ends)
@@ -256,6 +269,7 @@ class ElementResult:
     elements: int
     seconds: float
     notes: tuple[str, ...]
+    checks: tuple[Check, ...]
     drawing: SectionDrawing
     pressures: dict[str, tuple[numpy.ndarray, numpy.ndarray]]
     png: bytes
@@ -291,6 +305,7 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
         elements=contact.mesh.elements,
         seconds=time.perf_counter() - start,
         notes=tuple(contact.notes),
+        checks=checks_of(contact, complete(file)[0].cup, float(contact.von_mises)),
         drawing=section_drawing(contact),
         pressures={name: profile(pressed) for name, pressed in contacts.items() if pressed is not None},
         png=figure_bytes(figure),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
@@ -25,8 +24,8 @@ from ...reports.pages import picture, table
 from ...reports.style import BLUE, INK, LineStyle
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
-from ..pictures.chart import Curve, chart, legend
-from ..pictures.svg import levels_between
+from ..pictures.chart import Curve, chart, legend, plain_numbers
+from ..pictures.svg import attribute, levels_between
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
@@ -286,15 +285,14 @@ def gait_charts(result: GaitResult, film: GaitFilm | None, reading: Reading) -> 
     """Return the charts of a cycle, and the numbers with which the page plays it."""
     charts = courses_of(result, film, reading)
     listed = [
-        {"name": course.name, "unit": course.unit(reading).text, "values": _plain(values, 5), "chart": number}
+        {"name": course.name, "unit": course.unit(reading).text, "values": plain_numbers(values, 5), "chart": number}
         for number, charted in enumerate(charts)
         for course, values in charted
     ]
-    data = {"phase": _plain(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
+    data = {"phase": plain_numbers(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
     drawn = "".join(_chart(charted, result, reading) for charted in charts)
     pending = "" if film is not None else "".join(_empty_chart(charted, reading) for charted in _FILM_CHARTS)
-    numbers = escape(json.dumps(data, separators=(",", ":")), quote=True)
-    return f"<div data-player='{numbers}'></div>{drawn}{pending}"
+    return f"<div {attribute('player', data)}></div>{drawn}{pending}"
 
 
 def empty_charts(reading: Reading) -> str:
@@ -400,7 +398,3 @@ def flat_bore(result: GaitResult, film: GaitFilm | None, file: JointFile, readin
     phase, highest = result.phase[instant], number_text(nodes.max())
     words = f"{label} at {phase:.1f} % of the cycle, seen from the opening, up to {highest}"
     return load_bore(field, words, result.load[instant])
-
-
-def _plain(values: numpy.ndarray, digits: int) -> list[float | None]:
-    return [float(f"{value:.{digits}g}") if numpy.isfinite(value) else None for value in values.tolist()]

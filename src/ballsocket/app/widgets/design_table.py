@@ -168,7 +168,7 @@ def _ratio(check: Check | None) -> Cell:
         return Cell(text="–", kind="quiet")
     bar = f"estimate, {range_text(check.ratio)}" if check.ratio.is_estimate else ""
     text = f"{check.verdict.sign} {100 * check.ratio.value:.0f} %"
-    return Cell(text=text, difference=bar, kind=VERDICT_KINDS[check.verdict])
+    return Cell(text=text, difference=bar, kind="doubt" if check.is_near else VERDICT_KINDS[check.verdict])
 
 
 def _validity(design: ComparedDesign, reading: Reading) -> Cell:

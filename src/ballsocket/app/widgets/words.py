@@ -184,7 +184,8 @@ def headline(
 def checked(rows: Sequence[Check], reading: Reading) -> str:
     """Return the verdict on checks in one sentence, and their table, as HTML."""
     verdict, sentence = verdict_of(rows)
-    status = f"<p class='verdict {VERDICT_KINDS[verdict]}' role='status'>{verdict.sign} {escape(sentence)}</p>"
+    kind = "doubt" if verdict is Verdict.KEPT and any(row.is_near for row in rows) else VERDICT_KINDS[verdict]
+    status = f"<p class='verdict {kind}' role='status'>{verdict.sign} {escape(sentence)}</p>"
     unchecked = f"<p class='quiet'>N{escape(text[1:])}</p>" if (text := unchecked_text(rows)) else ""
     return f"{status}{unchecked}{checks_html(rows, reading.with_unit) if rows else ''}"
 
