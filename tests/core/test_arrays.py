@@ -5,8 +5,14 @@ import math
 import numpy as np
 import pytest
 
+import ballsocket as bs
 from ballsocket.core import arrays
 from ballsocket.core.stress import Stress
+from ballsocket.hip import KelvinVoigtChain
+from ballsocket.hip.measured_wear import MeasuredWear
+from ballsocket.hip.simulator_cycles import iso_14242_1
+from ballsocket.identification.measured import Measured
+from ballsocket.planning import PointCloud
 
 VALUES = np.array([0.0, 0.2, 0.7, 1.0, 2.5])
 
@@ -125,3 +131,35 @@ def test_principal_stresses_are_eigenvalues_and_hydrostatic_pressure_has_no_von_
     state = Stress(radial=pressure, meridional=pressure, hoop=pressure, shear=0.0 * pressure)
     assert state.von_mises == 0.0
     assert state.principal == pytest.approx((-5.0, -5.0, -5.0))
+
+
+def _law(numbers):
+    return KelvinVoigtChain(compliances=numbers, times=numbers + 1.0).elements
+
+
+OWNERS = {
+    "joint": lambda numbers: bs.joints["hip-28"].replace(clearance=numbers).clearance,
+    "material": lambda numbers: bs.Material(young=numbers, poisson=0.4).young,
+    "measured": lambda numbers: Measured(quantity="indentation", values=numbers, force=numbers).force,
+    "wear": lambda numbers: MeasuredWear(quantity="volume", values=numbers, cycles=numbers).values,
+    "points": lambda numbers: PointCloud(numbers[:, None]).points[:, 0],
+    "law": _law,
+    "orientations": lambda numbers: bs.orient(bs.joints["hip-28"], force=0.0, inclination=numbers / 3).inclination * 3,
+}
+
+
+@pytest.mark.parametrize("make", OWNERS.values(), ids=OWNERS)
+def test_an_array_that_its_caller_uses_again_changes_nothing(make):
+    numbers = np.array([0.1, 0.2])
+    stored = make(numbers)
+    numbers[:] = 9.0
+    assert np.ravel(stored)[:2] == pytest.approx([0.1, 0.2])
+
+
+def test_fields_of_results_are_read_only():
+    oriented = bs.orient(bs.joints["hip-28"], force=0.0, inclination=[0.1, 0.2], anteversion=0.1)
+    forces = iso_14242_1(12).forces
+    error = bs.HessForsbach().press(bs.joints["hip-28"], force=np.array([1e3, 2e3])).error["von_mises"]
+    for array in (oriented.max_pressure, oriented.inclination, forces, error):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0

@@ -61,6 +61,7 @@ FORMS = [  # text, encoding, number of lines that are left out
     ("time_s;force_N;indentation_um\n0;300;10\n0.25;1'250.5;25.5\n0.5;2’000;40\n", "cp1252", 0),
     ('time_s,force_N,indentation_um\n"0","300","10"\n"0,25","1250,5","25,5"\n"0,5","2000","40"\n', "utf-8", 0),
     (HEADS + "0e0,3E+2,1.e1\n25e-2,1.2505e3,+25.5\n.5,2000.,40\n", "utf-8", 0),
+    ("time_s;force_N;indentation_m\n0;3.000e2;1.000e-5\n0.250;1.2505e3;2.550e-5\n0.500;2.000e3;4.000e-5\n", "utf-8", 0),
     ("# made by hand\n\n" + HEADS + "0,300,10\n# a pause\n0.25,1250.5,25.5\n\n,,\n0.5,2000,40\n", "utf-8", 3),
     (HEADS + POINTS + "\n# end\n,,\n-,-,n/a\n", "utf-8", 1),
     (HEADS + POINTS + "\nmean of all,see page 2,\n1,2,3\n", "utf-8", 2),
@@ -195,7 +196,7 @@ def test_all_files_that_name_a_table_have_the_keys_columns_and_skip(tmp_path):
     write(tmp_path, "\n".join(["Test 1", "Last;Schritt;T", "kN;mm;°C", "0,3;0,1;20", "2;0,05;20"]), name="rows.csv")
     study = 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "rows.csv"\n' + keys % "clearance"
     first = run("study", str(write(tmp_path, study, name="study.toml"))).stdout.splitlines()[0]
-    assert first == "hertz, 2 row; rows.csv: 2 rows read, left out 1 line above the heads"
+    assert first == "hertz, 2 rows; rows.csv: 2 rows read, left out 1 line above the heads"
     refused = run("study", str(write(tmp_path, study.replace('skip = "T"', ""), name="bad.toml"))).stderr
     assert "column 'T" in refused
     assert "joint file" not in refused  # it is the right command

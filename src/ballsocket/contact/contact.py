@@ -177,7 +177,7 @@ class Contact(Outcome):
         errors = super().error
         if "max_pressure" in errors:
             ratio = self._mask_failed(lambda: strength.von_mises_error(self))
-            errors["von_mises"] = (1 + ratio) * (1 + errors["max_pressure"]) - 1
+            errors["von_mises"] = arrays.read_only((1 + ratio) * (1 + errors["max_pressure"]) - 1)
         return errors
 
     def _compute_von_mises(self) -> Array:

@@ -1,4 +1,4 @@
-"""Records: results whose NumPy arrays cannot be changed, in their fields and in their cached properties."""
+"""Records: NumPy arrays that cannot be changed, in the fields and cached properties of results, and in inputs."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ class Record:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             object.__setattr__(self, name, arrays.read_only(value))
+
+
+class Input:
+    """Base class of frozen dataclasses of inputs: the NumPy arrays in their fields are read-only copies."""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            object.__setattr__(self, name, arrays.owned(value))
 
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_number, require
 from ..core.display import counted
+from ..core.records import Record
 from ..core.sources import Source
 from ..core.unit_systems import Sentence, with_error
 from . import restitution as relations
@@ -126,7 +127,7 @@ GRAVITY = 9806.65  # acceleration of gravity in mm/s²
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DampingEstimate:
+class DampingEstimate(Record):
     """Damping estimated from measured coefficients of restitution.
 
     Attributes

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.records import Record
 from ..core.sources import Source
 from .element import ForceElement
 from .load import Load
@@ -18,7 +19,7 @@ TONNE = 1e-3  # tonnes in a kilogram: N, mm, s and t form a consistent system
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Motion:
+class Motion(Record):
     """Simulated motion of a ball over time.
 
     Without bristles and adhesion it is computed by a method of order 2: errors of positions and phases fall with the

@@ -24,13 +24,13 @@ _NO_NUMBER = frozenset(("", "-", "--", "---", "[-]", "(-)", "n/a", "na", "#n/a",
 # possessive quantifiers (*+, ++) keep the matching time proportional to the length
 _FORMS = {
     mark: re.compile(
-        rf"[-+]?(?:(?:[1-9]\d{{0,2}}(?:[{other}{_BLANKS}]\d{{3}})++|\d++)(?:{re.escape(mark)}\d*+)?"
-        rf"|{re.escape(mark)}\d++)(?:[eE][-+]?\d{{1,4}})?",
+        rf"[-+]?(?:[1-9]\d{{0,2}}(?:[{other}{_BLANKS}]\d{{3}})++(?:{re.escape(mark)}\d*+)?"
+        rf"|(?:\d++(?:{re.escape(mark)}\d*+)?|{re.escape(mark)}\d++)(?:[eE][-+]?\d{{1,4}})?)",
         re.ASCII,
     )
     for mark, other in (_MARKS, _MARKS[::-1])
 }
-"""Numbers with a decimal mark, and with the other mark or blanks between thousands."""
+"""Numbers with a decimal mark, and with the other mark or blanks between thousands, which exclude an exponent."""
 
 _ANY_FORM = re.compile("|".join(form.pattern for form in _FORMS.values()), re.ASCII)
 

@@ -10,6 +10,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.display import counted
+from ..core.records import cached_array
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
@@ -60,7 +61,7 @@ class CupFrame:
         """Cycle for the cup's side of the body: the given cycle, mirrored for a left cup."""
         return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
 
-    @cached_property
+    @cached_array
     def forces(self) -> Numbers:
         """Forces of the ball on the socket in N at all instants, in the cup's frame: (instants, 3)."""
         forces = self.side_cycle.forces
@@ -71,7 +72,7 @@ class CupFrame:
         """Angles in rad between the forces and the dome's pole: (instants,)."""
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
-    @cached_property
+    @cached_array
     def _load_mask(self) -> Numbers:
         magnitudes = self.cycle.force_magnitudes
         return numpy.asarray(magnitudes > _MIN_RELATIVE_FORCE * max(float(magnitudes.max()), 1e-300))
@@ -91,7 +92,7 @@ class CupFrame:
         """Direction of the spring force in the cup's frame, the first axis of the cycle's frame: (3,)."""
         return numpy.array([1.0, 0.0, 0.0] if self.cycle.frame is Frame.CUP else numpy.array(self.placed.frame)[:, 0])
 
-    @cached_property
+    @cached_array
     def lateral_stiffness(self) -> Numbers:
         """Stiffness matrix of the cycle's lateral spring in N/mm: (3, 3), zero without a spring.
 
@@ -104,7 +105,7 @@ class CupFrame:
         """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
         return self.loads - displacement @ self.lateral_stiffness
 
-    @cached_property
+    @cached_array
     def _instants_beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load points beyond the rim."""
         beyond_rim = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
@@ -130,7 +131,7 @@ class CupFrame:
         """Polar angle in rad from the dome's pole to the end of the bore."""
         return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
 
-    @cached_property
+    @cached_array
     def loaded(self) -> Numbers:
         """Indices of the instants in which the ball is pressed into the bore: (loaded,)."""
         mask = self._load_mask.copy()
@@ -146,7 +147,7 @@ class CupFrame:
         ]
         return tuple((name, indices) for name, indices in loads if len(indices))
 
-    @cached_property
+    @cached_array
     def loads(self) -> Numbers:
         """Forces in N at the loaded instants, in the cup's frame: (loaded, 3)."""
         return numpy.ascontiguousarray(self.forces[self.loaded])
@@ -157,7 +158,7 @@ class CupFrame:
         magnitudes = numpy.linalg.norm(self.loads, axis=1)
         return numpy.flatnonzero(magnitudes == magnitudes.max(initial=0.0))[:1]
 
-    @cached_property
+    @cached_array
     def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
         return _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments[self.loaded])

@@ -14,6 +14,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_whole_number, require
 from ..core.kinds import Kind
+from ..core.records import cached_array
 from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
 
 DEFAULT_STEPS = 100  # number of time steps of a cycle, unless another is set
@@ -126,7 +127,7 @@ class Cycle:
         """Phases from 0 to 1 at the midpoints of the steps: (steps,)."""
         return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
-    @cached_property
+    @cached_array
     def forces(self) -> Numbers:
         """Force vectors in N at the midpoints of the steps: (steps, 3)."""
         return self._forces_at(self.phases)
@@ -146,24 +147,24 @@ class Cycle:
         """Largest magnitude of the force in N during the cycle, also between the midpoints of steps."""
         return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _PEAK_SAMPLES + 1)), axis=1).max())
 
-    @cached_property
+    @cached_array
     def force_magnitudes(self) -> Numbers:
         """Magnitudes of the forces in N at the midpoints of the steps: (steps,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
-    @cached_property
+    @cached_array
     def rotations(self) -> Numbers:
         """Rotation matrices of the ball at the ends of the steps (steps + 1, 3, 3); the last equals the first."""
         angles = numpy.asarray(self.angles(numpy.arange(self.n_steps) / self.n_steps), dtype=float).T
         matrices = rotation_matrices(angles, self.order)
         return numpy.concatenate([matrices, matrices[:1]])
 
-    @cached_property
+    @cached_array
     def midpoint_rotations(self) -> Numbers:
         """Rotation matrices of the ball at the midpoints of the steps: (steps, 3, 3)."""
         return rotation_matrices(numpy.asarray(self.angles(self.phases), dtype=float).T, self.order)
 
-    @cached_property
+    @cached_array
     def rotation_increments(self) -> Numbers:
         """Rotation vectors in rad of the ball during each step: (steps, 3)."""
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))

@@ -15,6 +15,7 @@ from ..contact.strength import rim_errors
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.display import OneLine, html_list
+from ..core.records import cached_array
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
@@ -161,7 +162,7 @@ class HipSetup(OneLine):
         """Grid of cells on the ball, with rings about the axis to the front: cells in contact have similar widths."""
         return even_grid(pi, self.ring_width)
 
-    @cached_property
+    @cached_array
     def ball_areas(self) -> Numbers:
         """Areas of the ball's cells in mm²: (cells,)."""
         return numpy.repeat(self.ball_grid.areas[:, 0], self.ball_grid.meridians) * float(self.joint.ball_radius) ** 2
@@ -260,7 +261,7 @@ class HipSetup(OneLine):
             for (activity, _), row, (low, high), instant in zip(frame.activities, worst, errors, instants, strict=True)
         )
 
-    @cached_property
+    @cached_array
     def unworn_worst_contacts(self) -> Numbers:
         """Table of the contact of largest pressure of each activity in the first cycle."""
         return self.worst_contacts(self.unworn)
@@ -281,7 +282,7 @@ class HipSetup(OneLine):
             return exposure
         return exposure.select_contact(self._wearing_cells if cells is None else self._wearing_cells[:, cells])
 
-    @cached_property
+    @cached_array
     def _wearing_cells(self) -> Numbers:
         """Mask (loaded, cells) of the cells that wear, by the film on the unworn bore."""
         limit = self.film_limit

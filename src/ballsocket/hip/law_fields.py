@@ -128,7 +128,10 @@ class Law(ABC):
 
     def __post_init__(self) -> None:
         for law_number in self.law_fields():
-            law_number.check(getattr(self, law_number.name))
+            value = getattr(self, law_number.name)
+            law_number.check(value)
+            if law_number.is_list:  # no array that its owner may change
+                object.__setattr__(self, law_number.name, tuple(value))
 
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:

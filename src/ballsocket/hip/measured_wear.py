@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, owned
 from ..core.checks import known_name, require, shown
 from ..core.display import counted
 
@@ -202,4 +202,4 @@ def _positive_array(name: str, numbers: Any, rule: str) -> Numbers:
     """Convert a number or a sequence to an array; ValueError for numbers that are not positive and finite."""
     array = numpy.atleast_1d(numpy.asarray(numbers, dtype=float))
     require(name, array, (array > 0) & (array < inf), rule)
-    return array
+    return owned(array)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, owned
 from ..core.checks import known_name, require, select_load, shown
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
@@ -224,4 +224,4 @@ def _to_float_array(name: str, numbers: Any) -> Numbers:
         raise ValueError(f"{name} = {shown(numbers)} must be numbers") from error
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"{name} of shape {array.shape} must be a row of numbers")
-    return array
+    return owned(array)

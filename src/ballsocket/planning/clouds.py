@@ -13,6 +13,7 @@ from ..core.checks import shown
 from ..core.display import counted
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
+from ..core.records import Input
 from ..files.cells import NumberedRow, decode_text, is_data, split_text
 from ..files.columns import CellTable, find_cells
 from .meshes import LENGTH_UNITS, MICRON, check_extent, length_of, read_mesh
@@ -25,7 +26,7 @@ _HEAD_LINES = 100  # number of lines in which heads, separators and the first po
 
 
 @dataclass(frozen=True, eq=False)
-class PointCloud:
+class PointCloud(Input):
     """Points of a measured surface.
 
     Attributes

@@ -17,6 +17,7 @@ from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.display import counted
 from ..core.input_files import open_input
+from ..core.records import Input
 from ..files.cells import decode_text
 from ..problem.cup import Side
 from .meshes import LENGTH_UNITS, MICRON
@@ -50,7 +51,7 @@ ROLES = MappingProxyType(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Landmarks:
+class Landmarks(Input):
     """Named points of a patient.
 
     Attributes

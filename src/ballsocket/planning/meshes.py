@@ -16,6 +16,7 @@ from ..core.checks import shown
 from ..core.display import counted
 from ..core.input_files import open_input
 from ..core.mesh_files import read_mesh_file
+from ..core.records import Input
 
 _MAX_FILE_SIZE = 200_000_000  # largest size of an STL file in bytes
 _STL_SUFFIXES, _MESHIO_SUFFIXES = ("", ".stl"), (".obj", ".ply")
@@ -33,7 +34,7 @@ _MAX_OPEN_AREA = 0.2  # sum of area vectors over total area below which a mesh w
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class Mesh(Input):
     """Triangles of a mesh.
 
     Attributes

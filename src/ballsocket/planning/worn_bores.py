@@ -15,6 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.kinds import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, PERCENT
+from ..core.records import Record
 from ..core.unit_systems import Amount, Sentence
 from ..elasticity.off_axis.directions import tangents
 from ..elasticity.off_axis.scans import MIN_POINTS, MIN_REACH, fit_sphere
@@ -52,7 +53,7 @@ _GOOD_COVER = 0.9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WornBore:
+class WornBore(Record):
     """Wear of a bore from measured points. Errors are two standard errors (95 %).
 
     Attributes

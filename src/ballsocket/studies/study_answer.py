@@ -94,7 +94,8 @@ class _StudyReport:
 def describe_study(study: xarray.Dataset) -> Answer:
     """Describe a study by the ends of its results, with the coordinates of the ends."""
     report = _StudyReport(study)
-    shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
+    sizes = {str(dim): size for dim, size in study.sizes.items()}
+    shape = " x ".join(f"{size} {dim}" if dim in QUANTITIES else counted(size, dim) for dim, size in sizes.items())
     verdicts = ", ".join(f"{count} {verdict.word}" for verdict, count in report.verdicts.items() if count)
     line = f"{counted(study.status.size, 'point')}, {report.valid} of them valid"
     table = _end_table(study, report.quantities(), "study", "Study")

@@ -18,6 +18,7 @@ from ...core.arrays import Array, Numbers
 from ...core.checks import check_number, require
 from ...core.display import split_numbers
 from ...core.quantities import CUP
+from ...core.records import Record
 from ...core.validity import Status, is_missing
 from ...problem import Joint
 from ...version import __version__
@@ -27,7 +28,7 @@ from .model import Sphere, check_sphere
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Orientations:
+class Orientations(Record):
     """Contacts of one cup in many orientations under one load; fields are arrays (inclinations, anteversions).
 
     Fields are NaN where the bore does not hold the ball; `status` reports these orientations.
