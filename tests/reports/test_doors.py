@@ -25,6 +25,7 @@ from ballsocket.planning.plan_answer import describe_plan
 from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
 from ballsocket.question import PressQuestion, answer
+from ballsocket.reports.hip_report import hip_report
 from ballsocket.reports.pages import answer_lede, answer_sections
 from ballsocket.reports.terminal import print_answer
 from ballsocket.studies.calibration import describe_calibration
@@ -240,6 +241,12 @@ def test_the_json_of_a_press_has_every_number_of_its_table():
         data = next(result for result in comparison.summary()["results"] if result["model"] == row["model"])
         assert {"utilisation", "pressure_ratio"} < row.keys()
         assert {name: data[name] for name in row} == row
+
+
+@pytest.mark.long
+def test_the_page_of_a_hip_draws_its_bands_and_states_their_level():
+    page, level = hip_report(history(), bands()), bands().level
+    assert f"the band holds {100 * level:.0f} % of the samples" in page
 
 
 @pytest.mark.parametrize("units", Units)
