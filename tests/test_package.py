@@ -85,7 +85,7 @@ def test_the_page_on_choosing_and_the_catalogue_list_the_same_models():
     assert [model.name for model in listed_models.values()] == [*listed_models]
 
 
-UNSOURCED = {"titanium", "bone-cement", "cortical-bone", "cancellous-bone"}  # representative, and say so
+UNSOURCED = {"titanium", "peek", "bone-cement", "cortical-bone", "cancellous-bone"}  # representative, and say so
 CITABLE = [*(bs.materials[name] for name in sorted(set(bs.materials) - UNSOURCED)), *bs.joints.values()]
 
 

@@ -96,7 +96,9 @@ if TYPE_CHECKING:
     from .problem.presets import COCR as COCR
     from .problem.presets import CORTICAL_BONE as CORTICAL_BONE
     from .problem.presets import CROSSLINKED_PE as CROSSLINKED_PE
+    from .problem.presets import PEEK as PEEK
     from .problem.presets import POM as POM
+    from .problem.presets import PTFE as PTFE
     from .problem.presets import STEEL as STEEL
     from .problem.presets import STRUCTURAL_STEEL as STRUCTURAL_STEEL
     from .problem.presets import TITANIUM as TITANIUM
@@ -145,8 +147,8 @@ _NAMES_BY_MODULE = {
     "problem.cup": "AngleDefinition Cup Interface Side",
     "problem.gaps": "CircularGap LinearGap",
     "problem.hardening": "Hardening",
-    "problem.presets": "ALUMINA ALUMINA_COMPOSITE BONE_CEMENT CANCELLOUS_BONE COCR CORTICAL_BONE CROSSLINKED_PE POM "
-    "STEEL STRUCTURAL_STEEL TITANIUM UHMWPE joints materials",
+    "problem.presets": "ALUMINA ALUMINA_COMPOSITE BONE_CEMENT CANCELLOUS_BONE COCR CORTICAL_BONE CROSSLINKED_PE PEEK "
+    "POM PTFE STEEL STRUCTURAL_STEEL TITANIUM UHMWPE joints materials",
     "studies.run": "study",
 }
 """Names for users by module. A module is imported on the first use of one of its names."""

@@ -221,15 +221,15 @@ def _exceeded_strength_remarks(
 ) -> Iterator[tuple[Array, str]]:
     """Yield acceptable points and a note for each exceeded strength; von Mises stresses are at most `upper_bound`."""
     for name, strength in material.strengths.items():
+        if name == "yield_stress" and yields:
+            continue
         is_pressure_limit = name == "allowable_pressure"
         if all_true(logical_not((pressure if is_pressure_limit else upper_bound) > strength)):
             continue
         ratio = (pressure if is_pressure_limit else von_mises()) / strength
         stress = "pressure" if is_pressure_limit else "von Mises stress"
         limit = (
-            f": results are valid up to {MAX_ELASTIC_UTILISATION:g} times this stress"
-            if name == "yield_stress" and not yields
-            else ""
+            f": results are valid up to {MAX_ELASTIC_UTILISATION:g} times this stress" if name == "yield_stress" else ""
         )
         yield (
             logical_not(ratio > 1),

@@ -21,6 +21,7 @@ _REVIEW = "Di Puccio & Mattei 2015, Table 2, doi 10.5312/wjo.v6.i1.77"
 _PLANK = "thickness: Plank et al. 2007, J. Biomed. Mater. Res. B 80B, 1-10; clearance: representative"
 _TABLE_1 = "representative, within Heß & Forsbach 2021, Table 1"
 _BALL_JOINT = "representative (construction: Wozniak et al. 2021, doi 10.3390/en14113238); run in, its preload lost"
+_BRIDGE_BEARING = "representative (construction: CEN 2004, EN 1337-7)"
 _PIVOT = "representative (pivot type: Kirk & Reedy 1988, J. Vib. Acoust. 110, 165)"
 _GLENOSPHERE = "representative; insert thickness 3-9 mm in Giles et al. 2015, doi 10.1007/s11999-015-4526-0"
 
@@ -59,7 +60,19 @@ POM = Material(
     "yield: data sheet of Hostaform C 9021 XAP (ISO 527, 50 mm/min)",
     yield_stress=64.0,
 )
-
+PTFE = Material(
+    young=500.0,
+    poisson=0.46,
+    name="PTFE",
+    source="E: within 0.40-0.55 GPa, Callister 2007, Table B.2; nu: representative. Creeps at all stresses",
+)
+PEEK = Material(
+    young=3500.0,
+    poisson=0.37,
+    name="PEEK",
+    source="representative; yield: design guide of KetaSpire KT-820, ASTM D638 (unverified)",
+    yield_stress=95.0,
+)
 
 _LONG_TERM_MODULI = {
     "POM": (1300.0, 1000.0, "Ticona 2008, Hostaform C 9021 data sheet, tensile creep modulus (ISO 899-1)"),
@@ -125,6 +138,8 @@ _MATERIALS: dict[str, Material] = {
     "uhmwpe": UHMWPE,
     "crosslinked-pe": CROSSLINKED_PE,
     "pom": POM,
+    "ptfe": PTFE,
+    "peek": PEEK,
     "steel": STEEL,
     "structural-steel": STRUCTURAL_STEEL,
     "cocr": COCR,
@@ -143,6 +158,8 @@ _ALIASES = {
         *("crosslinked-polyethylene", "highly-crosslinked-pe", "highly-crosslinked-uhmwpe"),
         "highly-crosslinked-polyethylene",
     ),
+    "ptfe": ("teflon", "polytetrafluoroethylene"),
+    "peek": ("polyetheretherketone", "peek-optima"),
     "pom": ("acetal", "polyacetal", "polyoxymethylene", "pom-c", "acetal-copolymer"),
     "steel": ("steel-head",),
     "structural-steel": ("mild-steel", "s235"),
@@ -167,7 +184,6 @@ _AMBIGUOUS = {
 """Names that leave several presets open, and these presets."""
 
 _WITHOUT_DATA = {
-    "PEEK": ("peek", "polyetheretherketone", "peek-optima"),
     "carbon-fibre PEEK": ("cfr-peek", "cf-peek"),
     "zirconia": ("zirconia", "zro2", "y-tzp", "zirconium-oxide"),
     "alumina-toughened zirconia": ("atz", "alumina-toughened-zirconia"),
@@ -279,6 +295,7 @@ _JOINTS = (
     ("reverse-shoulder-36", 18.0, 0.1, 6.0, COCR, UHMWPE, _GLENOSPHERE),
     ("reverse-shoulder-42", 21.0, 0.1, 6.0, COCR, UHMWPE, _GLENOSPHERE),
     ("suspension-ball-joint", 13.5, 0.02, 2.5, STRUCTURAL_STEEL, POM, _BALL_JOINT),
+    ("spherical-bearing", 500.0, 0.05, 5.0, STRUCTURAL_STEEL, PTFE, _BRIDGE_BEARING),
     ("tilting-pad-pivot", 12.5, 0.05, inf, STRUCTURAL_STEEL, STRUCTURAL_STEEL, _PIVOT),
 )
 """Name, ball radius, clearance and liner thickness in mm, materials of ball and liner, and source of each joint."""
@@ -298,7 +315,7 @@ joints: dict[str, Joint] = NamedItems(
         for name, radius, clearance, thickness, ball, liner, source in _JOINTS
     },
 )
-"""Joints by name: common hips, reverse shoulders, a suspension ball joint and a tilting-pad pivot."""
+"""Joints by name: common hips, reverse shoulders, a suspension ball joint, a bridge bearing and a tilting-pad pivot."""
 
 
 def named_material(name: str, chosen: Any) -> Material:

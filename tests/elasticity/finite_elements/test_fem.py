@@ -2,12 +2,14 @@
 
 import json
 from dataclasses import replace
+from math import cos, pi, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.core.arrays import gauss_legendre
+from ballsocket.core.validity import Status
 from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.elasticity.finite_elements.section import write_vtk
 from ballsocket.elasticity.finite_elements.spacing import bytes_needed
@@ -432,3 +434,20 @@ def test_a_vtk_file_has_the_mesh_and_its_stresses_or_does_not_exist(hip, tmp_pat
     with pytest.raises(KeyboardInterrupt):
         write_vtk(hip.section, tmp_path / "other.vtu")
     assert [path.name for path in tmp_path.iterdir()] == ["hip.vtu"]
+
+
+@pytest.mark.parametrize("thickness", some([5.0, 2.5, 10.0], 1))
+def test_a_sheet_that_is_pressed_all_over_has_the_cosine_law_away_from_its_edge(thickness):
+    """Bearing of a bridge, EN 1337-7: its mean pressure is F over the cosines, and the edge is free to bulge."""
+    sheet = bs.Joint(ball_radius=500.0, clearance=0.001, liner_thickness=thickness, liner=bs.PTFE)
+    model = bs.FiniteElement(cup=bs.Cup(arc_of_cover=radians(47.156)), meshes=1)
+    contact, edge = model.press(sheet, force=3e6), radians(23.578)
+    assert contact.status is Status.AT_RIM
+    cosine_law = 3 * 3e6 / (2 * pi * sheet.socket_radius**2 * (1 - cos(edge) ** 3))
+    area = 2 * pi * sheet.socket_radius**2 * (1 - cos(edge))
+    mean = cosine_law * (1 + cos(edge)) / 2
+    assert contact.pressure_integral / area == pytest.approx(mean, rel=1e-2)  # a free edge moves load to the pole
+    inner = np.linspace(0.0, edge - 10 * thickness / sheet.socket_radius, 20)
+    law = contact.pole_pressure * np.cos(inner)
+    assert contact.pressure(inner) == pytest.approx(law, rel=1e-2)
+    assert cosine_law < contact.pole_pressure < (1 + 8 * thickness / 200.0) * cosine_law  # the edge bears less

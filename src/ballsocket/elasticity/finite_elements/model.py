@@ -252,7 +252,7 @@ class FiniteElement(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus: 0.4999 is solved",
         ),
-        Range(quantity="joint.thickness_ratio", high=200.0, why="the liner is too thin to be meshed"),
+        Range(quantity="joint.thickness_ratio", high=250.0, why="the liner is too thin to be meshed"),
     )
     reach: ClassVar[str] = (
         "half angles up to half the arc of cover, at most 88°, or less if the ball fills its socket first or "

@@ -22,7 +22,7 @@ from .plasticity import PlasticStrain
 
 _MAX_ITERATIONS, _MAX_SET_CHANGES = 20, 60
 _TOLERANCE = 1e-8  # of the nodal forces, relative
-_SMALLEST_STEP = 1 / 256  # of the way to a load
+_SMALLEST_STEP = 1 / 64  # of the way to a load
 _START_FRACTION = 0.25  # of the nodes: first guess of a contact
 _GAP_STEP = 1e-6  # over the radius
 

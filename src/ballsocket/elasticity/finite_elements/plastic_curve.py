@@ -118,7 +118,9 @@ class PlasticLoadCurve:
             contact: PlasticContact | None = ladder[-1]
             while contact is not None and self._rung(kind, number, len(ladder)) < load and self._fits(contact, number):
                 contact = self._path(number, mesh).approach(kind, self._rung(kind, number, len(ladder)), contact)
-                ladder += [] if contact is None else [contact]
+                if contact is None:
+                    return None
+                ladder.append(contact)
             below = sum(self._rung(kind, number, index) < load for index in range(1, len(ladder)))
             contact = self._path(number, mesh).approach(kind, load, ladder[below])
             if contact is None or self._fits(contact, number):

@@ -89,9 +89,13 @@ class MeshedLoadCurve:
                 return None
             contact = partial_contact(bracket.pair, self.gap, load)
             return contact if is_pressed(contact) else None
-        if number == 0 and self.ends_at_rim and bracket.lies_below(kind, load):
-            return _solve_full_contact(kind, load, bracket.pair, self.gap)
-        return bracket.solve(kind, load)
+        may_fill = number == 0 and self.ends_at_rim
+        partial = None if may_fill and bracket.lies_below(kind, load) else bracket.solve(kind, load)
+        if not may_fill or (partial is not None and _is_round(partial)):
+            return partial
+        # a thin sheet of nearly the ball's radius is pressed all over before a cap reaches its rim
+        full = _solve_full_contact(kind, load, bracket.pair, self.gap)
+        return full if partial is None or _is_round(full) else partial
 
 
 def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> FullContact:
@@ -115,6 +119,12 @@ def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> 
 _MAX_TENSION = 1e-3  # over the pressure at the pole
 _MAX_OVERLAP = 1e-3  # over the indentation
 _PRESSURE_NOISE = 5e-4  # of the nodal pressures, over the one at the pole
+
+
+def _is_round(contact: Solved) -> bool:
+    """Return True for a contact without tension inside and without overlap outside."""
+    return bool(contact.tension <= _MAX_TENSION and contact.overlap <= _MAX_OVERLAP)
+
 
 _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy": work}
 
@@ -142,9 +152,7 @@ class MeshedStates(PeakPressure):
     @property
     def not_round(self) -> Numbers:
         """Flag of each contact: 1 if tension or overlap shows that its area is not round, else 0."""
-        return self._evaluate_contacts(
-            lambda contact: float(contact.tension > _MAX_TENSION or contact.overlap > _MAX_OVERLAP)
-        )
+        return self._evaluate_contacts(lambda contact: float(not _is_round(contact)))
 
     @property
     def edge_element(self) -> Numbers:
