@@ -320,7 +320,9 @@ def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
 def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
     angles = {"inclination": np.radians([20.0, 40.0, 60.0]), "anteversion": np.radians([0.0, 20.0])}
     apart, held = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]]), np.ones((3, 2), dtype=bool)
-    made = OrientationMap(**angles, edge_distance=apart, max_pressure=10 + apart**2, held=held, figure=b"")
+    made = OrientationMap(
+        **angles, edge_distance=apart, max_pressure=10 + apart**2, held=held, figures=dict.fromkeys(Units, b"")
+    )
     picture = angle_map(made, Cup(inclination=radians(40.0)), "edge_distance")
     assert "67 % of the orientations keep the contact off the rim" in picture
     assert "furthest, 5 mm, at inclination 20°, anteversion 0°" in picture
@@ -342,4 +344,4 @@ def test_the_map_is_that_of_python(monkeypatch):
     found = real_cup.map_orientations(page.screen.file, lambda news: None)
     asked = bs.orient(HIP_36, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
-    assert found.figure.startswith(b"\x89PNG")
+    assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures.values())

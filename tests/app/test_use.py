@@ -96,7 +96,7 @@ def test_the_film_is_the_wave_of_python(page):
     assert found.least == pytest.approx(1e6 * film.least)
     assert found.central == pytest.approx(1e6 * film.central)
     assert found.ratio == pytest.approx(film.ratio)
-    assert found.figure.startswith(b"\x89PNG")
+    assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures.values())
     assert (found.valid, found.note, found.regime) == (film.valid, film.note, film.regime)
     filmed, pressed = ((one.frames.cells > 0).mean(axis=(1, 2)) for one in (found, simulated(page)))
     assert filmed == pytest.approx(pressed, abs=0.05)  # a film is shown where there is a contact, and only there
@@ -132,7 +132,7 @@ def test_files_have_the_cycle_and_the_units_of_the_page(with_film):
     assert "alt='film over the cycle'" in report.replace('"', "'")
     does(with_film, "edit", name="units", value="imperial")
     courses = played(with_film)["courses"]
-    assert [course["unit"] for course in courses] == ["lbf", "psi", "in", "nm", "nm", ""]
+    assert [course["unit"] for course in courses] == ["lbf", "psi", "in", "µin", "µin", ""]
     assert max(courses[0]["values"]) == pytest.approx(iso_14242_1().force_magnitudes.max() / 4.4482216, rel=1e-4)
     assert "lbf" in told(with_film, "gait-numbers")
     assert saved(with_film, "CSV").startswith(b"phase [%],load [lbf],largest pressure [psi]")
@@ -238,7 +238,7 @@ def nothing_is_known(monkeypatch):
     store = ResultStore()
     monkeypatch.setattr(results, "RESULTS", store)
     monkeypatch.setattr(wear_view, "RESULTS", store)
-    monkeypatch.setattr(hip_runs, "figure_bytes", lambda figure: b"a picture")
+    monkeypatch.setattr(hip_runs, "bytes_by_units", lambda figure: dict.fromkeys(Units, b"a picture"))
 
 
 def test_a_life_is_that_of_python(at_once, nothing_is_known):
@@ -283,7 +283,7 @@ def made(scale):
     depth = scale * np.ones((grid.rings, grid.meridians))
     checks = (wear_check(bs.joints["hip-36"], exact_number(30 * scale)),)
     bore = {"depth": depth, "grid": grid, "cup": bs.Cup(), "load": np.array([0.0, 0.0, 1.0])}
-    texts = {"band": "band: of a test", "notes": ("a note",), "figure": b""}
+    texts = {"band": "band: of a test", "notes": ("a note",), "figures": dict.fromkeys(Units, b"")}
     return hip_runs.WearResult(cycles=np.arange(3.0), **curves, **bore, **texts, summary=summary, checks=checks)
 
 

@@ -10,6 +10,7 @@ from zlib import crc32
 import numpy
 
 from ..core.unit_systems import Units
+from .figure_files import figure_bytes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -126,6 +127,11 @@ def in_units(figure: Figure, units: Units) -> Figure:
                 axis.set_major_locator(ScaledLocator(factor))
                 axis.set_major_formatter(FuncFormatter(lambda value, _, factor=factor: f"{value * factor:.4g}"))
     return figure
+
+
+def bytes_by_units(figure: Figure, form: str = "png") -> dict[Units, bytes]:
+    """Return a figure in mm, N and MPa as bytes in each system of units."""
+    return {units: figure_bytes(in_units(figure, units), form) for units in Units}  # the metric one comes first
 
 
 def new_figure(width: float, height: float) -> Figure:

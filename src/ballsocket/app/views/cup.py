@@ -136,7 +136,7 @@ class CupView(LongView):
             "cup": ("Contact in the cup", table(["quantity", "value"], list(_report_rows(contact, screen.reading)))),
         }
         if orientations is not None:
-            sections["orientations"] = ("Cup orientation map", picture(orientations.figure, "map"))
+            sections["orientations"] = ("Cup orientation map", picture(orientations.figures[units], "map"))
         return Document(
             picture=lambda form: figure_bytes(cup_figure(contact, units), form),
             rows=lambda: [["quantity", "value"], *_file_rows(contact, screen.reading)],

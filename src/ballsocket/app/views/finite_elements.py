@@ -15,6 +15,7 @@ from ...comparison import relative_deviation
 from ...contact.describe import to_summary
 from ...core.answers import Check
 from ...core.quantities import BEARING, CONTACT, JOINT
+from ...core.unit_systems import Units
 from ...core.validity import OutsideDomainError
 from ...design_checks import checks_of
 from ...elasticity.finite_elements.model import MeshedContact
@@ -22,10 +23,9 @@ from ...elasticity.finite_elements.section import Part
 from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference
 from ...question import complete
-from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table
 from ...reports.section_plots import section_figure
-from ...reports.style import line_of
+from ...reports.style import bytes_by_units, line_of
 from ..long_view import LongView, long_body
 from ..pictures import svg
 from ..pictures.chart import legend
@@ -90,6 +90,7 @@ class ElementCheck(LongView):
 
     def document(self, screen: Screen) -> Document:
         result: ElementResult = self.result(screen)
+        units = screen.reading.units
         heads = ["quantity", "finite elements", "error of the mesh", "exact"]
         exact = result.exact or {}
         rows = [
@@ -98,9 +99,9 @@ class ElementCheck(LongView):
             if isinstance(result.numbers[entry.key], float)
         ]
         body = table(heads, [[str(cell) for cell in row] for row in rows])
-        figure = picture(result.png, "mesh, von Mises stress, and pressure beside the exact one")
+        figure = picture(result.figures["png"][units], "mesh, von Mises stress, and pressure beside the exact one")
         return Document(
-            picture=lambda form: result.svg if form == "svg" else result.png,
+            picture=lambda form: result.figures[form][units],
             rows=lambda: [heads, *rows],
             sections=lambda: {"judge": ("Finite elements", body + figure)},
         )
@@ -272,8 +273,7 @@ class ElementResult:
     checks: tuple[Check, ...]
     drawing: SectionDrawing
     pressures: dict[str, tuple[numpy.ndarray, numpy.ndarray]]
-    png: bytes
-    svg: bytes
+    figures: dict[str, dict[Units, bytes]]  # by the format
 
 
 def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
@@ -295,7 +295,6 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     if exact is not None and exact.status.failed:
         exact = None
     report(Reached(share=0.85, words="drawing stresses"))
-    figure = section_figure(contact, exact)
     contacts = {JUDGE: contact, reference.name: exact}
     return ElementResult(
         file=file,
@@ -308,6 +307,5 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
         checks=checks_of(contact, complete(file)[0].cup, float(contact.von_mises)),
         drawing=section_drawing(contact),
         pressures={name: profile(pressed) for name, pressed in contacts.items() if pressed is not None},
-        png=figure_bytes(figure),
-        svg=figure_bytes(figure, "svg"),
+        figures={form: bytes_by_units(section_figure(contact, exact), form) for form in ("png", "svg")},
     )

@@ -196,7 +196,10 @@ class Gait(LongView):
             "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes, reading)),
         }
         if film is not None:
-            sections["film"] = ("Film", picture(film.figure, "film over the cycle") + notes_list([film.note], reading))
+            sections["film"] = (
+                "Film",
+                picture(film.figures[reading.units], "film over the cycle") + notes_list([film.note], reading),
+            )
         return Document(
             picture=lambda form: figure_bytes(course_figure(result.phase, courses, result.name), form),
             rows=lambda: [heads, *rows],

@@ -11,6 +11,7 @@ import numpy
 from ...contact.verdict import EDGE_DISTANCE, Bounded, exact_number
 from ...core.answers import Check
 from ...core.display import counted
+from ...core.unit_systems import Units
 from ...design_checks import checks_at, sorted_checks, wear_check
 from ...elasticity.off_axis.grid import Grid
 from ...files.joint_file import JointFile
@@ -19,8 +20,8 @@ from ...hip.ball_wear import interpolation_at
 from ...hip.contact_checks import ContactCheck, largest_utilisation, list_check_notes
 from ...hip.cycle_registry import CYCLES
 from ...problem.cup import Cup
-from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import penetration_curve
+from ...reports.style import bytes_by_units
 from ...studies.distributions import LogNormal
 from ..pictures.bore import node_directions, relative_bytes
 from ..results import without_name
@@ -79,7 +80,7 @@ class GaitFilm:
     regime: str
     valid: bool
     note: str
-    figure: bytes  # film over the cycle and maps of it as PNG
+    figures: dict[Units, bytes]  # film over the cycle and maps of it as PNG
     numbers: dict[str, Any]  # for JSON
 
 
@@ -153,7 +154,7 @@ def simulate_film(file: JointFile, use: Use, upload: UploadedCycle | None, repor
         regime=film.regime,
         valid=film.valid,
         note=film.note,
-        figure=figure_bytes(film.plot()),
+        figures=bytes_by_units(film.plot()),
         numbers=film.summary(),
     )
 
@@ -207,7 +208,7 @@ class WearResult:
     load: numpy.ndarray  # (3,), direction of the largest load in the cup's frame
     summary: dict[str, Any]  # of `History`, for JSON
     notes: tuple[str, ...]
-    figure: bytes  # penetration as PNG
+    figures: dict[Units, bytes]  # penetration as PNG
     checks: tuple[Check, ...]  # of the worn bore
 
 
@@ -277,7 +278,7 @@ def _simulate_design(hip: HipSimulation, use: Use, reached: Callable[[float, str
         load=largest / numpy.linalg.norm(largest),
         summary=history.summary(),
         notes=history.notes,
-        figure=figure_bytes(penetration_curve(history, bands)),
+        figures=bytes_by_units(penetration_curve(history, bands)),
         checks=_checks(hip, history),
     )
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy
 
+from ...core.unit_systems import Units
 from ...elasticity.finite_elements.mesh import socket_shape
 from ...elasticity.finite_elements.progress import progress_to
 from ...elasticity.off_axis.contact import OffAxisContact
@@ -80,7 +81,7 @@ def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
 class OrientationMap:
     """Edge distances (mm) and pressures (MPa) over inclinations and anteversions (rad).
 
-    `held` is True where the bore holds the ball; `figure` is the figure of `Orientations` as PNG.
+    `held` is True where the bore holds the ball; `figures` has that of `Orientations` as PNG.
     """
 
     inclination: numpy.ndarray
@@ -88,7 +89,7 @@ class OrientationMap:
     edge_distance: numpy.ndarray
     max_pressure: numpy.ndarray
     held: numpy.ndarray
-    figure: bytes
+    figures: dict[Units, bytes]
 
 
 def orientation_key(file: JointFile) -> Hashable:
@@ -116,5 +117,5 @@ def map_orientations(file: JointFile, report: Report) -> OrientationMap:
         edge_distance=orientations.edge_distance,
         max_pressure=orientations.max_pressure,
         held=orientations.held,
-        figure=figure_bytes(orientation_figure(orientations)),
+        figures={units: figure_bytes(orientation_figure(orientations, units=units)) for units in Units},
     )

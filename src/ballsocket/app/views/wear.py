@@ -158,7 +158,8 @@ class Wear(LongView):
                 design.cycles, design.penetration, design.low, design.high, design.deepest, design.volume, strict=True
             )
         ]
-        pictures = "".join(picture(design.figure, f"penetration of {name}") for name, design in named.items())
+        units = screen.reading.units
+        pictures = "".join(picture(run.figures[units], f"penetration of {name}") for name, run in named.items())
         return Document(
             rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
             sections=lambda: {"wear": ("Wear", wear_numbers(named, screen.reading) + pictures)},
