@@ -313,6 +313,9 @@ PLASTIC = _make_quantity_table(
              "Fraction of the liner's volume that has yielded."),
     Quantity("plastic_work", "Wp", "plastic work", Kind.ENERGY,
              "Work that yielding has dissipated since the first load."),
+    Quantity("repeated_work", "ΔWp/Wp", "repeated plastic work", Kind.NUMBER,
+             "Plastic work that a load adds when it is repeated up to 20 times, over the work until then; below 1e-4 "
+             "the socket shakes down, above it ratchets."),
 )
 """Results of a liner that yields."""
 

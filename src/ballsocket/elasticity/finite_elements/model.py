@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees, nan
@@ -107,6 +108,11 @@ class MeshedContact(SolvedContact):
         return self._plastic_quantity("plastic_work")
 
     @property
+    def repeated_work(self) -> Array:
+        """Plastic work that a repeated load adds, over the work until then; below 1e-4 the socket shakes down."""
+        return self._plastic_quantity("repeated_work")
+
+    @property
     def peak_stress(self) -> Peak:
         """Largest von Mises stress in the liner in MPa at the nodes of the mesh, with its depth and polar angle."""
         return self.section.peak_stress
@@ -165,6 +171,11 @@ _OTHER_MODULUS = Remark(
     why="the liner's Young's modulus is not that of its hardening curve: its strains under a stress differ from the "
     "measured ones",
 )
+
+
+_SHAKEDOWN = Remark(quantity="repeated_work", high=1e-4, why="the liner ratchets: repeated loads add plastic work")
+
+_FORCE_TOLERANCE = 1e-3  # relative, of the collapse and the shakedown load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,8 +277,8 @@ class FiniteElement(Model):
 
     @property
     def remarks(self) -> tuple[Range, ...]:
-        """Remarks on the gap, the shape of an infinite layer, a soft ball, and the modulus of the hardening."""
-        return (*gap_remarks(self.gap), *_BODY_REMARKS, *([_OTHER_MODULUS] if self.plastic else []))
+        """Remarks on the gap, the bodies, and of a yielding liner on the modulus of its hardening and on ratcheting."""
+        return (*gap_remarks(self.gap), *_BODY_REMARKS, *([_OTHER_MODULUS, _SHAKEDOWN] if self.plastic else []))
 
     def _law(self, joint: Joint) -> ForceLaw:
         """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
@@ -308,6 +319,25 @@ class FiniteElement(Model):
         follower = _LoadPath(**vars(self))
         contact: MeshedContact = follower.press(joint, **loads)  # type: ignore[assignment]
         return contact
+
+    def collapse_load(self, joint: Joint) -> float:
+        """Compute the largest force in N that a joint of plain numbers with a yielding liner bears, within 0.1 %."""
+        return self._largest_force(joint, lambda contact: not contact.status.failed)
+
+    def shakedown_load(self, joint: Joint) -> float:
+        """Compute the largest force in N whose repetitions add no plastic work, within 0.1 %; see `repeated_work`."""
+        return self._largest_force(joint, lambda contact: not contact.status.failed and _SHAKEDOWN.holds(contact))
+
+    def _largest_force(self, joint: Joint, bears: Callable[[Any], bool]) -> float:
+        """Bisect for the largest force in N that a socket bears, from its mean pressure at the yield stress."""
+        model, curve = replace(self, meshes=1, plastic=True), joint.liner.yield_curve
+        low, high = 0.0, 3.0 * (curve.stress[-1] if curve else 1.0) * float(joint.ball_radius) ** 2
+        while bears(model.press(joint, force=high)):
+            low, high = high, 2 * high
+        while high - low > _FORCE_TOLERANCE * high:
+            middle = (low + high) / 2
+            low, high = (middle, high) if bears(model.press(joint, force=middle)) else (low, middle)
+        return low
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")

@@ -23,6 +23,7 @@ from .plasticity import PlasticStrain
 _MAX_ITERATIONS, _MAX_SET_CHANGES = 20, 60
 _TOLERANCE = 1e-8  # of the nodal forces, relative
 _SMALLEST_STEP = 1 / 64  # of the way to a load
+SHAKEDOWN_WORK, _MAX_REPETITIONS = 1e-4, 20  # relative plastic work below which a repeated load is elastic
 _START_FRACTION = 0.25  # of the nodes: first guess of a contact
 _GAP_STEP = 1e-6  # over the radius
 
@@ -116,6 +117,19 @@ class PlasticContact:
     def permanent_set(self) -> float:
         """Largest outward displacement of the bore in mm that remains after the load is removed."""
         return max(float(self.unloaded.bore_displacement.max()), 0.0)
+
+    @cached_property
+    def repeated_work(self) -> float:
+        """Plastic work of the last of repeated loads, over the work until then; 0 once a repetition is elastic."""
+        contact, growth = self, 0.0
+        for _ in range(_MAX_REPETITIONS if self.plastic_work > 0 else 0):
+            repeated = self.path.approach("force", self.force, contact.unloaded)
+            if repeated is None:
+                return numpy.inf
+            contact, growth = repeated, repeated.plastic_work / contact.plastic_work - 1
+            if growth < SHAKEDOWN_WORK:
+                break
+        return growth
 
     @property
     def plastic_strain(self) -> float:

@@ -11,6 +11,7 @@ import numpy
 
 from ...contact.per_joint import QUANTITIES, JointContacts
 from ...core.arrays import Numbers
+from ...core.quantities import PLASTIC
 from ...problem import Joint
 from ...problem.cup import Cup
 from ...problem.hardening import Hardening
@@ -50,10 +51,6 @@ class PlasticContacts(MeshedStates):
     def edge_element(self) -> Numbers:
         """Length of the elements at the edge of each contact, as a fraction of its half angle; 0 without contact."""
         return self._evaluate_contacts(lambda contact: contact.edge_element / (contact.half_angle or numpy.inf))
-
-
-PLASTIC = ("permanent_set", "plastic_strain", "plastic_fraction", "plastic_work")
-"""Quantities of a contact whose liner yields."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
