@@ -257,7 +257,8 @@ def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METR
         sentences.append(f"{name}: {last} after {design.cycles[-1]:g} million cycles, {low} to {high}")
     label, up = f"penetration: {'; '.join(sentences)}", f"penetration{unit.text_in_brackets}"
     drawn = chart(label, "million cycles", up, curves, (end, highest))
-    return f"{drawn}<p class='legend'>{legend(lines)}</p>"
+    bands = dict.fromkeys(escape(design.band.removeprefix("band: ")) for design in designs.values())
+    return f"{drawn}<p class='legend'>{legend(lines)}<span class='key'>shaded: {'; '.join(bands)}</span></p>"
 
 
 def empty_chart(millions: float, reading: Reading) -> str:
