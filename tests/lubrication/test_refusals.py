@@ -20,6 +20,8 @@ def steps(model=SPRINGS, **words):
     return lambda: film_over_steps(model, JOINT, **usual | words)
 
 
+LUBRICANTS = {"viscosity": (np.inf, np.nan, 0.0), "cup_roughness": (-1e-9, np.inf), "friction": (-1e-9, 10.0)}
+
 test_films_that_cannot_be_computed_are_refused = refused_calls(
     (film(spin=(np.nan, 0.0, 0.0)), r"spin\[0\] = nan is not allowed"),
     (film(spin=(0.0, np.inf, 0.0)), r"spin\[1\] = inf is not allowed"),
@@ -33,8 +35,9 @@ test_films_that_cannot_be_computed_are_refused = refused_calls(
     (film(SPRINGS.press(JOINT, force=0.0)), "force = 0 N is not allowed"),
     (film(SPRINGS.press(replace(JOINT, clearance=0.0), force=10.0)), "clearance = 0 mm is not allowed"),
     *(
-        (lambda value=value: bs.Lubricant(viscosity=value), r"viscosity = .*: a viscosity \(Pa s\) is pos")
-        for value in (np.inf, np.nan, 0.0)
+        (lambda name=name, value=value: bs.Lubricant(**{name: value}), f"{name} = .* is not allowed: a ")
+        for name, values in LUBRICANTS.items()
+        for value in values
     ),
     (steps(forces=[1500.0, -1.0]), r"forces\[1\] = -1 is not allowed: a film needs a load"),
     (steps(durations=0.0), r"durations = 0 is not allowed: a step \(s\) takes time"),

@@ -227,6 +227,9 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
     (tmp_path / "rows.parquet").write_bytes(b"PAR1" * 100)
     with pytest.raises(ValueError, match="rows.parquet: it is not a readable Parquet file"):
         table(tmp_path / "rows.parquet")
+    parquet.write_table(pyarrow.table({"force": ["1 kN"]}), tmp_path / "rows.parquet")
+    with pytest.raises(ValueError, match="rows.parquet: column 'force' has values of type object, not numbers"):
+        table(tmp_path / "rows.parquet")
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
     monkeypatch.setattr("ballsocket.core.executors.processes.available_memory", lambda: 10**6)
