@@ -6,7 +6,7 @@ import os
 import platform
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import date
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -29,26 +29,6 @@ over the rounds.
 | NAME | work | ours | rival | ratio | machine, date |
 | --- | --- | --- | --- | --- | --- |
 """
-
-
-@dataclass
-class Rows:
-    """A table with columns of its own, as `benchmarks.identical` prints it."""
-
-    title: str
-    columns: tuple[str, ...]
-    rows: list[tuple[str, ...]] = field(default_factory=list)
-
-    def add(self, *cells: object) -> None:
-        self.rows.append(tuple(map(str, cells)))
-
-
-@dataclass
-class Report:
-    """Tables, and the sentences that explain them."""
-
-    tables: list[Rows]
-    notes: Sequence[str]
 
 
 @dataclass(frozen=True)

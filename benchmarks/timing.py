@@ -12,9 +12,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from multiprocessing import get_context
 from statistics import median
-from typing import Any
 
 from threadpoolctl import threadpool_limits
 
@@ -89,17 +87,3 @@ def one_core() -> Iterator[None]:
             yield
         finally:
             os.sched_setaffinity(0, before)
-
-
-def apart(work: Callable[[], Any], **environment: str) -> Any:
-    """Return the result of the work in a fresh process with that environment."""
-    before = {name: os.environ.get(name) for name in environment}
-    os.environ.update(environment)
-    try:
-        with get_context("spawn").Pool(1) as pool:
-            return pool.apply(work)
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name)
-            if value is not None:
-                os.environ[name] = value

@@ -226,8 +226,8 @@ def test_a_run_answers_what_a_press_answers():
     angle, pressure = found.pressures[JUDGE]
     assert pressure[0] == pytest.approx(contact.pressure(0.0), rel=1e-3)
     assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
-    assert found.png.startswith(b"\x89PNG")
-    assert b"<svg" in found.svg
+    assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures["png"].values())
+    assert all(b"<svg" in drawn for drawn in found.figures["svg"].values())
     wide = until_the_end(judging(3e4, arc_of_cover=0.75))[-1].value
     assert any("rim" in note for note in wide.notes)
     refused = until_the_end(judging(3000.0, arc_of_cover=0.75, chamfer=9.0))[-1]  # cannot be meshed
