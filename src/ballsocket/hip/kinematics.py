@@ -121,16 +121,17 @@ class SurfaceSliding:
         first, second = tangents(self.directions)
         return self.radius * (self.rotation_increments @ first), self.radius * (self.rotation_increments @ second)
 
-    @cached_property
-    def _sliding_second_moments(self) -> tuple[Numbers, ...]:
-        """Second moments xx, yy and xy of each sliding step divided by its length: (steps, points)."""
+    def _sliding_second_moments(self, pressure: Numbers) -> tuple[Numbers, ...]:
+        """Sum the second moments xx, yy and xy of the sliding steps over their lengths, by pressure: (points,) each."""
         (x, y), length = self._rotated_sliding_components, self.distances
-        inverse_length = numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
-        return x * x * inverse_length, y * y * inverse_length, x * y * inverse_length
+        weight = numpy.divide(pressure, length, out=numpy.zeros_like(length), where=length > 0)
+        return tuple(numpy.einsum("tp,tp,tp->p", weight, *pair) for pair in ((x, x), (y, y), (x, y)))
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Compute the cross-shear ratio (points,) of sliding, weighted by the pressure (steps, points)."""
-        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments))
+        loaded, ratio = numpy.flatnonzero(pressure.any(axis=0)), numpy.zeros(pressure.shape[1])
+        ratio[loaded] = cross_shear(*self.select_points(loaded)._sliding_second_moments(pressure[:, loaded]))
+        return ratio
 
     def crossing_angle(self, pressure: Numbers) -> Numbers:
         """Compute the mean angle (points,) in rad between sliding and its principal direction.
@@ -138,7 +139,7 @@ class SurfaceSliding:
         The mean is weighted by pressure (steps, points) and sliding distance. It is 0 on a straight track and π/4 on
         a circle.
         """
-        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments)
+        xx, yy, xy = self._sliding_second_moments(pressure)
         first_component, second_component = self._rotated_sliding_components
         direction = numpy.arctan2(second_component, first_component) - numpy.arctan2(2 * xy, xx - yy) / 2
         deviation = numpy.arccos(numpy.clip(abs(numpy.cos(direction)), 0.0, 1.0))

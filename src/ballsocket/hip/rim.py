@@ -141,11 +141,13 @@ def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, i
         polar_nodes[-1] = grid.reach
     is_end = (level > 0) & numpy.concatenate([level[:, 1:] <= 0, numpy.ones_like(level[:, :1], dtype=bool)], axis=1)
     next_ring = numpy.concatenate([numpy.arange(1, grid.rings), [grid.rings - 2]])  # extrapolates beyond the last ring
-    level_drop = level - level[:, next_ring]
-    fraction = numpy.divide(level, level_drop, out=numpy.full_like(level, numpy.inf), where=is_end & (level_drop != 0))
-    spacing = (polar_nodes[next_ring] - polar_nodes)[:, None]
-    edge_angles = numpy.where(fraction * spacing >= 0, polar_nodes[:, None] + fraction * spacing, grid.reach)
-    edge_angle = numpy.where(is_end, numpy.minimum(edge_angles, grid.reach), 0.0).max(axis=1, initial=0.0)
+    step, ring, meridian = numpy.nonzero(is_end)
+    last_level, spacing = level[is_end], (polar_nodes[next_ring] - polar_nodes)[ring]
+    level_drop = last_level - level[step, next_ring[ring], meridian]
+    fraction = numpy.divide(last_level, level_drop, out=numpy.full_like(level_drop, numpy.inf), where=level_drop != 0)
+    end_angles = numpy.where(fraction * spacing >= 0, polar_nodes[ring] + fraction * spacing, grid.reach)
+    edge_angle = numpy.zeros((len(level), grid.meridians))
+    numpy.maximum.at(edge_angle, (step, meridian), numpy.minimum(end_angles, grid.reach))
     return RimDistance(
         distance=(grid.reach - edge_angle.max(axis=1, initial=0.0)) * radius,
         azimuth=_edge_azimuth(edge_angle, level[:, -1], grid.azimuth),
