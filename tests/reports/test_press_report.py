@@ -241,6 +241,17 @@ def test_the_verdict_is_that_of_the_strength_alone_where_the_rim_is_far(strength
     assert verdict_of(rows)[0] is assess_strength(contact).verdict
 
 
+@pytest.mark.parametrize(("share", "is_near"), [(0.95, True), (0.85, False)])
+def test_a_limit_that_is_kept_above_ninety_percent_is_near_in_its_row_in_words_and_in_style(share, is_near):
+    pressure = float(bs.Exact().press(liner(), force=3000.0).max_pressure)
+    rows = checks_of(bs.Exact().press(liner(allowable_pressure=pressure / share), force=3000.0), DEFAULT)
+    verdict, sentence = verdict_of(rows)
+    assert verdict is Verdict.KEPT
+    assert sentence.startswith("Kept, near the limit: ") is is_near
+    assert rows[0].result == ("✓ kept, near the limit" if is_near else "✓ kept")
+    assert ("class='near'" in checks_html(rows, WRITE)) is is_near
+
+
 def test_a_contact_outside_the_range_of_its_model_has_no_verdict_but_may_fail():
     doubtful = bs.Hertz().press(liner(allowable_pressure=1e3), force=3000.0)
     reason = "Undecided: this result is outside the range of its model"
