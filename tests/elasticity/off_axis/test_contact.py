@@ -227,3 +227,10 @@ def test_contacts_without_a_solution_or_in_batches_raise(load, tmp_path):
 def test_inclination_in_radians_for_degrees_has_a_note(inclination, count):
     contact = replace(SPRINGS, cup=bs.Cup(inclination=inclination)).press(RIGID, force=100.0, tilt=0.2)
     assert sum("0.7 rad are 40.1°" in note for note in contact.notes) == count
+
+
+def test_a_load_out_of_the_cup_asks_if_it_is_the_force_on_the_ball():
+    model = bs.Sphere(cup=bs.Cup(), direction=(0.0, 0.0, -1.0), ring_width=radians(6.0))
+    contact = model.press(bs.joints["hip-28"], force=1000.0)
+    assert not contact.valid
+    assert any("if it is the force on the ball" in note and "opposite direction" in note for note in contact.notes)
