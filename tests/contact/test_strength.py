@@ -85,13 +85,12 @@ def test_eighty_kilonewtons_in_a_hip_are_valid_for_no_model(model):
 
 def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
     peak = bs.Exact().press(HIP, force=3000.0).peak_stress.von_mises
-    liners = [replace(HIP.liner, yield_stress=peak / times) for times in (0.97, 1.1, 1.35, 1.41)]
+    liners = [replace(HIP.liner, yield_stress=peak / times) for times in (0.97, 1.1, 1.28, 1.32)]
     contacts = [bs.Exact().press(replace(HIP, liner=liner), force=3000.0) for liner in liners]
     assert [contact.valid for contact in contacts] == [True, True, True, False]
     notes = [[note for note in contact.notes if "yield stress" in note] for contact in contacts]
     assert [len(each) for each in notes] == [0, 1, 1, 1]
-    assert notes[1][0].endswith("of the liner: results are valid up to 1.38 times this stress")
-    assert abs(MAX_ELASTIC_UTILISATION - 1.9**0.5) < 0.002
+    assert notes[1][0].endswith("of the liner: results are valid up to 1.3 times this stress")
 
 
 @pytest.mark.long

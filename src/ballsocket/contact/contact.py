@@ -140,7 +140,7 @@ class Contact(Outcome):
 
         It is NaN if neither has a yield stress.
 
-        From 1 on the material yields somewhere. A linear result is invalid above 1.38
+        From 1 on the material yields somewhere. A linear result is invalid above 1.3
         (`strength.MAX_ELASTIC_UTILISATION`).
         """
         is_liner_checked = self.joint.liner.yield_stress is not None

@@ -20,11 +20,11 @@ from .closed_sphere import max_hemisphere_change
 from .coordinates import LIMIT
 from .stress_ratio import MAX_THICKNESS_RATIO, POISSON
 
-MAX_ELASTIC_UTILISATION = 1.38
+MAX_ELASTIC_UTILISATION = 1.3
 """Largest utilisation for which a linear result is valid.
 
-The force of a ball on an elastic, perfectly plastic flat follows Hertz up to 1.9 times the indentation of first yield
-(Jackson & Green 2005, doi 10.1115/1.1866166). The stress is then sqrt(1.9) times as large.
+At equal force yielding then lowers the largest pressure by at most 5 %, and changes indentation by 1 % and area by 2 %
+(16 random liners by finite elements: R2/L 1.5 to 7, ν 0.31 to 0.47, tangent modulus 0 to E/10).
 """
 
 TABLE_ERROR = 0.005

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import ballsocket as bs
+from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION
 from ballsocket.core.validity import Status
 from ballsocket.elasticity.finite_elements import calculix
 from ballsocket.elasticity.finite_elements.bodies import CondensedBody
@@ -18,6 +19,7 @@ from ballsocket.elasticity.finite_elements.plastic_body import PlasticBody
 from ballsocket.elasticity.finite_elements.plasticity import PlasticStrain, YieldLaw
 from ballsocket.evidence.code_checks import pressure_forces
 
+from ...extent import some
 from ...joints import HIP
 from ..calculix import needs_ccx
 
@@ -235,6 +237,21 @@ def test_a_liner_that_collapses_has_no_result():
 def test_refusals_name_the_reason(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize(
+    ("joint", "slope"), some([(bs.joints["hip-28"], 0.0), (bs.joints["hip-36"], 0.05), (JOINT, 0.1)], 1)
+)
+def test_a_linear_result_is_accurate_up_to_the_utilisation_at_which_it_ends_to_be_valid(joint, slope):
+    young, stress = joint.liner.young, 12.0
+    curve = bs.Hardening(stress=(stress, stress + 0.2 * slope * young), plastic_strain=(0.0, 0.2))
+    joint = joint.replace(liner=replace(joint.liner, yield_stress=stress, hardening=curve))
+    elastic = bs.FiniteElement(meshes=1)
+    force = brentq(lambda F: elastic.press(joint, force=F).utilisation - MAX_ELASTIC_UTILISATION, 1e3, 4e4, rtol=1e-3)
+    linear, yielding = elastic.press(joint, force=force), MODEL.press(joint, force=force)
+    for name, error in (("max_pressure", 0.055), ("indentation", 0.015), ("area", 0.025)):
+        assert getattr(yielding, name) == pytest.approx(getattr(linear, name), rel=error), name
+    assert yielding.max_pressure < linear.max_pressure
 
 
 @needs_ccx
