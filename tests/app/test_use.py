@@ -144,7 +144,7 @@ def test_rim_contact_is_named_and_red(page):
     share = f"Rim contact in {100 * (edge <= 0).mean():.0f} % of the cycle (9 to 19 %, 44 to 53 %)"
     assert f"<p class='trust no'>✗ {share}" in numbers
     assert [len(chart["flagged"]) for chart in drawn(page)] == [0, 0, 2, 0, 0]
-    assert numbers.index("✗ Exceeded: reach of the contact") < numbers.index("✓ kept")
+    assert numbers.index("✗ Exceeded: reach of the contact") < numbers.index("? undecided: the error bar")
     assert played(page)["rim"] == (edge <= 0).tolist()
     free = opened(LINK.replace("inclination=45", "inclination=30"))
     assert "✓ No rim contact" in told(free, "gait-numbers")

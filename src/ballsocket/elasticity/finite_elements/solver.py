@@ -90,12 +90,14 @@ class MeshedLoadCurve:
             contact = partial_contact(bracket.pair, self.gap, load)
             return contact if is_pressed(contact) else None
         may_fill = number == 0 and self.ends_at_rim
-        partial = None if may_fill and bracket.lies_below(kind, load) else bracket.solve(kind, load)
+        if may_fill and bracket.lies_below(kind, load):
+            return _solve_full_contact(kind, load, bracket.pair, self.gap)
+        partial = bracket.solve(kind, load)
         if not may_fill or (partial is not None and _is_round(partial)):
             return partial
         # a thin sheet of nearly the ball's radius is pressed all over before a cap reaches its rim
         full = _solve_full_contact(kind, load, bracket.pair, self.gap)
-        return full if partial is None or _is_round(full) else partial
+        return full if _is_round(full) else partial
 
 
 def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> FullContact:
