@@ -329,6 +329,8 @@ def test_press_with_a_liner_that_yields_shows_its_set_beside_the_elastic_result(
     assert fem["permanent_set"] > 1e-3
     assert "permanent_set" not in exact
     assert fem["max_pressure"] < exact["max_pressure"]
+    every = {one["model"]: one for one in answer(*words, "--all", "--meshes", "1")["results"]}
+    assert every["fem"]["permanent_set"] == pytest.approx(fem["permanent_set"], rel=1e-9)
     figure = tmp_path / "zone.png"
     assert "us permanent set" in printed(*words, "--section", str(figure), columns=200)
     assert figure.stat().st_size > 20_000

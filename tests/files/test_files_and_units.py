@@ -316,7 +316,13 @@ def test_a_hardening_is_read_with_units_and_written_again():
     file = parse_joint(text.encode(), "file")
     assert file.joint.liner.hardening == bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01))
     assert parse_joint(toml_of(file).encode(), "file").joint.liner == file.joint.liner
-    assert "hardening" not in tables_of(JointFile(bs.joints["hip-28"], {}))["liner"]
+    hip = bs.joints["hip-28"]
+    assert "hardening" not in tables_of(JointFile(hip, {}))["liner"]
+    without, named = replace(bs.UHMWPE, hardening=None), replace(bs.UHMWPE, name="mine")
+    others = hip.replace(liner=without, ball=named, backing=(bs.Layer(thickness=3.0, material=named),))
+    again = parse_joint(toml_of(JointFile(others, {"force": 3e3})).encode(), "file").joint
+    assert (again.liner.hardening, again.liner.yield_stress) == (None, bs.UHMWPE.yield_stress)
+    assert again.ball.yield_stress == again.backing[0].material.yield_stress == named.yield_stress
     with pytest.raises(ValueError, match="hardening = '0.02 GPa, 24:0.01' must be points 'stress:plastic strain'"):
         parse_joint(text.replace("GPa:0", "GPa").encode(), "file")
 

@@ -82,7 +82,8 @@ class ModelOptions:
         """Return the requested models by name: empty for the default, and every one that presses the joint for all."""
         if self.every:
             custom = [requested_model(name) for name in self.names if is_model_file(name)]
-            return {**{model.name: model for model in custom}, **every_model(file)}
+            yielding = {JUDGE: mesh.model(meshes, self.plastic)} if self.plastic else {}
+            return {**{model.name: model for model in custom}, **every_model(file), **yielding}
         models = [mesh.model(meshes, self.plastic) if name == JUDGE else requested_model(name) for name in self.names]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):

@@ -15,6 +15,8 @@ from ..core.sources import Source
 from .element import ForceElement
 from .load import Load
 
+_MAX_REPEATED = 1_000_000  # steps
+
 TONNE = 1e-3  # tonnes in a kilogram: N, mm, s and t form a consistent system
 
 
@@ -73,11 +75,13 @@ class Motion(Record):
 
     @cached_property
     def position_error(self) -> float | None:
-        """Estimated largest error of the position in mm by the phase error of the method, None without `repeat`.
+        """Estimated largest error of the position in mm by the phase error of the method.
+
+        None without `repeat`, and above a million steps.
 
         It is 4/3 of the difference from a repetition with half the step, since the method is of order 2.
         """
-        if self.repeat is None:
+        if self.repeat is None or len(self.time) > _MAX_REPEATED:
             return None
         finer = self.repeat(step=0.5 * float(self.time[1])).position[::2]
         if len(finer) < len(self.position):

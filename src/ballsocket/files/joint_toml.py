@@ -59,7 +59,7 @@ def _file_table(file: JointFile) -> JointFileTable:
         report=file.report if file.report != NO_DETAILS else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(**{name: Length(value) for name, value in _lengths(joint).items()}, support=joint.support),
-        liner=LinerTable(**_material(joint.liner)),
+        liner=_liner(joint.liner),
         ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
         backing=[LayerTable(thickness=Length(layer.thickness), **_material(layer.material)) for layer in joint.backing]
         or None,
@@ -99,10 +99,29 @@ def _material(material: Material) -> dict[str, Any]:
     """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
     numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
     values = {name: (PlainNumber if name == "poisson" else Pressure)(value) for name, value in numbers.items()}
-    hardening = {} if material.hardening is None else {"hardening": HardeningCurve(material.hardening)}
+    key = _preset_name(material)
+    if key is None:
+        return values
+    return {
+        "material": MaterialName(key),
+        **{name: value for name, value in values.items() if getattr(materials[key], name) != value},
+    }
+
+
+def _preset_name(material: Material) -> str | None:
+    """Return the preset that a file can change into the material; it cannot take a strength or the hardening away."""
     for key, preset in materials.items():
-        if preset.name == material.name and set(preset.stress_limits) <= set(values):
-            changed = {name: value for name, value in values.items() if getattr(preset, name) != value}
-            unchanged = preset.hardening == material.hardening
-            return {"material": MaterialName(key), **changed, **({} if unchanged else hardening)}
-    return {**values, **hardening}
+        has_all = set(preset.stress_limits) <= set(material.stress_limits) and (
+            material.hardening or not preset.hardening
+        )
+        if preset.name == material.name and has_all:
+            return key
+    return None
+
+
+def _liner(liner: Material) -> LinerTable:
+    """Return the table of a liner, with its hardening unless that is its preset's."""
+    key, hardening = _preset_name(liner), liner.hardening
+    if hardening is None or (key is not None and materials[key].hardening == hardening):
+        return LinerTable(**_material(liner))
+    return LinerTable(**_material(liner), hardening=HardeningCurve(hardening))

@@ -222,6 +222,23 @@ def test_a_liner_that_collapses_has_no_result():
     assert "collapse" in " ".join(contact.notes)
 
 
+def test_contacts_beyond_the_last_pressure_node_of_a_deep_cup_have_no_result():
+    """In a cup of 220 degrees the pressure nodes end at 88 degrees, before the rim."""
+    liner = bs.Material(young=300.0, poisson=0.45, hardening=bs.Hardening(stress=(60.0,)))
+    close, wide = (bs.joints["hip-28"].replace(clearance=clearance, liner=liner) for clearance in (0.002, 0.1))
+    deep = replace(MODEL, cup=bs.Cup(arc_of_cover=np.radians(220.0)))
+    assert deep.press(close, force=2e3).status is Status.NOT_REACHED
+    assert deep.follow(close, force=np.array([1.0, 2e3, 1.0])).status.tolist() == [Status.OK, *2 * [Status.NOT_REACHED]]
+    contact = deep.press(wide, force=2e4)
+    assert np.radians(66.0) < contact.half_angle < np.radians(88.0)
+    assert "its yielding by the hardening curve is solved for" in contact.utilisation_note
+
+
+def test_a_liner_with_a_curve_and_a_yield_stress_says_which_one_yields():
+    assert HIP.liner.yield_stress is not None
+    assert "hardening curve; its yield stress counts" in " ".join(MODEL.press(JOINT, force=1e3).notes)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

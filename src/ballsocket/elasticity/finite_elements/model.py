@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, nan
+from math import degrees, inf, nan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -14,6 +14,7 @@ from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
 from ...contact.law import ForceLaw
 from ...contact.per_joint import JointContacts, Solve, SolvedContact, joint_at, solve_per_joint
+from ...contact.roots import bisect
 from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
 from ...core.arrays import Array, Numbers, to_numpy
@@ -175,7 +176,21 @@ _OTHER_MODULUS = Remark(
 
 _SHAKEDOWN = Remark(quantity="repeated_work", high=1e-4, why="the liner ratchets: repeated loads add plastic work")
 
+
+def _meanings_of_yield(contact: Any) -> Array:
+    """Count the hardening curve and the yield stress, where a liner has both."""
+    liner = contact.joint.liner
+    return float(liner.hardening is not None) + float(liner.yield_stress is not None) + 0.0 * liner.young
+
+
+_CURVE_COUNTS = Remark(
+    quantity=_meanings_of_yield,
+    high=1,
+    why="the liner yields by its hardening curve; its yield stress counts for the utilisation only",
+)
+
 _FORCE_TOLERANCE = 1e-3  # relative, of the collapse and the shakedown load
+_MAX_DOUBLINGS = 20  # of the load from which these are bisected
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -278,7 +293,11 @@ class FiniteElement(Model):
     @property
     def remarks(self) -> tuple[Range, ...]:
         """Remarks on the gap, the bodies, and of a yielding liner on the modulus of its hardening and on ratcheting."""
-        return (*gap_remarks(self.gap), *_BODY_REMARKS, *([_OTHER_MODULUS, _SHAKEDOWN] if self.plastic else []))
+        return (
+            *gap_remarks(self.gap),
+            *_BODY_REMARKS,
+            *([_CURVE_COUNTS, _OTHER_MODULUS, _SHAKEDOWN] if self.plastic else []),
+        )
 
     def _law(self, joint: Joint) -> ForceLaw:
         """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
@@ -332,12 +351,13 @@ class FiniteElement(Model):
         """Bisect for the largest force in N that a socket bears, from its mean pressure at the yield stress."""
         model, curve = replace(self, meshes=1, plastic=True), joint.liner.yield_curve
         low, high = 0.0, 3.0 * (curve.stress[-1] if curve else 1.0) * float(joint.ball_radius) ** 2
-        while bears(model.press(joint, force=high)):
+        for _ in range(_MAX_DOUBLINGS):
+            if not bears(model.press(joint, force=high)):
+                return bisect(
+                    low, high, lambda force: bears(model.press(joint, force=force)), tolerance=_FORCE_TOLERANCE
+                )
             low, high = high, 2 * high
-        while high - low > _FORCE_TOLERANCE * high:
-            middle = (low + high) / 2
-            low, high = (middle, high) if bears(model.press(joint, force=middle)) else (low, middle)
-        return low
+        return inf
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")

@@ -104,26 +104,22 @@ class PlasticContact:
         return self.pair.radius * self.displacement[-len(self.path.body.body.contact) :]
 
     @cached_property
-    def unloaded(self) -> PlasticContact:
-        """Equilibrium after the load is removed."""
-        if not self.pressures.any():
-            return self
-        unloaded = self.path.approach("force", 0.0, self)
-        if unloaded is None:
-            raise ArithmeticError("unloading did not converge")
-        return unloaded
+    def unloaded(self) -> PlasticContact | None:
+        """Equilibrium after the load is removed; None if it is not found."""
+        return self.path.approach("force", 0.0, self) if self.pressures.any() else self
 
     @property
     def permanent_set(self) -> float:
-        """Largest outward displacement of the bore in mm that remains after the load is removed."""
-        return max(float(self.unloaded.bore_displacement.max()), 0.0)
+        """Largest outward displacement of the bore in mm that remains after the load is removed; NaN if unknown."""
+        return numpy.nan if self.unloaded is None else max(float(self.unloaded.bore_displacement.max()), 0.0)
 
     @cached_property
     def repeated_work(self) -> float:
         """Plastic work of the last of repeated loads, over the work until then; 0 once a repetition is elastic."""
         contact, growth = self, 0.0
         for _ in range(_MAX_REPETITIONS if self.plastic_work > 0 else 0):
-            repeated = self.path.approach("force", self.force, contact.unloaded)
+            rest = contact.unloaded
+            repeated = None if rest is None else self.path.approach("force", self.force, rest)
             if repeated is None:
                 return numpy.inf
             contact, growth = repeated, repeated.plastic_work / contact.plastic_work - 1

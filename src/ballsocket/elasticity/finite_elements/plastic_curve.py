@@ -104,8 +104,13 @@ class PlasticLoadCurve:
         return self._paths[number, mesh]
 
     def _rung(self, kind: str, number: int, index: int) -> float:
-        """Return a load of the ladder of a class, from 0 to that of its widest elastic contact and beyond."""
-        widest = float(getattr(self.elastic.contact_bracket(number, COARSE).samples[-1], kind))
+        """Return a load of the ladder of a class, from 0 to that of its widest elastic contact and beyond.
+
+        A class without elastic contacts has the ladder of the nearest one; without any there are no increments.
+        """
+        classes = sorted(range(len(self.elastic.classes) - 1), key=lambda other: abs(other - number))
+        samples = (self.elastic.contact_bracket(other, COARSE).samples for other in classes)
+        widest = next((float(getattr(contacts[-1], kind)) for contacts in samples if contacts), numpy.inf)
         return widest * (index / _RUNGS if index <= _RUNGS else _GROWTH ** (index - _RUNGS))
 
     def _press_on_mesh(self, kind: str, load: float, mesh: int) -> PlasticContact | None:
@@ -125,13 +130,19 @@ class PlasticLoadCurve:
         return None
 
     def _follow_on_mesh(self, kind: str, loads: list[float], mesh: int) -> list[PlasticContact | None]:
-        """Solve a path of loads on the mesh of its largest load, or a wider one where the contact needs it."""
+        """Solve a path of loads on the mesh of its largest load, or a wider one where the contact needs it.
+
+        From the first contact that fits no mesh, there are none.
+        """
         contacts: list[PlasticContact | None] = []
+        fitting = 0
         for number in range(self.elastic.mesh_class(kind, max(loads)), -1, -1):
             contacts = self._follow_in_class(kind, loads, number, mesh)
-            if all(contact is None or self._fits(contact, number) for contact in contacts):
+            misfits = (index for index, each in enumerate(contacts) if each and not self._fits(each, number))
+            fitting = next(misfits, len(contacts))
+            if fitting == len(contacts):
                 break
-        return contacts
+        return contacts[:fitting] + [None] * (len(contacts) - fitting)
 
     def _follow_in_class(self, kind: str, loads: list[float], number: int, mesh: int) -> list[PlasticContact | None]:
         path = self._path(number, mesh)
@@ -147,7 +158,9 @@ class PlasticLoadCurve:
 
     def _fits(self, contact: PlasticContact, number: int) -> bool:
         """Return True unless the contact reaches the end of its pressure nodes inside the bore."""
-        return number == 0 or not contact.pressures[-4:].any()
+        if number == 0:
+            return self.elastic.ends_at_rim or not contact.fills_bore
+        return not contact.pressures[-4:].any()
 
 
 @lru_cache(maxsize=16)

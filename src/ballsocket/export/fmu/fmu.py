@@ -226,7 +226,7 @@ STANDARDS: Mapping[int, Standard] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FmuFile:
-    """Written FMU archive: its path, and a note on a missing binary; empty if the archive is complete."""
+    """Written FMU archive: its path, and a note on missing binaries; empty if the archive is complete."""
 
     path: Path
     missing: str = ""
@@ -328,7 +328,7 @@ class Fmu:
         )
 
     def write(self, path: Path) -> FmuFile:
-        """Write the FMU archive, and return its path with a note if the binary for this platform is missing.
+        """Write the FMU archive, and return its path with a note on each binary that could not be made.
 
         Raises OSError: a folder that cannot be written to.
         """
@@ -372,5 +372,5 @@ class Fmu:
                     platform = compile_library(self.information.sources, library, folder, program=program)
                     binaries[platform] = library.read_bytes()
                 except NoCompiler as error:
-                    errors.append(str(error))
+                    errors.append(f"no binary by {program[0]}: {error}" if program else str(error))
         return binaries, errors
