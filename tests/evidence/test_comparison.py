@@ -158,7 +158,7 @@ def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, out):
     shutil.copytree(pack[2] / "data", out / "data")
     result = run(pack[2] / "asked.toml", "--out", out)
     stored = len(list((pack[2] / "data").rglob("*.json")))
-    assert f"{stored} results were read from an earlier, stopped run and not computed" in result.stdout
+    assert f"{stored} results of an earlier, stopped run not computed but read" in result.stdout
     assert result.stdout.startswith("largest pressure at most 15 MPa: exceeded: ")
     assert sorted(path.name for path in out.iterdir()) == sorted([PAGE, RECORD, SUMS, QUESTION])
     for name in (PAGE, RECORD, SUMS):
