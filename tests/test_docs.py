@@ -33,7 +33,19 @@ def fenced(text, language):
 
 SLOW = {
     *("clusters", "cup", "deck", "export", "film", "finite_elements", "gradients", "hip", "hip_validation"),
-    *("identify", "law", "many", "notebook", "off_axis", "patients", "preloaded", "programs", "sensitivity", "study"),
+    *(
+        "identify",
+        "law",
+        "many",
+        "notebook",
+        "off_axis",
+        "patients",
+        "plasticity",
+        "preloaded",
+        "programs",
+        "sensitivity",
+        "study",
+    ),
 }
 """Pages whose examples compute for half a second to four seconds each; they run with `--long`."""
 

@@ -212,7 +212,7 @@ class Contact(Outcome):
     def utilisation_note(self) -> str:
         """Reason why the strength of the liner is not checked; empty if the liner has a yield stress."""
         if self.yields and self.joint.liner.yield_stress is None:
-            return "the utilisation leaves out the liner without a yield_stress: its yielding by the hardening curve is solved for"
+            return "the utilisation leaves out the liner: its yielding by the hardening curve is solved for"
         return strength.unchecked_strength_reason(self.joint)
 
     @cached_property

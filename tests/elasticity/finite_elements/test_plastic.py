@@ -181,6 +181,7 @@ def test_a_set_bore_fits_the_ball_better_than_a_new_one(path):
     assert path.half_angle[5] > path.half_angle[1]
 
 
+@pytest.mark.long
 def test_the_work_of_the_load_is_elastic_energy_and_plastic_work():
     contact = MODEL.follow(JOINT, force=np.linspace(0.0, 12000.0, 61)[1:])
     force, depth = (np.append(0.0, values) for values in (contact.force, contact.indentation))
@@ -207,6 +208,7 @@ def test_stresses_inside_do_not_exceed_the_yield_stress():
     assert liner.stress.von_mises.max() == pytest.approx(reached, rel=0.05)
 
 
+@pytest.mark.long
 def test_the_error_bar_contains_the_difference_to_a_finer_mesh():
     fine = replace(MODEL, spacing=bs.Adapted(elements=120)).press(JOINT, force=9000.0)
     contact = replace(MODEL, meshes=2).press(JOINT, force=9000.0)
@@ -256,6 +258,7 @@ def test_refusals_name_the_reason(call, message):
         call()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("joint", "slope"), some([(bs.joints["hip-28"], 0.0), (bs.joints["hip-36"], 0.05), (JOINT, 0.1)], 1)
 )
