@@ -29,6 +29,8 @@ from .contact import Contact, Laws, PressModel
 from .joint_curve import joint_curve, solve_by_curve
 from .law import CurveLaw, ForceLaw
 
+_PLAIN_TYPES = {float, int, numpy.float64}  # of the numbers of a press by Python floats
+
 
 class Model(PressModel):
     """Base class of contact models: `press` computes the `Contact` of a joint under one load.
@@ -110,21 +112,10 @@ class Model(PressModel):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         types = {*map(type, (*joint.numbers(), value))}
-        if (
-            self.accepts_floats
-            and types <= {float, int, numpy.float64}
-            and {*map(type, self.parameters)} <= {float, int}
-        ):
-            try:
-                float_joint = _float_joint(self, joint)
-            except TypeError:  # a strength is an array, or a field of the model has no hash
-                float_joint = None
-            if float_joint is not None:
-                try:
-                    result = self._solve(float_joint, kind, float(value))
-                    return make_scalar_contact(self, self.contact_type, joint, kind, float(value), result)
-                except ArithmeticError:
-                    pass  # where Python floats raise, NumPy numbers become infinite or NaN
+        if self.accepts_floats and types <= _PLAIN_TYPES and {*map(type, self.parameters)} <= {float, int}:
+            contact = self._press_with_floats(joint, kind, float(value))
+            if contact is not None:
+                return contact
         value = broadcast_load(value, joint.strengths())
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
@@ -132,6 +123,20 @@ class Model(PressModel):
             result = self._solve_by_curve(joint, kind, load) or self._solve(array_joint, kind, load)
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
+
+    def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact | None:
+        """Press by Python floats, which are faster than arrays; None where these are needed."""
+        try:
+            float_joint = _float_joint(self, joint)
+        except TypeError:  # a strength is an array, or a field of the model has no hash
+            return None
+        if float_joint is None:
+            return None
+        try:
+            result = self._solve(float_joint, kind, load)
+            return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
+        except ArithmeticError:  # where Python floats raise, NumPy numbers become infinite or NaN
+            return None
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
         _, array_joint, d = as_arrays(joint, indentation)
