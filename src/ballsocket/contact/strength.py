@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from math import inf, nan, radians
 from typing import Any
@@ -199,8 +199,9 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
         name = "estimated von Mises stress" if bar.is_estimate else "von Mises stress"
         yield from _linearity_remarks("liner", joint.liner, bar.value, name)
     if joint.liner.strengths:
+        elastic = replace(joint.liner, yield_stress=None) if contact.yields else joint.liner
         yield from _exceeded_strength_remarks(
-            "liner", joint.liner, contact.quick_von_mises.high, lambda: contact.von_mises, pressure, contact.yields
+            "liner", elastic, contact.quick_von_mises.high, lambda: contact.von_mises, pressure
         )
     if joint.ball is not None:
         stress = joint_ball_stress_ratio(joint) * pressure
@@ -212,17 +213,10 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
 
 
 def _exceeded_strength_remarks(
-    body: str,
-    material: Material,
-    upper_bound: Array,
-    von_mises: Callable[[], Array],
-    pressure: Array,
-    yields: bool = False,
+    body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
     """Yield acceptable points and a note for each exceeded strength; von Mises stresses are at most `upper_bound`."""
     for name, strength in material.strengths.items():
-        if name == "yield_stress" and yields:
-            continue
         is_pressure_limit = name == "allowable_pressure"
         if all_true(logical_not((pressure if is_pressure_limit else upper_bound) > strength)):
             continue
