@@ -211,15 +211,22 @@ def read_results(out: Path) -> CcxAnswer:
 
 def indentation_and_gap(deck: dict[str, Any], bore: Numbers, ball: Numbers) -> tuple[float, Numbers]:
     """Compute the indentation in mm, and the gaps in mm between the bore's nodes and the ball, from printed rows."""
-    angle, moved = numpy.array(deck["bore"]["angle"]), {}
-    for name, rows in (("bore", bore), ("round", ball)):  # across and along the axis, from the pole on
-        rows_by_node = {int(node): row for row, node in enumerate(rows[:, 0])}
-        moved[name] = rows[[rows_by_node[node] for node in deck[name]["node"]], 1:3].T / deck["scale"]
-    ball_at_bore = [numpy.interp(angle, deck["round"]["angle"], component) for component in moved["round"]]
-    across, up = moved["bore"] - ball_at_bore
+    angle, ball_moved = numpy.array(deck["bore"]["angle"]), _surface_displacements(deck, "round", ball)
+    ball_at_bore = [numpy.interp(angle, deck["round"]["angle"], component) for component in ball_moved]
     opening = deck["joint"]["clearance"] * 2 * numpy.sin(angle / 2) ** 2
-    equator = moved["round"][1, -1]
-    return -float(equator), across * numpy.sin(angle) - up * numpy.cos(angle) + opening
+    equator = ball_moved[1, -1]
+    return -float(equator), _outward(angle, _surface_displacements(deck, "bore", bore) - ball_at_bore) + opening
+
+
+def _surface_displacements(deck: dict[str, Any], surface: str, rows: Numbers) -> Numbers:
+    """Return displacements in mm across and along the axis of a surface's nodes, from the pole on: (2, nodes)."""
+    rows_by_node = {int(node): row for row, node in enumerate(rows[:, 0])}
+    return rows[[rows_by_node[node] for node in deck[surface]["node"]], 1:3].T / deck["scale"]
+
+
+def _outward(angle: Numbers, displacements: Numbers) -> Numbers:
+    across, up = displacements
+    return across * numpy.sin(angle) - up * numpy.cos(angle)
 
 
 def bore_displacements(out: Path) -> dict[int, Numbers]:
@@ -230,12 +237,8 @@ def bore_displacements(out: Path) -> dict[int, Numbers]:
     """
     path, expected = deck_paths(out)
     deck = json.loads(expected.read_text(encoding="ascii"))
-    angle, outward = numpy.array(deck["bore"]["angle"]), {}
-    for step, rows in read_printed(path.with_suffix(".dat"), "BORE").items():
-        by_node = {int(row[0]): row[1:3] / deck["scale"] for row in rows}
-        across, up = numpy.array([by_node[node] for node in deck["bore"]["node"]]).T
-        outward[step] = across * numpy.sin(angle) - up * numpy.cos(angle)
-    return outward
+    angle, printed = numpy.array(deck["bore"]["angle"]), read_printed(path.with_suffix(".dat"), "BORE")
+    return {step: _outward(angle, _surface_displacements(deck, "bore", rows)) for step, rows in printed.items()}
 
 
 def edge_angle(angle: Numbers, gap: Numbers) -> float:

@@ -25,6 +25,7 @@ from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, St
 from ...problem import Joint, Material
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
+from .plasticity import SHAKEDOWN_WORK
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
 if TYPE_CHECKING:
@@ -174,7 +175,9 @@ _OTHER_MODULUS = Remark(
 )
 
 
-_SHAKEDOWN = Remark(quantity="repeated_work", high=1e-4, why="the liner ratchets: repeated loads add plastic work")
+_SHAKEDOWN = Remark(
+    quantity="repeated_work", high=SHAKEDOWN_WORK, why="the liner ratchets: repeated loads add plastic work"
+)
 
 
 def _meanings_of_yield(contact: Any) -> Array:

@@ -18,12 +18,12 @@ from ...problem.gaps import Gap
 from .bodies import SurfacePair
 from .pair_contact import edge_beyond, pressure_at_pole
 from .plastic_body import PlasticBody, Tangent
-from .plasticity import PlasticStrain
+from .plasticity import SHAKEDOWN_WORK, PlasticStrain
 
 _MAX_ITERATIONS, _MAX_SET_CHANGES = 20, 60
 _TOLERANCE = 1e-8  # of the nodal forces, relative
 _SMALLEST_STEP = 1 / 64  # of the way to a load
-SHAKEDOWN_WORK, _MAX_REPETITIONS = 1e-4, 20  # relative plastic work below which a repeated load is elastic
+_MAX_REPETITIONS = 20  # of a load
 _START_FRACTION = 0.25  # of the nodes: first guess of a contact
 _GAP_STEP = 1e-6  # over the radius
 
