@@ -1,6 +1,5 @@
 """Messages of checks: name, value, place in an array, allowed values and hints."""
 
-import pickle
 import re
 from functools import partial
 
@@ -24,13 +23,6 @@ def test_first_invalid_element_is_named_with_its_index(value, good, message):
     with pytest.raises(ValueError, match=f"^{re.escape(message)}"):
         checks.require("x", value, good, "it is positive")
     checks.require("x", value, good | True, "it is positive")
-
-
-def test_missing_modules_are_named_with_their_extra():
-    checks.needs("study", "numpy")
-    with pytest.raises(ImportError, match=r'no_such_module is not .*: pip install "ballsocket\[study\]"') as error:
-        checks.needs("study", "numpy", "no_such_module")
-    assert error.value.name == "no_such_module"
 
 
 @pytest.mark.parametrize(
@@ -96,27 +88,3 @@ def test_allowed_values_are_returned():
     assert checks.known_name("model", " Exact Curve", ["exact-curve"]) == "exact-curve"
     assert checks.known_name("model", "exact_curve", ["exact-curve"]) == "exact-curve"
     checks.reject_unnamed_loads(())
-
-
-def test_values_are_shown_on_one_short_line():
-    assert checks.shown("x" * 57) == "'" + "x" * 57 + "'"
-    assert checks.shown("x" * 58) == "'" + "x" * 39 + "..."
-    assert checks.shown(np.eye(2)) == "array([[1., 0.], [0., 1.]])"
-    assert checks.shown(10**5000) == "(int too long to show)"
-
-
-def test_named_items_suggest_a_name_and_can_be_pickled():
-    items = checks.NamedItems("planet", {"earth": 3})
-    copy = pickle.loads(pickle.dumps(items))
-    for table in (items, copy):
-        assert table["earth"] == 3
-        with pytest.raises(KeyError, match="planet 'Earth' is not known; did you mean 'earth'"):
-            table["Earth"]
-
-
-@pytest.mark.parametrize(
-    ("text", "number"),
-    [("10 %", "10"), (" 2.5e-1% ", "2.5e-1"), ("-3 %", "-3"), ("10", None), ("% 10", None), (10, None), ("", None)],
-)
-def test_percentages_are_recognised(text, number):
-    assert checks.number_of_percent(text) == number
