@@ -21,6 +21,8 @@ ABBREVIATIONS = {
 
 REFUSED = """
 press => a joint is needed: a file, a preset's name, or --ball-radius
+press file => file is empty: a joint file has tables, such as [joint]
+study file => file is empty: a study file has tables, such as [joint]
 press nothing.toml => 'nothing.toml' is neither a file nor a preset
 press hip-29 --force 1 => did you mean 'hip-
 press hip-28 => a load is needed: --force, --indentation or --half-angle

@@ -71,13 +71,6 @@ def test_help_is_printed_without_a_command_and_lists_press_first_and_all_with_th
     assert "fem: element size" in run("press", "-h").stdout  # the group names its model
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_help_of_a_command_fits_80_columns_and_begins_with_its_purpose(name):
-    text = run(name, "-h", columns=80).stdout
-    assert max(map(len, text.split("\n"))) <= 80
-    assert text.split("\n\n")[1].strip() == COMMANDS[name].__doc__.partition("\n")[0]
-
-
 JOINT_OPTIONS = {entry.name for entry in inputs_of(JointFileTable)}
 """Options whose default is the joint file or the preset, as the help of the argument states."""
 

@@ -139,7 +139,6 @@ def test_a_point_without_a_joint_or_a_result_is_nan_and_costs_infinitely_much():
 UNKNOWNS = collect_unknowns({"clearance": (0.05, 0.2), "liner_young": Normal(mean=1000.0, deviation=80.0)}, (), MODEL)
 TRANSFORM = ParameterTransform(UNKNOWNS)
 DATA = (measured("indentation", values=[0.02, 0.03, 0.045]), measured("max_pressure", values=[4.0, 7.0, 9.0]))
-FILM = replace(DATA[1], saturation=7.0)
 
 
 def misfit(*data, scatter=None):
