@@ -1,19 +1,13 @@
-"""Pages on clusters: the submit script of SLURM by a dry run, and the manifest of Kubernetes."""
+"""Page on clusters: the manifest of Kubernetes."""
 
-import os
 import re
-import stat
-import subprocess
-import sys
 
 import pytest
 
-import ballsocket as bs
 from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.file import read_study
 
 from .places import ROOT
-from .processes import PATIENCE
 
 HOW_TO = ROOT / "docs" / "how-to"
 
@@ -21,50 +15,6 @@ HOW_TO = ROOT / "docs" / "how-to"
 def blocks(page, language):
     text = (HOW_TO / page).read_text("utf-8")
     return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
-
-
-SLURM_PROGRAM = blocks("clusters.md", "text")[0]
-
-
-PROGRAMS = {
-    "sbatch": 'cp "$1" submitted.sh\nsh "$1" > worker.log 2>&1 &\necho $! >> jobs\necho "Submitted batch job 7"\n',
-    "scancel": "kill $(cat jobs) 2> /dev/null\n",
-}
-
-
-def encrypted(folder):
-    """Return the program with the lines of the page that encrypt the ports, and certificates in a folder."""
-    page = (HOW_TO / "clusters.md").read_text("utf-8")
-    lines = re.search(r"^  ```text\n(.*?)^  ```$", page, flags=re.MULTILINE | re.DOTALL)[1]
-    security, cluster, engine = (line.strip() for line in lines.splitlines())
-    options = cluster.removeprefix("cluster = SLURMCluster(").removesuffix(", ...)").replace("/home/me", str(folder))
-    start = "    cluster = SLURMCluster("
-    program = SLURM_PROGRAM.replace(start, f"    {security}\n{start}{options},")
-    return "import distributed\n" + re.sub(r"engine = Distributed\(.*\)", engine, program)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("program", "protocol"), [(lambda _: SLURM_PROGRAM, "tcp://"), (encrypted, "tls://")])
-def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program, protocol):
-    """A job starts at once, as a process of this machine, with one core and few points."""
-    pytest.importorskip("dask_jobqueue")
-    for name, text in PROGRAMS.items():
-        (tmp_path / name).write_text(f"#!/bin/sh\n{text}", encoding="utf-8")
-        (tmp_path / name).chmod(stat.S_IRWXU)
-    (tmp_path / "certificates").mkdir()
-    text = program(tmp_path).replace("cores=32", "cores=1").replace("processes=32", "processes=1")
-    text = text.replace("jobs=8", "jobs=1").replace(", 100)", ", 3)").replace("64GB", "1GB")
-    text = text.replace("walltime=", "scheduler_options={'host': '127.0.0.1'}, walltime=")
-    (tmp_path / "run_study.py").write_text(text, encoding="utf-8")
-    variables = {**os.environ, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
-    words, pipes = [sys.executable, "run_study.py"], {"capture_output": True, "text": True}
-    done = subprocess.run(words, cwd=tmp_path, env=variables, timeout=PATIENCE, **pipes)
-    assert done.returncode == 0, done.stderr
-    assert "Traceback" not in done.stderr
-    submitted = (tmp_path / "submitted.sh").read_text(encoding="utf-8")
-    assert "#SBATCH -p compute" in submitted
-    assert protocol in submitted
-    assert bs.studies.read(tmp_path / "hips.zarr").max_pressure.shape == (3, 3, 3)
 
 
 def test_the_manifest_of_kubernetes_is_complete(tmp_path):

@@ -2,8 +2,6 @@
 
 import re
 import runpy
-from pkgutil import iter_modules
-from types import ModuleType
 
 import pytest
 
@@ -19,15 +17,6 @@ from .extent import some
 from .joints import HIP
 from .places import ROOT
 from .printed import with_numbers_of
-
-
-@pytest.mark.parametrize("room", [bs, bs.hip, bs.identification, bs.studies], ids=lambda room: room.__name__)
-def test_exported_names_exist_are_unique_and_hide_no_module(room):
-    assert len(set(room.__all__)) == len(room.__all__)
-    assert set(room.__all__) <= set(dir(room))
-    assert all(getattr(room, name) is not None for name in room.__all__)
-    modules = {module.name for module in iter_modules(room.__path__)}
-    assert all(isinstance(getattr(room, name), ModuleType) for name in modules & set(room.__all__))
 
 
 def test_names_that_the_package_or_its_studies_do_not_have_suggest_similar_ones():

@@ -136,8 +136,6 @@ test_angles_in_degrees_are_refused_with_a_hint = refused_calls(
     (lambda: bs.Exact().press(HIP, force=1e3).stress(angle=30, depth=1.0), "angle = 30 is .* are 0.5236 radians$"),
     (lambda: bs.Exact().press(HIP, force=1e3).displacement(30), "angle = 30 is .* 30 degrees are 0.5236 radians$"),
     (lambda: bs.Exact().press(HIP, half_angle=40), "half_angle = 40 is .*; 40 degrees are 0.6981 radians$"),
-    (lambda: bs.Cup(arc_of_cover=160), "arc_of_cover = 160 is .*; 160 degrees are 2.793 radians$"),
-    (lambda: bs.Cup(inclination=45), "inclination = 45 is .*; 45 degrees are 0.7854 radians$"),
 )
 
 

@@ -8,44 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import ballsocket as bs
-from ballsocket.files.joint_file import parse_joint
-
-from ..places import EXAMPLES
 from ..processes import wait_until
 from .browser import NARROW, User, expect, opened_profile, pressure
 
 pytestmark = pytest.mark.long
-
-
-def test_joint_files_are_read_by_the_strict_reader(user):
-    user.open()
-    good = (EXAMPLES / "metal_backed_hip.toml").read_bytes()
-    for name, content, words in (
-        ("broken", b"[joint]\nball_radius = 14\nclearence = 0.1\n", "'clearence' in [joint] is not known"),
-        ("large", b"#" * 200_000, "large.toml is larger than 100000 bytes"),
-        ("binary", bytes(range(128, 256)), "is not TOML"),
-        ("good", good, "3 mm of titanium"),
-    ):
-        file = {"name": f"{name}.toml", "mimeType": "text/plain", "buffer": content}
-        user.page.locator("#joint-file").set_input_files(file)
-        assert user.says(words)
-    assert user.shows("max_pressure", bs.Exact().press(parse_joint(good, "good").joint, force=3000.0).max_pressure)
-
-
-def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
-    """The shaft changes the force alone, the knob the tilt alone; a handle moved by a key moves on with the next."""
-    user.open()
-    force = float(user.drags("[data-drag=load][tabindex]", (0, -20)).link()["load.force"])
-    assert force != 3000.0
-    turned = user.drags("[data-drag=tilt]", (80, 0)).link()
-    assert 10 < float(turned["load.tilt"]) < 45
-    assert float(turned["load.force"]) == force
-    user.page.locator("[data-drag=load][tabindex]").focus()
-    for _ in range(2):
-        user.page.keyboard.press("ArrowDown")
-        user.answered()
-    assert user.shows("force", force - 100.0)
 
 
 def test_on_a_narrow_screen_the_answers_come_first_and_no_column_lies_beside_it(browser, address):
@@ -312,51 +278,6 @@ def test_a_limit_is_dragged_and_undone_as_one_step(user):
     user.until("location.search.includes('%3D26.0')")
     user.answered()
     expect(user.page.locator(".limit-rows input")).to_have_value("26")
-
-
-def test_rows_of_limits_are_added_refused_and_taken_away(user):
-    user.open("?view=map")
-    user.page.locator("button", has_text="Add a limit").click()
-    row = user.page.locator(".limit-rows > div")
-    box = row.locator("input")
-    expect(box).to_be_focused()
-    row.locator("select").first.select_option(label="Outer diameter")
-    expect(box).to_have_value("38.2")
-    box.fill("52,x")
-    box.press("Enter")
-    assert user.says("Outer diameter must be a number in mm")
-    expect(box).to_have_value("52,x")
-    box.fill("52")
-    box.press("Enter")
-    user.until("location.search.includes('limit=outer_diameter%3C%3D52.0')")
-    row.locator("button").click()
-    user.until("!location.search.includes('limit=')")
-    assert row.count() == 0
-
-
-def test_elements_run_beside_others_who_go_on(user, profile, address):
-    """A run answers, another is cancelled, and somebody else's page answers before the run does."""
-    user.open("?view=judge")
-    other = User(profile, address).open()
-    button = user.page.locator("[data-name='judge.run'] button")
-    button.click()
-    expect(button).to_have_text("Cancel")
-    other.nudge("clearance")
-    assert other.shows("max_pressure", pressure(clearance=0.105))
-    other.page.close()
-    picture = user.page.locator("svg[aria-label^='mesh and von Mises']")
-    assert not picture.is_visible()
-    picture.wait_for()
-    row = user.page.locator("#judge-numbers tr", has_text="largest pressure [").locator("td")
-    contact = bs.FiniteElement().press(bs.joints["hip-28"], force=3000.0)
-    assert float(row.nth(1).inner_text()) == pytest.approx(contact.max_pressure, rel=1e-3)
-    user.nudge("clearance")
-    assert user.says("belong to earlier inputs")
-    assert picture.is_visible()
-    button.click()
-    expect(button).to_have_text("Cancel")
-    button.click()
-    assert user.says("Cancelled.")
 
 
 def share_of_colours(pixels):

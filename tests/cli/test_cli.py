@@ -12,11 +12,9 @@ from types import SimpleNamespace
 import pytest
 
 import ballsocket as bs
-from ballsocket import cli, press_answer
+from ballsocket import cli
 from ballsocket.cli import root
 from ballsocket.cli.json_answers import echo_json
-from ballsocket.cli.press_files import ReportOptions
-from ballsocket.files.joint_file import JointFile
 
 from ..extent import some
 from ..places import EXAMPLES
@@ -123,11 +121,11 @@ def test_a_long_message_is_one_line_with_its_beginning_and_its_end(capsys):
 
 
 @pytest.mark.long
-def test_no_warning_is_printed_for_two_equal_samples_nor_for_a_figure_of_zero_load(tmp_path):
+def test_no_warning_is_printed_for_two_equal_samples_nor_for_figure_and_report_of_zero_load(tmp_path):
     spread = ("--spread", "clearance=0.005+-0.005", "--count", "2", "--model", "tabulated")
     for words in (
         ("sensitivity", "hip-22", "--force", "3.61e3", *spread),
-        ("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png")),
+        ("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png"), "--report", str(tmp_path / "a.html")),
     ):
         assert run(*words).stderr == ""
 
@@ -195,44 +193,10 @@ def pressed(*words):
     return said["joint"], [result["max_pressure"] for result in said["results"]]
 
 
-@pytest.mark.parametrize(
-    ("command", "text", "message"),
-    [
-        ("press", "# nothing yet\n", "it.toml is empty: a joint file has tables, such as [joint]\n"),
-        ("study", "# nothing yet\n", "it.toml is empty: a study file has tables, such as [joint]\n"),
-        ("study", 'joint = "hip-28"\n[axes]\nclearance = 0.1', "one load is needed"),
-        ("press", "[joint]\nclearence = 1", "it.toml: 'clearence' in [joint] is not known; did you mean 'clearance'?"),
-    ],
-)
-def test_a_mistake_in_a_file_is_reported_with_its_name(command, text, message, tmp_path):
-    (tmp_path / "it.toml").write_text(text, encoding="utf-8")
-    done = run(command, str(tmp_path / "it.toml"))
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"ballsocket: {message}")
-
-
-def test_models_describes_one_model_in_full():
-    text = run("models", "Hess Forsbach").stdout
-    assert text.startswith("hess-forsbach: radial springs")
-    assert "a contact narrower than the liner is thick" in text
-    assert "10.3390/app112311170" in text
-    assert "hertz" not in text
-    listed = answer("models")["models"]
-    assert {each["name"] for each in listed} >= set(bs.catalogue)
-    (one,) = answer("models", "hess-forsbach")["models"]
-    assert one in listed
-    assert one["promise"]["within"] == bs.HessForsbach().promise.within
-    assert run("models", "hess").stderr == "ballsocket: model 'hess' is not known; did you mean 'hess-forsbach'?\n"
-
-
 def test_presets_describes_one_preset_in_full():
-    text = run("presets", "hip-36").stdout
-    for title, value in (("head diameter", "36 mm"), ("diametral clearance", "0.2 mm"), ("outer diameter", "46.2 mm")):
-        assert re.search(rf"^{title} +{value}", text, flags=re.MULTILINE)
     text = run("presets", "UHMWPE").stdout
     assert bs.UHMWPE.source[:30] in text
     assert re.search(r"^wear factor +1.066e-06 mm³/\(N m\), range 7e-07 mm³", text, flags=re.MULTILINE)
-    assert "687 (unverified); range: a factor of 1.5 (assumed)" in " ".join(text.split())
     assert "wear factor" not in run("presets", "pom").stdout
     listed = answer("presets")
     assert (set(listed["joints"]), set(listed["materials"])) == (set(bs.joints), set(bs.materials))
@@ -300,11 +264,9 @@ def test_an_iteration_without_convergence_gives_status_3(monkeypatch, capsys):
 
 
 def test_lists_references_and_version_are_printed():
-    models, presets, cited = run("models", columns=140).stdout, run("presets").stdout, run("cite").stdout
-    for words in (*bs.catalogue, "pin-in-hole", "ν 0.15 to 0.47", "Heß & Forsbach 2021"):
-        assert words in models
-    assert "hip-28" in presets
-    assert "@phdthesis{persson1964" in cited
+    assert {each["name"] for each in answer("models")["models"]} >= set(bs.catalogue)
+    assert "10.3390/app112311170" in run("models", "Hess Forsbach").stdout
+    assert "@phdthesis{persson1964" in run("cite").stdout
     assert run("cite", "hertz").stdout.startswith("@article{hertz1882,")
     assert "@article{plank2007," in run("cite", "hip-28").stdout
     assert run("--version").stdout == f"ballsocket {bs.__version__}\n"
@@ -347,15 +309,6 @@ def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     assert "reaches its rim" not in run(*words, "--arc-of-cover", "180 deg", columns=160).stdout
 
 
-def test_the_exact_result_is_first_and_deviations_follow():
-    lines = run("press", "hess-forsbach", "--force", "3 kN").stdout.splitlines()
-    rows = {line.split()[0]: line.split() for line in lines if line.startswith(("exact ", "hess-forsbach ", "  Δ"))}
-    assert list(rows) == ["exact", "hess-forsbach", "Δ"]
-    exact, paper = ([float(word) for word in rows[name][2:9]] for name in ("exact", "hess-forsbach"))
-    differences = [100 * (value / reference - 1) for value, reference in zip(paper, exact, strict=True)]
-    assert [float(word) for word in rows["Δ"][2:9]] == pytest.approx(differences, abs=0.1)  # printed with 0.1 %
-
-
 @pytest.mark.parametrize("ending", some(["png", "svg", "pdf"], 1))
 def test_press_writes_a_figure_in_each_format(tmp_path, ending):
     path = tmp_path / f"press.{ending}"
@@ -369,18 +322,3 @@ def test_an_optimum_of_two_ranges_is_drawn_as_a_map(tmp_path):
     ranges = ("--vary", "clearance=50..200 um", "--vary", "liner_thickness=4..8 mm", "--points", "3")
     printed("optimise", "hip-36", "--force=3 kN", "--model=bartel", *ranges, "--figure", "a.png", folder=tmp_path)
     assert (tmp_path / "a.png").stat().st_size > 5000
-
-
-@pytest.mark.parametrize(("distance", "clearance", "text"), [(0.2, 0.0, ".* undecided"), (-9.4, -0.1, "up to the rim")])
-def test_a_contact_at_the_rim_has_no_negative_distance_and_a_preloaded_one_has_none(distance, clearance, text):
-    joint, error = SimpleNamespace(clearance=clearance, socket_radius=14.0), {"edge_margin": 0.02}
-    state = {"edge_distance": distance, "edge_loaded": True, "half_angle": 0.7, "stated_error": error}
-    contact = SimpleNamespace(joint=joint, error=error, **state)
-    assert re.fullmatch(f"contact {text}", press_answer._rim_sentence(contact))
-
-
-@pytest.mark.parametrize("load", [{"indentation": 0.04}, {"half_angle": 0.7}, {"force": 0.0}])
-def test_tolerances_are_studied_for_a_load_with_contact(load):
-    joint = bs.joints["hip-36"]
-    study = ReportOptions(report=Path("a.html"))._tolerance_study(bs.compare(joint, **load), JointFile(joint, load))
-    assert (study is None) == (load == {"force": 0.0})

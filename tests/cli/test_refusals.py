@@ -21,6 +21,8 @@ ABBREVIATIONS = {
 
 REFUSED = """
 press => a joint is needed: a file, a preset's name, or --ball-radius
+press file => file is empty: a joint file has tables, such as [joint]
+study file => file is empty: a study file has tables, such as [joint]
 press nothing.toml => 'nothing.toml' is neither a file nor a preset
 press hip-29 --force 1 => did you mean 'hip-
 press hip-28 => a load is needed: --force, --indentation or --half-angle
@@ -71,6 +73,7 @@ press {hip-36} --liner uhmwpe,pom => 'uhmwpe,pom' are several, and one is needed
 optimise {hip-36} --vary clearance=0..1 --vary liner=uhmwpe,pom --figure a.png => two axes, and 1 numbers vary
 build-tables --out no/a.npz => no/a.npz: No such file or directory
 schema hipp => kind of file 'hipp' is not known; did you mean 'hip'?
+models hess => model 'hess' is not known; did you mean 'hess-forsbach'?
 cite herz => model, material or joint 'herz' is not known; did you mean 'hertz'?
 cite titanium => no known publication is named in the source of titanium
 

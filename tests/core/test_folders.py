@@ -2,7 +2,7 @@
 
 import pytest
 
-from ballsocket.core.storage.folders import LocalFolder, RemoteFolder, folder_at, open_address
+from ballsocket.core.storage.folders import LocalFolder, RemoteFolder, folder_at
 
 fsspec = pytest.importorskip("fsspec")
 
@@ -35,11 +35,6 @@ def write_draft(path):
     (path / "array" / "part").write_text("part", encoding="utf-8")
 
 
-def test_a_folder_is_created_from_a_draft(folder):
-    folder.create(write_draft)
-    assert (folder.read("label"), folder.read("array/part")) == (b"label", b"part")
-
-
 def test_a_remote_folder_has_its_label_first(monkeypatch):
     written = []
     monkeypatch.setattr(RemoteFolder, "write", lambda self, name, content: written.append(name))
@@ -51,14 +46,3 @@ def test_addresses_and_paths_are_folders_of_their_kind(tmp_path):
     assert folder_at("s3://bucket/a.zarr/") == RemoteFolder("s3://bucket/a.zarr")
     assert folder_at(f"file://{tmp_path}") == folder_at(tmp_path) == LocalFolder(tmp_path)
     assert folder_at(tmp_path).free_space() < folder_at("s3://bucket/a").free_space()
-
-
-def test_errors_of_a_remote_store_are_one_sentence_with_the_address(monkeypatch):
-    def fail(self, path):
-        raise RuntimeError("no\nanswer")
-
-    monkeypatch.setattr(fsspec.filesystem("memory").__class__, "exists", fail)
-    with pytest.raises(OSError, match="the remote store failed: no answer: 'memory://bucket'"):
-        folder_at("memory://bucket").exists()
-    with pytest.raises(ValueError, match="unknown://bucket/a: Protocol not known: unknown"):
-        open_address("unknown://bucket/a")

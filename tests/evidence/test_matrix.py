@@ -1,17 +1,22 @@
-"""Matrix of cases: order of the cases, worst rows, limits, and the texts of numbers and inputs."""
+"""Matrix of cases: order of the cases, worst rows, limits, and figures of the record."""
 
+import copy
+import json
 import math
 
+import numpy as np
 import pytest
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 import ballsocket as bs
 from ballsocket.core.arrays import to_numpy
 from ballsocket.evidence import matrix
-from ballsocket.evidence.matrix import MatrixRow, check_limit, input_title, limit_text, list_cases, number
+from ballsocket.evidence.matrix import WEAR, MatrixRow, check_limit, list_cases
 from ballsocket.problem.cup import UP
+from ballsocket.reports import evidence_parts as figures
 from ballsocket.studies.expressions import parse_limit
 
+from ..places import EXAMPLES
 from .small_pack import CLEARANCE, FORCE, question_of
 
 PRESSURES = (10.0, 19.5, 21.0, math.nan)
@@ -106,10 +111,59 @@ def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
     assert tilted.numbers["friction_torque"] == pytest.approx(aligned, rel=0.15)
 
 
-def test_numbers_are_written_with_five_digits_and_limits_and_inputs_in_words():
-    texts = {None: "–", "inf": "inf", 12345.678: "12346", 0.123456: "0.12346", 1.5e-7: "1.5e-07"}
-    texts |= {123456789.0: "123460000", 1.2e9: "1.2e+09", -2.5e6: "-2500000"}
-    assert {value: number(value) for value in texts} == texts
-    limit = {"name": "max_pressure", "low": 1.0, "high": 15.0}
-    assert limit_text(limit) == "largest pressure at least 1 MPa and at most 15 MPa"
-    assert input_title("backing[2].young") == "Young's modulus of layer 3 behind the liner"
+def texts(axes):
+    return {text.get_text() for text in axes.texts}
+
+
+def test_the_figure_of_three_inputs_marks_the_worst_cell_a_missing_one_and_what_is_beyond_a_limit(record):
+    rows = [copy.deepcopy(row) for _ in range(2) for row in record["matrix"]]
+    for number, row in enumerate(rows):
+        row["case"] = {"head_diameter": 28.0 + number // 4, **row["case"]}
+        row["numbers"] |= {"max_pressure": 8.0 + number, WEAR.key: 30.0}
+    record |= {"matrix": rows, "worst": {"max_pressure": rows[-1]}}
+    axes = figures.matrix_figure(record).axes[0]
+    assert sorted(map(float, texts(axes))) == [8.0 + number for number in range(8)]
+    (frame,) = [patch for patch in axes.patches if not patch.fill]
+    column, line = np.round(np.add(frame.get_xy(), 0.47)).astype(int)
+    assert axes.images[0].get_array()[line, column] == 15.0
+    record["limits"][0]["high"] = 12.0
+    axes = figures.matrix_figure(record).axes[0]
+    assert len([line for line in axes.lines if line.get_marker() == "x"]) == 3
+    assert axes.get_ylabel() == "head diameter [mm]"
+    assert axes.get_xlabel() == "radial clearance [mm] | normal force [N]"
+    rows[0]["numbers"]["max_pressure"] = None
+    assert np.isnan(figures.matrix_figure(record).axes[0].images[0].get_array().filled(np.nan)).sum() == 1
+    wear = figures.matrix_figure({**record, "worst": {WEAR.name: rows[-1]}}, WEAR.name)
+    assert wear.axes[1].get_ylabel() == "wear in 10⁶ cycles [mm³]"
+
+
+def test_the_joint_is_drawn_with_a_contact_about_its_axis(record):
+    axes = figures.joint_figure(record).axes[0]
+    contact, half_angle = axes.lines[-1].get_xydata(), record["drawn"]["half_angle_deg"]
+    assert np.hypot(*contact.T) == pytest.approx(18.15)  # the bore of the worst case
+    assert np.degrees(np.arctan2(contact[-1, 0], -contact[-1, 1])) == pytest.approx(half_angle)
+    assert "cross-linked PE, 5 mm" in texts(axes)
+    off_axis = figures.joint_figure({**record, "drawn": {**record["drawn"], "half_angle_deg": None}})
+    assert not any("contact" in text for text in texts(off_axis.axes[0]))
+    metal = bs.read_joint(EXAMPLES / "metal_backed_hip.toml").joint.summary()
+    backed = figures.joint_figure({**record, "drawn": {**record["drawn"], "joint": json.loads(json.dumps(metal))}})
+    assert any("titanium, 3 mm" in text for text in texts(backed.axes[0]))
+
+
+def test_methods_bands_and_wear_are_drawn_at_their_numbers(record):
+    methods = figures.methods_figure(record).axes[0]
+    exact, *others = (method["numbers"]["max_pressure"] for method in record["calculation"][0]["methods"])
+    deviations = [line.get_xdata()[0] for line in methods.lines if line.get_marker() in "os"]
+    assert set(np.round([100 * (other / exact - 1) for other in others], 6)) <= set(np.round(deviations, 6))
+    left, right = figures.bands_figure(record).axes
+    low, median, high = (record["uncertainty"]["bands"]["max_pressure"][end] for end in ("low", "median", "high"))
+    ends = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in left.patches]
+    assert pytest.approx((100 * (low / median - 1), 100 * (high / median - 1))) in ends
+    indices = record["uncertainty"]["sobol"]["max_pressure"].values()
+    assert {*indices} <= {bar.get_width() for bar in right.patches}
+    history = [{"cycles": 1e6, "volume": 30.0}, {"cycles": 2e6, "volume": 61.0}]
+    bands = [{"cycles": 2e6, "volume": {"low": 20.0, "median": 61.0, "high": 100.0}}]
+    wear = figures.wear_figure({"wear": {"history": history, "bands": bands}}).axes[0]
+    assert wear.lines[0].get_ydata()[-1] == 61.0
+    assert wear.collections[0].get_paths()[0].vertices[:, 1].max() == 100.0
+    assert figures.wear_figure({"wear": {"history": history}}).axes[0].collections[:] == []

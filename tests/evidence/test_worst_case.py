@@ -2,7 +2,7 @@
 
 from importlib.util import find_spec
 from types import SimpleNamespace
-from unittest.mock import Mock, PropertyMock
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -126,13 +126,3 @@ def test_calculix_is_run_on_the_deck_of_the_case(pack, monkeypatch, tmp_path):
     monkeypatch.setattr(worst_case.shutil, "which", lambda name: None)
     assert solve_with_calculix(question, CASE) == []
     assert solve_with_calculix(pack[0], CASE) == []  # the question requires no finite elements
-
-
-def test_hips_without_a_contact_have_no_wear_rate(monkeypatch, pack):
-    first = PropertyMock(side_effect=ValueError("no contact"))
-    monkeypatch.setattr(worst_case, "read_hip", lambda path: None)
-    monkeypatch.setattr(worst_case, "_simulation", lambda *arguments: type("Hip", (), {"first": first})())
-    question = SimpleNamespace(hip="hip.toml")
-    cases = [{"clearance": 0.1, "force": 1.0}, {"clearance": 0.1, "force": 2.0}, {"clearance": 0.2, "force": 1.0}]
-    assert worst_case.wear_rates(question, cases) == [None, None, None]
-    assert first.call_count == 2  # cases that differ only in their load are computed once

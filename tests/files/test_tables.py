@@ -173,10 +173,6 @@ def test_an_excel_file_is_read_from_the_sheet_with_the_columns(tmp_path, monkeyp
     monkeypatch.setattr(columns, "_MAX_BYTES", 100)
     with pytest.raises(ValueError, match="at most 0 MB"):
         read_columns(tmp_path / "press.xlsx", NAMES)
-    monkeypatch.undo()
-    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
-    with pytest.raises(ImportError, match=r'openpyxl is not installed: pip install "ballsocket\[xlsx\]"'):
-        read_columns(tmp_path / "press.xlsx", NAMES)
 
 
 def test_all_files_that_name_a_table_have_the_keys_columns_and_skip(tmp_path):

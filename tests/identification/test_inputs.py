@@ -1,6 +1,6 @@
 """Measurements, machines and unknowns: their numbers, the search scale, and refusals with the reason."""
 
-from math import inf, log, nan, sqrt
+from math import inf, log, nan
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from ballsocket.identification import CustomObservable, HeavyTailed, Machine, Me
 from ballsocket.identification.misfit import by_tracing
 from ballsocket.identification.synthetic import trials
 from ballsocket.identification.unknowns import ParameterTransform, collect_unknowns, log_prior
-from ballsocket.studies import LogNormal, Normal, Rectangular
+from ballsocket.studies import LogNormal, Normal
 
 from ..refusals import refused_calls
 from .rigid import JOINT, MODEL
@@ -110,39 +110,11 @@ test_arguments_of_another_kind_are_refused = refused_calls(
 )
 
 
-def test_numbers_become_rows_of_the_values():
-    data = measured(load_uncertainty=5.0)
-    for row, expected in (
-        (data.values, [0.01, 0.02, 0.03]),
-        (data.uncertainty, [1e-3] * 3),
-        (data.loads, FORCE),
-        (data.load_uncertainty, [5.0] * 3),
-        (data.order, [0.0, 1.0, 2.0]),
-        (measured().load_uncertainty, [0.0] * 3),
-        (data.saturated, [False] * 3),
-        (measured(values=5.0, force=FORCE[:1]).values, [5.0]),
-        (measured(values=[0.0, 0.02, 0.03], force=[0.0, 100.0, 200.0]).values, [0.0, 0.02, 0.03]),  # no load, no value
-        (measured("max_pressure", [4.0, 7.0, 8.0], saturation=7.0).saturated, [False, True, True]),
-    ):
-        np.testing.assert_array_equal(row, expected)
-    assert (len(data), data.load, data.described.title) == (3, "force", "indentation")
-    of_joint = Measured(quantity="liner_young", values=[900.0, 950.0], uncertainty=[10.0, 20.0])
-    assert (of_joint.load, len(of_joint.loads), len(of_joint)) == ("", 0, 2)
-
-
 def test_a_machine_with_a_zero_error_may_read_below_zero_and_without_a_load():
     for machine in (Machine(offset=-0.02), Machine(drift=-0.02), Machine(offset=(-0.1, 0.0))):
         assert measured(values=[-0.01, 0.0, 0.02], force=[0.0, 100.0, 200.0], machine=machine).values[0] == -0.01
         by_depth = measured("force", FORCE, None, indentation=[-0.01, 0.02, 0.03], machine=machine)
         assert by_depth.loads[0] == -0.01
-
-
-def test_an_area_is_at_most_half_of_the_ball():
-    half = 2 * np.pi * JOINT.ball_radius**2
-    measured("area", [0.999 * half] * 3).check_area(JOINT)
-    measured(values=[1e4, 2e4, 3e4]).check_area(JOINT)
-    with pytest.raises(ValueError, match=r"area\[0\] = .* is not allowed: a contact area is below half of the ball"):
-        measured("area", [1.001 * half] * 3).check_area(JOINT)
 
 
 def test_a_custom_observable_is_read_from_contacts_with_any_name_and_values():
@@ -159,33 +131,9 @@ def unknown_of(name, prior, machines=()):
 
 
 RANGE = unknown_of("clearance", (0.02, 0.3))
-LINEAR = unknown_of("clearance", (0.0, 0.3))
 POISSON = unknown_of("liner_poisson", (0.3, 0.48))
 NORMAL = unknown_of("liner.young", Normal(mean=900.0, deviation=50.0))
 FACTOR = unknown_of("clearance", LogNormal(median=0.1, factor=1.2))
-ALL = ParameterTransform((RANGE, POISSON, NORMAL, FACTOR))
-VALUES = np.array([[0.05, 0.4, 860.0, 0.09], [0.2, 0.31, 1000.0, 0.13]])
-
-
-def test_a_range_above_zero_is_searched_on_a_logarithmic_scale_in_deviations_of_its_prior():
-    assert [unknown.logarithmic for unknown in (RANGE, FACTOR, LINEAR, POISSON, NORMAL)] == [True, True, *[False] * 3]
-    assert [unknown.has_distribution for unknown in (RANGE, POISSON, NORMAL, FACTOR)] == [False, False, True, True]
-    deviations = [unknown.prior_deviation for unknown in (RANGE, LINEAR, NORMAL, FACTOR)]
-    assert deviations == pytest.approx([log(15.0) / sqrt(12), 0.3 / sqrt(12), 50.0, log(1.2)])
-    means = [unknown.prior_mean for unknown in (RANGE, NORMAL, FACTOR)]
-    assert means == pytest.approx([0.0, 18.0, log(0.1) / log(1.2)])
-
-
-def test_theta_is_the_scaled_value_over_the_span_with_its_derivatives():
-    theta, scaled = ALL.to_theta(VALUES), VALUES.copy()
-    scaled[:, [0, 3]] = np.log(VALUES[:, [0, 3]])
-    np.testing.assert_allclose(theta, scaled / [unknown.prior_deviation for unknown in ALL.unknowns], rtol=1e-14)
-    np.testing.assert_allclose(ALL.to_values(theta), VALUES, rtol=1e-13)
-    np.testing.assert_allclose(ALL.low, ALL.to_theta([unknown.low for unknown in ALL.unknowns]))
-    assert ALL.names == ("clearance", "liner_poisson", "liner_young", "clearance")
-    for index, shift in enumerate(1e-6 * np.eye(4)):
-        slope = (ALL.to_values(theta + shift) - ALL.to_values(theta - shift)) / 2e-6
-        np.testing.assert_allclose(ALL.derivatives(theta)[:, index], slope[:, index], rtol=1e-7)
 
 
 def test_the_log_prior_is_flat_in_the_value_of_a_range_and_minus_half_the_squared_distance_of_a_distribution():
@@ -218,11 +166,3 @@ def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
     poisson = unknown_of("liner_poisson", (0.3, 0.5))
     assert poisson.is_physical(1, 0.5 / poisson.prior_deviation)
     assert not POISSON.is_physical(1, 0.48 / POISSON.prior_deviation)
-
-
-def test_unknowns_are_those_of_the_joint_and_then_those_of_machines():
-    machines = [Machine(drift=(-1e-3, 1e-3), compliance=(0.0, 1e-5), name="a"), Machine(name="b"), Machine(name="")]
-    unknowns = collect_unknowns({"clearance": (0.1, 0.2)}, [*machines, machines[0]], MODEL)
-    kinds = [(unknown.name, unknown.of_machine) for unknown in unknowns]
-    assert kinds == [("clearance", False), ("a.compliance", True), ("a.drift", True)]
-    assert isinstance(unknowns[0].prior, Rectangular)

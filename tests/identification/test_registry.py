@@ -12,7 +12,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.identification import MACHINE_ERRORS, MODEL_NUMBERS, Machine, Measured, sliding_torque
 from ballsocket.identification.file import read_identify
-from ballsocket.identification.misfit import by_differences
 from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
 
@@ -93,20 +92,6 @@ def identified(data, free=FRICTION):
     return bs.identify(bs.HessForsbach(), HIP, data, free)
 
 
-@pytest.mark.long
-def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis():
-    for axis_angle in some([0.7, 0.0, pi / 2], 1):
-        result = identified(torques(axis_angle=axis_angle))
-        assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
-        assert result.identifiable
-        assert result["friction_coefficient"].unit == "1"
-        assert (result.joint, result.model) == (HIP, bs.HessForsbach())
-    press = Measured(quantity="indentation", values=SLIDING.indentation, uncertainty=1e-4, force=LOADS)
-    result = identified([press, torques()], {"clearance": (0.02, 0.3), **FRICTION})
-    assert result.point == pytest.approx({"clearance": HIP.clearance, "friction_coefficient": 0.06}, rel=1e-4)
-    assert result.identifiable
-
-
 def test_estimate_and_band_of_friction_are_those_of_weighted_linear_regression():
     """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
     lever = np.asarray(SLIDING.friction_torque(1.0))
@@ -115,16 +100,6 @@ def test_estimate_and_band_of_friction_are_those_of_weighted_linear_regression()
     assert estimate.value == pytest.approx(lever @ values / (lever @ lever), rel=1e-6)
     half = 1.959964 * 20.0 / sqrt(lever @ lever)
     assert (estimate.high - estimate.low) / 2 == pytest.approx(half, rel=1e-3)
-
-
-def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
-    pytest.importorskip("jax")
-    from ballsocket.identification.misfit import by_tracing
-
-    misfit = identified(torques()).misfit
-    arguments = misfit.forward, misfit.transform, misfit.transform.to_theta([0.06])
-    for traced, differences in zip(by_tracing(*arguments), by_differences(*arguments), strict=True):
-        np.testing.assert_allclose(traced, differences, rtol=1e-8)
 
 
 @pytest.mark.parametrize(("axis", "angle"), some([('axis_angle = "0 deg"', 0.0), ("", pi / 2)], 1))

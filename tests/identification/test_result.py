@@ -1,19 +1,17 @@
 """Notes, summary, curves and sensitivities of a result; candidates for the next measurement; synthetic data."""
 
 from dataclasses import replace
-from math import log2, nan, sqrt
+from math import log2, sqrt
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identification import Estimate, HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification import HeavyTailed, Machine, Measured, NormalScatter
 from ballsocket.identification.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
 from ballsocket.identification.result import von_neumann_ratio
-from ballsocket.identification.sensitivity import Sensitivity
 from ballsocket.identification.synthetic import Trials, draw_data_sets, trials
 from ballsocket.reports.identify_results import corner_figure
-from ballsocket.studies import Normal
 
 from .rigid import JOINT, MODEL
 
@@ -124,27 +122,6 @@ def test_a_search_without_convergence_is_noted_with_the_notes_of_the_model():
     assert "the search did not converge: the numbers are those of its last step" in stopped.notes
     assert "another point fits the data about as well: sample the posterior" in stopped.notes
     assert (result.summary()["valid"], stopped.summary()["valid"]) == (True, False)
-
-
-def test_an_estimate_has_a_ratio_to_its_prior_and_a_summary():
-    free = {"liner.young": Normal(mean=1000.0, deviation=5.0)}
-    estimate = identified(measured("area", uncertainty=4.0), free=free)["liner.young"]
-    assert (estimate.identifiable, estimate.limited_by, estimate.width_ratio < 1.0) == (True, (), True)
-    summary = Estimate("clearance", "mm", nan, 0.1, 0.3, 0.9, ("clearance",)).summary()
-    expected = {"name": "clearance", "unit": "mm", "value": None, "low": 0.1, "high": 0.3, "limited_by": ["clearance"]}
-    assert expected.items() <= summary.items()
-
-
-def test_a_sensitivity_is_described_with_its_unit_and_machine():
-    for *error, title in (
-        ("", "offset", 1e-3, "a zero offset of 1 µm"),
-        ("frame", "compliance", 2e-6, "a compliance of 2 µm/kN in frame"),
-        ("", "drift", 1e-4, "a drift of 0.1 µm per reading"),
-    ):
-        sensitivity = Sensitivity(*error, {"clearance": nan, "liner_young": 2.0})
-        stated = dict(zip(("machine", "error", "size"), error, strict=True))
-        assert sensitivity.title == title
-        assert sensitivity.summary() == {**stated, "shifts": {"clearance": None, "liner_young": 2.0}}
 
 
 def test_the_shift_ratio_is_the_shift_over_half_the_band():

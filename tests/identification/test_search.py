@@ -11,7 +11,7 @@ import ballsocket as bs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.identification import Machine, Measured, oscillation
 from ballsocket.identification.bands import compute_bands, profile_ends, scatter_ratio
-from ballsocket.identification.fit import find_best_fit, minimise_misfit
+from ballsocket.identification.fit import find_best_fit
 from ballsocket.identification.forward_model import ForwardModel
 from ballsocket.identification.information import (
     MAX_WIDTH_RATIO,
@@ -23,7 +23,7 @@ from ballsocket.identification.information import (
 )
 from ballsocket.identification.misfit import FitResult, Misfit, by_differences
 from ballsocket.identification.scatter import HeavyTailed, NormalScatter
-from ballsocket.identification.unknowns import ParameterTransform, Unknown, collect_unknowns, log_prior
+from ballsocket.identification.unknowns import ParameterTransform, Unknown, collect_unknowns
 from ballsocket.studies import Normal, Rectangular
 
 from .rigid import JOINT, MODEL
@@ -116,29 +116,6 @@ def test_a_perturbation_changes_every_load_by_its_fraction():
         np.testing.assert_allclose(row, getattr(MODEL.press(JOINTS[0], **load), result), rtol=1e-12)
 
 
-def test_a_machine_adds_its_errors_to_indentations():
-    machine = Machine(compliance=5e-6, offset=0.003, drift=2e-4)
-    row = forward(measured("indentation", machine=machine, order=[4.0, 0.0, 2.0])).results_at(VALUES[:1])[0]
-    depth = MODEL.press(JOINTS[0], force=FORCE).indentation
-    np.testing.assert_allclose(row, depth + 5e-6 * FORCE + 0.003 + 2e-4 * np.array([4.0, 0.0, 2.0]), rtol=1e-12)
-    unknown_compliance = Machine(compliance=(0.0, 1e-5), offset=0.003, name="frame")
-    model = forward(measured("indentation", machine=unknown_compliance), names=("clearance", "frame.compliance"))
-    rows = model.results_at(np.array([[0.1, 2e-6], [0.1, 4e-6]]))
-    np.testing.assert_allclose(rows[1] - rows[0], 2e-6 * FORCE, rtol=1e-9)
-
-
-@pytest.mark.parametrize("quantity", ["force", "area"])
-def test_loads_read_by_a_compliant_machine_are_corrected_exactly(quantity):
-    """Newton's method finds the force whose reading is the measured indentation."""
-    machine = Machine(compliance=8e-6, offset=-0.004, drift=3e-4)
-    contact = MODEL.press(JOINTS[0], force=FORCE)
-    reading = contact.indentation + 8e-6 * FORCE - 0.004 + 3e-4 * np.arange(3.0)
-    values = 1.1 * getattr(contact, quantity)  # a measured force is the start of the iterations
-    data = Measured(quantity=quantity, values=values, uncertainty=1.0, indentation=reading, machine=machine)
-    tolerance = 3e-8 if quantity == "force" else 3e-5
-    np.testing.assert_allclose(forward(data).results_at(VALUES[:1])[0], getattr(contact, quantity), rtol=tolerance)
-
-
 @pytest.mark.parametrize(("quantity", "compliance"), [("force", 0.0), ("area", 1e-6)])
 def test_a_value_of_zero_is_read_below_the_zero_of_the_machine(quantity, compliance):
     machine = Machine(offset=0.002, compliance=compliance)
@@ -162,7 +139,6 @@ def test_a_point_without_a_joint_or_a_result_is_nan_and_costs_infinitely_much():
 UNKNOWNS = collect_unknowns({"clearance": (0.05, 0.2), "liner_young": Normal(mean=1000.0, deviation=80.0)}, (), MODEL)
 TRANSFORM = ParameterTransform(UNKNOWNS)
 DATA = (measured("indentation", values=[0.02, 0.03, 0.045]), measured("max_pressure", values=[4.0, 7.0, 9.0]))
-FILM = replace(DATA[1], saturation=7.0)
 
 
 def misfit(*data, scatter=None):
@@ -204,38 +180,6 @@ def test_differences_omit_a_neighbour_without_a_result():
     np.testing.assert_allclose(slopes, MATRIX * [unknown(name).prior_deviation for name in NAMES], rtol=1e-7)
 
 
-@pytest.mark.parametrize("scatter", [NormalScatter(), HeavyTailed()], ids=["normal", "heavy-tailed"])
-@pytest.mark.parametrize("data", [DATA, (DATA[0], FILM)], ids=["exact", "saturated"])
-def test_residuals_have_the_derivatives_that_are_returned(scatter, data):
-    problem = misfit(*data, scatter=scatter)
-    residuals, slopes = problem.residuals_and_slopes(THETA)
-    assert residuals.shape == (2, 7)  # one more for the distribution of the modulus
-    np.testing.assert_allclose(residuals[:, -1], TRANSFORM.prior_residuals(THETA)[:, 1])
-    np.testing.assert_allclose(slopes[:, -1], [[0.0, 1.0]] * 2)
-    for index, shift in enumerate(1e-5 * np.eye(2)):
-        above, below = (problem.residuals_and_slopes(theta)[0] for theta in (THETA + shift, THETA - shift))
-        np.testing.assert_allclose(slopes[..., index], (above - below) / 2e-5, rtol=1e-3, atol=1e-3)
-    np.testing.assert_allclose(problem.costs(THETA), np.sum(residuals**2, axis=1) / 2, rtol=1e-12)
-
-
-def test_a_saturated_value_is_a_lower_bound_at_its_limit():
-    problem = misfit(DATA[0], FILM)
-    assert problem.saturated.tolist() == [False] * 4 + [True, True]
-    assert problem.value.tolist() == [0.02, 0.03, 0.045, 4.0, 7.0, 7.0]
-    above, below = problem.residuals(np.array([[0.02, 0.03, 0.045, 4.0, *ends] for ends in ((9.0, 12.0), (6.0, 6.0))]))
-    assert above.max() < 1e-6
-    assert below[4] > 7.0
-
-
-@pytest.mark.parametrize(("scatter", "factor"), [(NormalScatter(), 1.0), (HeavyTailed(), 5 / 7)])
-def test_the_information_is_the_weighted_product_of_the_slopes(scatter, factor):
-    problem = misfit(*DATA, scatter=scatter)
-    _, expected = by_differences(problem.forward, TRANSFORM, THETA[0])
-    slopes, weighted = problem.weighted_slopes(THETA[0])
-    np.testing.assert_allclose(slopes, expected, rtol=1e-10)
-    np.testing.assert_allclose(weighted, expected.T * factor / problem.uncertainty**2, rtol=1e-10)
-
-
 @pytest.mark.parametrize("z", [-1.5, -0.3, 0.6, 20.0])
 @pytest.mark.parametrize("scatter", [NormalScatter(), HeavyTailed()], ids=["normal", "heavy-tailed"])
 def test_the_information_of_lower_bounds_is_the_curvature_of_the_cost(scatter, z):
@@ -248,15 +192,6 @@ def test_the_information_of_lower_bounds_is_the_curvature_of_the_cost(scatter, z
     slopes, weighted = linear.weighted_slopes(theta)
     information = np.diag(weighted @ slopes)
     np.testing.assert_allclose(information, curvature, rtol=1e-3, atol=1e-6 if z == 20.0 else 0.0)
-
-
-def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
-    problem = misfit(*DATA)
-    residuals = problem.residuals(problem.forward.results_at(TRANSFORM.to_values(THETA)))
-    expected = log_prior(TRANSFORM, THETA) - np.sum(residuals**2, axis=1) / 2
-    np.testing.assert_allclose(problem.log_posterior(THETA), expected, rtol=1e-12)
-    outside = np.stack([TRANSFORM.high, TRANSFORM.low]) + np.array([[0.1, 0.0], [-0.1, 0.0]])
-    assert problem.log_posterior(outside).tolist() == [-np.inf] * 2
 
 
 NOISE = np.array([0.03, -0.01, 0.02, -0.04, 0.01])
@@ -280,12 +215,6 @@ def test_the_best_fit_is_the_least_squares_solution_with_a_prior_as_one_more_val
     expected = np.linalg.lstsq(rows, values, rcond=None)[0]
     np.testing.assert_allclose(misfit.transform.to_values(best.theta), expected, atol=1e-9)
     assert misfit.freedom == 4
-
-
-def test_the_search_stays_within_the_ranges():
-    misfit, best = fitted(unknowns=(unknown(NAMES[0], low=0.15, high=0.4), unknown(NAMES[1])))
-    assert misfit.transform.to_values(best.theta)[0] == pytest.approx(0.15)
-    assert minimise_misfit(misfit, misfit.transform.high).theta == pytest.approx(best.theta, abs=1e-6)
 
 
 def test_two_valleys_of_equal_depth_are_rivals():
@@ -321,29 +250,6 @@ def test_ends_of_profiles_are_at_the_marginal_standard_deviation():
                 assert 2 * (misfit.costs(end.theta[None])[0] - best.cost) == pytest.approx(rise, rel=0.021)
     assert profiles.cost == pytest.approx(best.cost, abs=1e-9)
     np.testing.assert_allclose(profiles.lowest, best.theta, atol=1e-6)
-
-
-def test_a_profile_ends_at_the_end_of_the_range_of_its_unknown_or_of_another():
-    misfit, best = fitted(unknowns=(unknown(NAMES[0], low=0.099, high=0.45), unknown(NAMES[1])))
-    (((low, high), _),) = profile_ends(misfit, [best.theta], best.cost, (4.0,)).ends
-    assert (low.closed, low.limited_by, high.closed) == (False, (0,), True)
-    assert low.theta[0] == pytest.approx(misfit.transform.low[0])
-    # of two nearly parallel columns, the one may only move as far as the range of the other
-    matrix = np.stack([MATRIX[:, 0], MATRIX[:, 0] + 1e-3 * MATRIX[:, 1]], axis=1)
-    misfit, best = fitted(unknowns=(unknown(NAMES[0]), unknown(NAMES[1], low=-0.25, high=-0.15)), matrix=matrix)
-    ((first, second),) = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends
-    assert first[0].limited_by == first[1].limited_by == (1,)
-    assert not second[0].closed
-    low, high = (misfit.transform.to_values(end.theta)[0] for end in first)
-    half = 1.96 * 0.02 / np.linalg.norm(matrix[:, 0])
-    assert (low, high) == pytest.approx((0.05 - half, 0.15 + half), abs=2e-3)
-
-
-@pytest.mark.parametrize("factor", [0.5, 3.0])
-def test_the_scatter_ratio_is_birges_ratio_or_one(factor):
-    misfit, best = fitted(factor * 0.02 * np.array([1.0, -1.2, 0.8, -1.0, 1.1]))
-    ratio = sqrt(2 * best.cost / misfit.freedom)
-    assert scatter_ratio(misfit, best) == pytest.approx(max(ratio, 1.0), rel=1e-5)
 
 
 def test_the_scatter_ratio_ignores_met_lower_bounds_and_is_the_likeliest_scale_of_a_heavy_tail():

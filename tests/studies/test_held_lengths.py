@@ -11,7 +11,7 @@ import ballsocket as bs
 from ballsocket.app.state.screen import Screen
 from ballsocket.app.widgets.controls import by_name
 from ballsocket.app.widgets.joint_controls import joint_controls
-from ballsocket.files.joint_file import joint_of, parse_joint
+from ballsocket.files.joint_file import parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.studies.distributions import Rectangular
 from ballsocket.studies.metadata import joint_dimension
@@ -143,12 +143,3 @@ def test_maps_off_the_axis_press_along_the_direction_of_the_joint_file(tmp_path)
     joint = UNBACKED.replace(clearance=np.array([[0.2], [0.3]]), head_diameter=28.0)
     contacts = bs.Sphere().press(joint, force=np.array([1e3, 3e3]), tilt=np.radians(50.0))
     assert mapped["verdicts"]["kept"] == (contacts.edge_distance > 1.0).sum() == 2
-
-
-def test_a_shell_that_follows_from_the_outside_leaves_the_wall_open():
-    tables = {"joint": {"head_diameter": 28, "clearance": 0.1, "liner_thickness": 7.9, "outer_diameter": 52}}
-    joint = joint_of({**tables, "liner": {"material": "uhmwpe"}, "shell": {"material": "titanium"}}).joint
-    assert joint.shell == pytest.approx(4.0)
-    with pytest.raises(ValueError, match="liner_thickness = 7.9 mm or outer_diameter = 52 mm"):
-        joint.replace(head_diameter=32)
-    assert joint.replace(head_diameter=32, outer_diameter=52).liner_thickness == pytest.approx(5.9)

@@ -56,18 +56,6 @@ def test_indices_of_ishigami_are_the_analytic_ones_for_any_count(count):
         assert (truth < found[f"{name}_high"][0]).all()
 
 
-def test_indices_and_intervals_are_those_of_scipy():
-    found = sobol_indices(ishigami, [UNIFORM] * 3, 512, seed=3, confidence=0.9)
-    generator = numpy.random.default_rng(3)
-    scipy_indices = stats.sobol_indices(func=ishigami, n=512, dists=[UNIFORM.frozen] * 3, rng=generator)
-    interval = scipy_indices.bootstrap(confidence_level=0.9)
-    for name in ("first_order", "total_order"):  # SciPy draws its resamples without a seed: their ends scatter
-        numpy.testing.assert_allclose(found[name][0], getattr(scipy_indices, name), atol=1e-12)
-        ends = getattr(interval, name).confidence_interval
-        numpy.testing.assert_allclose(found[f"{name}_low"][0], ends.low, atol=0.04)
-        numpy.testing.assert_allclose(found[f"{name}_high"][0], ends.high, atol=0.04)
-
-
 def test_nine_of_ten_intervals_hold_the_true_index():
     """Of a linear function; Sobol points are more even than the random ones that the bootstrap assumes."""
     first = numpy.array([1.0, 4.0]) / 5
