@@ -168,7 +168,9 @@ class HipPlan:
         tables |= {"ball": {"material": ball}} if ball else {}
         tables |= {"load": {"force": force}} if force is not None else {}
         tables |= {"name": name} if name else {}
-        return replace(joint_of(tables), cup=_rounded(self.cup))
+        names = ("arc_of_cover", "inclination", "anteversion") if self.cup.oriented else ("arc_of_cover",)
+        angles: Any = {name: radians(round(degrees(getattr(self.cup, name)), 3)) for name in names}
+        return replace(joint_of(tables), cup=replace(self.cup, **angles))
 
     def summary(self) -> dict[str, Any]:
         """Return all results for JSON, in mm and degrees; a missing number is None."""
@@ -232,12 +234,6 @@ def make_plan(
             axis, centre = frame.axes @ to_ras @ liner.axis, frame.convert(to_ras @ liner.centre)
             orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
     return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head, worn=worn)
-
-
-def _rounded(cup: Cup) -> Cup:
-    names = ("arc_of_cover", "inclination", "anteversion") if cup.oriented else ("arc_of_cover",)
-    rounded: Any = {name: radians(round(degrees(getattr(cup, name)), 3)) for name in names}
-    return replace(cup, **rounded)
 
 
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
