@@ -230,7 +230,6 @@ def cover_orientations(
         name: (max(low, _ANGLE_LIMITS[name][0]), min(high, _ANGLE_LIMITS[name][1]))
         for name, (low, high) in ranges.items()
     }
-
     covered, ends = {name: (centre[name], centre[name]) for name in limited}, list(product(limited, (0, 1)))
     for moved_ends in (ends, *([end] for end in ends)):  # all ends together, then each alone
         covered = _extend(similarity, covered, limited, moved_ends)

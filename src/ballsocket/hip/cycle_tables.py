@@ -70,12 +70,8 @@ class HipColumns:
     orthoload: bool = False
 
 
-def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
-    """Extract the columns of the hip on one side from a table."""
-    return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
-
-
-def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
+def text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
+    """Convert the columns of a text table, whose heads have units; forces in %BW need the body weight in N."""
     columns: dict[str, Numbers] = {}
     orthoload = any(head.name in _ORTHOLOAD for head in table.heads)
     names = _ORTHOLOAD if orthoload else {"f": "force"}
@@ -110,7 +106,7 @@ def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
     return factors[plain] * body_weight
 
 
-def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
+def opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
     letter = side.value[0]
     names = [head.name for head in table.heads]
