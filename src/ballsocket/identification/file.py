@@ -270,16 +270,12 @@ def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder:
         )
     own = [key for key in table.__struct_fields__ if key not in ("file", *_FILE_KEYS)]
     check_names(table.stated(), own, "in [[data]] with values")
-    return (_parse_listed_values(table, table.values, common),)
-
-
-def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
     if table.quantity is None:
         raise ValueError("[[data]] with values needs its quantity")
     quantity = _QUANTITIES[table.quantity]
-    values = Numbers.of(quantity.kind).parse(quantity.name, readings.value)
+    values = Numbers.of(quantity.kind).parse(quantity.name, table.values.value)
     loads = parsed_values(table, dict.fromkeys((*LOADS, "order", "angle")))
-    return Measured(
+    measured = Measured(
         quantity=quantity.name,
         values=values,
         **parse_uncertainty(quantity, None if table.uncertainty is None else table.uncertainty.value),
@@ -289,6 +285,7 @@ def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[s
         **loads,
         **common,
     )
+    return (measured,)
 
 
 def _parse_observable(name: str, table: DataTable) -> CustomObservable | None:
