@@ -295,6 +295,8 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
+        unloaded = constants.clearance - constants.smoothing  # distance in mm; a lubricated or preloaded ball has none
+        first_touch = unloaded**2 if unloaded > 0.0 and constants.film_damping == 0.0 else -1.0
         sentences = {state: state.sentence for state in ContactState}
         sentences[ContactState.THROUGH_WALL] = BEYOND[self.beyond]
         return fill_template(
@@ -305,7 +307,7 @@ class CElement:
             curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
             checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
-            first_touch=c_number(_first_load_square(constants)),
+            first_touch=c_number(first_touch),
             load=C.statements({**recording.status, **recording.load}),
             pressed=C.statements({**recording.status, **recording.contact_size}),
             tangent=C.statements({**recording.status, **recording.tangent}),
@@ -335,12 +337,6 @@ class CElement:
         description = f"{joint}; {joint.source}" if joint.source else str(joint)
         comment = re.sub(r"\*/|/\*|--|\\", "?", ascii_text(description))
         return {"version": __version__, "model": self.element.model.name, "joint": comment}
-
-
-def _first_load_square(constants: Constants) -> float:
-    """Square the distance in mm up to which the ball has no load; -1 for a lubricated or preloaded ball."""
-    distance = constants.clearance - constants.smoothing
-    return distance**2 if distance > 0.0 and constants.film_damping == 0.0 else -1.0
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

@@ -225,16 +225,12 @@ def _record_chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
     total: Slope = None
     for rate, slope in zip(_PARTIAL_DERIVATIVES[step.step](step, *step.parts), slopes, strict=True):
         if slope is not None:
-            term = _record_product(rate, slope)
+            if not isinstance(rate, Recorded) and abs(rate) == 1.0:  # no multiplication by ±1
+                term = slope if rate > 0 else -slope
+            else:
+                term = rate * slope
             total = term if total is None else total + term
     return total
-
-
-def _record_product(rate: Part, slope: Part) -> Part:
-    """Record the product of a partial derivative and a slope, without a multiplication by ±1."""
-    if not isinstance(rate, Recorded) and abs(rate) == 1.0:
-        return slope if rate > 0 else -slope
-    return rate * slope
 
 
 def _asin_derivative(a: Part) -> Part:
