@@ -71,8 +71,11 @@ class Recording:
         potential = self.element.potential
         if isinstance(potential, CurvePotential):
             curves[ENERGY] = potential.curve
-        elif not _is_recordable(potential):
-            curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
+        else:
+            try:
+                potential(Tape().input("depth"))
+            except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches are not recorded
+                curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
         return curves
 
     @cached_property
@@ -215,15 +218,6 @@ def _tangent_elements(components: tuple[Part, ...]) -> Outputs:
 def _by_array_element(name: str, parts: Any) -> Outputs:
     """Return recorded parts by their C array elements, such as "force[0]"."""
     return {f"{name}[{index}]": part for index, part in enumerate(parts)}
-
-
-def _is_recordable(potential: Any) -> bool:
-    """Check if the formulas of an elastic energy can be recorded; iterations and branches cannot."""
-    try:
-        potential(Tape().input("depth"))
-    except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches
-        return False
-    return True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
