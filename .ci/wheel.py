@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "ballsocket"
 MUST_BE_THERE = {
     "py.typed",
+    "__init__.pyi",
     "data/references.bib",
     "data/exact_tables.npz",
     "app/assets/page.html",

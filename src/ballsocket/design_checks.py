@@ -69,7 +69,18 @@ def checks_at(
         ball_stress = ball_von_mises(joint, pressure)
         rows += (row for row in _material_checks("ball", joint.ball, pressure, ball_stress, trusted) if row.capacity)
     if edge is not None and not float(joint.clearance) < 0:  # a preloaded contact reaches the rim as a rule
-        rows.append(_rim_check(joint, *edge, trusted))
+        reach, distance = edge
+        length = reach * float(joint.socket_radius)
+        rim = Check(
+            title="reach of the contact",
+            quantity=EDGE_DISTANCE,
+            demand=Bounded(*(length - float(arc) for arc in (distance.value, distance.high, distance.low))),
+            capacity=nextafter(length, 0.0),  # a contact that ends at the rim is edge loaded
+            limit="arc from pole to rim",
+            source="arc of cover and chamfer of the cup",
+            trusted=trusted,
+        )
+        rows.append(rim)
     return sorted_checks(rows)
 
 
@@ -116,23 +127,9 @@ def _source_of(material: Material, title: str) -> str:
     return f"{material.name}, {source}" if material.name else source
 
 
-def _rim_check(joint: Joint, reach: float, distance: Bounded, trusted: bool) -> Check:
-    """Compare the arc from the pole to the edge of the contact with the arc to the end of the bore."""
-    length = reach * float(joint.socket_radius)
-    return Check(
-        title="reach of the contact",
-        quantity=EDGE_DISTANCE,
-        demand=Bounded(*(length - float(arc) for arc in (distance.value, distance.high, distance.low))),
-        capacity=nextafter(length, 0.0),  # a contact that ends at the rim is edge loaded
-        limit="arc from pole to rim",
-        source="arc of cover and chamfer of the cup",
-        trusted=trusted,
-    )
-
-
 def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
     """Return the verdict on a design and its sentence; undecided without a strength of the liner."""
-    exceeded, undecided, kept = ([row for row in rows if row.verdict is verdict] for verdict in _WORST_FIRST)
+    kept, undecided, exceeded = ([row for row in rows if row.verdict is verdict] for verdict in Verdict)
     if exceeded:
         return Verdict.EXCEEDED, f"Exceeded: {_uses(exceeded)}"
     if not rows:
@@ -152,9 +149,6 @@ def unchecked_text(rows: Sequence[Check]) -> str:
     """List the demands without a known limit, such as "not checked: pressure on the liner"; empty without one."""
     titles = ", ".join(row.title for row in rows if row.capacity is None)
     return f"not checked: {titles}" if titles else ""
-
-
-_WORST_FIRST = (Verdict.EXCEEDED, Verdict.UNDECIDED, Verdict.KEPT)
 
 
 def _uses(rows: Sequence[Check]) -> str:

@@ -164,7 +164,7 @@ def test_fmpy_finds_no_problems_and_the_declarations_are_those_of_the_standard(v
         (tmp_path / name).write_text(text, encoding="utf-8")
     official = ("-DFMI_HEADERS", "-isystem", str(Path(fmpy.__file__).parent / "c-code"), "-Wall", "-Wextra", "-Werror")
     for options in (official, ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")):
-        assert shared_library(made.information.sources, tmp_path / "hip.so", tmp_path, options).exists()
+        assert shared_library(made.c_sources, tmp_path / "hip.so", tmp_path, options).exists()
 
 
 @needs_compiler

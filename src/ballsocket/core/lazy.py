@@ -6,9 +6,11 @@
 from __future__ import annotations
 
 import functools
+import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING or sys.version_info >= (3, 12):
@@ -27,18 +29,20 @@ else:
             return values[self.attrname]
 
 
-def imported_names(package: str, names_by_module: Mapping[str, str]) -> Callable[[str], Any]:
-    """Return the function `__getattr__` of a package that imports its names on first use.
+def names_of_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], tuple[str, ...]]:
+    """Return the function `__getattr__` of a package, which imports its names for users on first use, and these names.
 
-    The table has names, separated by spaces, by the module of the package that defines them.
+    They are those of the stub beside `__init__.py`, which type checkers read: `from .module import Name as Name`.
     """
-    modules = {name: module for module, names in names_by_module.items() for name in names.split()}
+    stub = Path(init_file).with_suffix(".pyi").read_text(encoding="utf-8")
+    lines = re.findall(r"^from (\.\S+) import \w+ as ([A-Za-z]\w*)$", stub, re.MULTILINE)
+    modules = {name: module for module, name in lines}
 
     def get_name(name: str) -> Any:
         if name not in modules:
             raise AttributeError(f"module {package!r} has no attribute {name!r}", name=name, obj=sys.modules[package])
-        value = getattr(import_module(f"{package}.{modules[name]}"), name)
+        value = getattr(import_module(modules[name], package), name)
         setattr(sys.modules[package], name, value)
         return value
 
-    return get_name
+    return get_name, tuple(modules)

@@ -71,8 +71,11 @@ class Recording:
         potential = self.element.potential
         if isinstance(potential, CurvePotential):
             curves[ENERGY] = potential.curve
-        elif not _is_recordable(potential):
-            curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
+        else:
+            try:
+                potential(Tape().input("depth"))
+            except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches are not recorded
+                curves[ENERGY] = curve_potential(self.element.model, self.element.joint).curve
         return curves
 
     @cached_property
@@ -217,15 +220,6 @@ def _by_array_element(name: str, parts: Any) -> Outputs:
     return {f"{name}[{index}]": part for index, part in enumerate(parts)}
 
 
-def _is_recordable(potential: Any) -> bool:
-    """Check if the formulas of an elastic energy can be recorded; iterations and branches cannot."""
-    try:
-        potential(Tape().input("depth"))
-    except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches
-        return False
-    return True
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CElement:
     """Force element as C99 source and header.
@@ -295,6 +289,8 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
+        unloaded = constants.clearance - constants.smoothing  # distance in mm; a lubricated or preloaded ball has none
+        first_touch = unloaded**2 if unloaded > 0.0 and constants.film_damping == 0.0 else -1.0
         sentences = {state: state.sentence for state in ContactState}
         sentences[ContactState.THROUGH_WALL] = BEYOND[self.beyond]
         return fill_template(
@@ -305,7 +301,7 @@ class CElement:
             curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
             checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
-            first_touch=c_number(_first_load_square(constants)),
+            first_touch=c_number(first_touch),
             load=C.statements({**recording.status, **recording.load}),
             pressed=C.statements({**recording.status, **recording.contact_size}),
             tangent=C.statements({**recording.status, **recording.tangent}),
@@ -335,12 +331,6 @@ class CElement:
         description = f"{joint}; {joint.source}" if joint.source else str(joint)
         comment = re.sub(r"\*/|/\*|--|\\", "?", ascii_text(description))
         return {"version": __version__, "model": self.element.model.name, "joint": comment}
-
-
-def _first_load_square(constants: Constants) -> float:
-    """Square the distance in mm up to which the ball has no load; -1 for a lubricated or preloaded ball."""
-    distance = constants.clearance - constants.smoothing
-    return distance**2 if distance > 0.0 and constants.film_damping == 0.0 else -1.0
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from .recorder import BOOLEAN, CURVE_SLOPES, Part, Recorded
@@ -51,7 +51,14 @@ class Language:
 
     def statements(self, targets: Mapping[str, Part], indent: int = 4) -> str:
         """Translate recorded steps to statements that assign a value to each target variable."""
-        steps = _required_steps(list(targets.values()))
+        required: dict[int, Recorded] = {}  # steps that the targets depend on, by their place on the tape
+        pending = list(targets.values())
+        while pending:
+            part = pending.pop()
+            if isinstance(part, Recorded) and part.number not in required:
+                required[part.number] = part
+                pending.extend(part.parts)
+        steps = [required[number] for number in sorted(required)]
         lines = [self._statement(step) for step in steps if step.step != "input"]
         lines += [self.assignment["target"].format(name, self._operand(part)) for name, part in targets.items()]
         return "\n".join(f"{'':{indent}}{line}" for line in lines)
@@ -96,15 +103,3 @@ C = Language(
     curve="double {2}[{3}]; {0}({1}, {2});",
 )
 """C99."""
-
-
-def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
-    """List the recorded steps that some parts depend on, in the order of the tape."""
-    required: dict[int, Recorded] = {}
-    pending = list(parts)
-    while pending:
-        part = pending.pop()
-        if isinstance(part, Recorded) and part.number not in required:
-            required[part.number] = part
-            pending.extend(part.parts)
-    return [required[number] for number in sorted(required)]

@@ -22,26 +22,21 @@ def table_texts(job: ExportJob) -> Texts:
     """
     if isinstance(job.element, PreloadedElement):
         return {f"{job.name}_law.csv": _axes_table(job, job.element.wall)}
-    limit = job.element.constants.clearance + job.depth
+    element, depths = job.central_element, numpy.linspace(0.0, job.depth, _TABLE_ROWS)
+    energy, force, stiffness = element.potential(depths)
+    angle = numpy.degrees(element.half_angle(depths))
     return {
-        f"{job.name}_axes.csv": _axes_table(job, limit),
-        f"{job.name}_law.csv": _law_table(job.central_element, job.depth),
-        f"{job.name}_power.txt": _power_law_text(job.central_element, job.fitted_power_law, __version__),
+        f"{job.name}_axes.csv": _axes_table(job, job.element.constants.clearance + job.depth),
+        f"{job.name}_law.csv": _csv_text(
+            _COLUMNS, (depths, force, stiffness, energy, angle, element.max_pressure(depths))
+        ),
+        f"{job.name}_power.txt": _power_law_text(element, job.fitted_power_law),
     }
 
 
 _TABLE_ROWS = 201  # number of indentations in a table of the law
 
 _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_angle_deg", "max_pressure_MPa")
-
-
-def _law_table(element: ForceElement, depth: float) -> str:
-    """Return a CSV table of force, stiffness, energy, half angle and pressure up to an indentation in mm."""
-    depths = numpy.linspace(0.0, depth, _TABLE_ROWS)
-    energy, force, stiffness = element.potential(depths)
-    angle = numpy.degrees(element.half_angle(depths))
-    columns = (depths, force, stiffness, energy, angle, element.max_pressure(depths))
-    return _csv_text(_COLUMNS, columns)
 
 
 _AXIS_COLUMNS = (
@@ -111,10 +106,10 @@ def two_axes_note(job: ExportJob) -> str:
     )
 
 
-def _power_law_text(element: ForceElement, fit: PowerFit, version: str) -> str:
+def _power_law_text(element: ForceElement, fit: PowerFit) -> str:
     """Return the fitted power law as text, with expressions for Adams, MotionSolve and Simpack in mm, N and s."""
     c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
-    return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
+    return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {__version__}
 # {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth
 k = {k!r}
 n = {n!r}

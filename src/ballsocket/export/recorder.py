@@ -58,6 +58,11 @@ class Tape:
         return self._steps_by_key[key]
 
 
+def _operator(step: str, reflected: bool = False) -> Callable[[Any, Part], Any]:
+    """Make the method of an operator, which records it with another part; `reflected` if that part is on the left."""
+    return lambda part, operand: part.tape.record(step, (operand, part) if reflected else (part, operand))
+
+
 class Recorded:
     """Unknown number of a recorded formula: the result of an operation on its parts."""
 
@@ -90,55 +95,18 @@ class Recorded:
     def __abs__(self) -> Recorded:
         return self.tape.record("fabs", (self,))
 
-    def __add__(self, operand: Part) -> Recorded:
-        return self.tape.record("+", (self, operand))
-
-    def __radd__(self, operand: Part) -> Recorded:
-        return self.tape.record("+", (operand, self))
-
-    def __sub__(self, operand: Part) -> Recorded:
-        return self.tape.record("-", (self, operand))
-
-    def __rsub__(self, operand: Part) -> Recorded:
-        return self.tape.record("-", (operand, self))
+    __add__, __radd__ = _operator("+"), _operator("+", reflected=True)
+    __sub__, __rsub__ = _operator("-"), _operator("-", reflected=True)
+    __truediv__, __rtruediv__ = _operator("/"), _operator("/", reflected=True)
+    __lt__, __le__, __gt__, __ge__ = _operator("<"), _operator("<="), _operator(">"), _operator(">=")
+    __eq__, __ne__ = _operator("=="), _operator("!=")
+    __and__, __or__ = _operator("&"), _operator("|")
+    __rmul__ = _operator("*", reflected=True)
 
     def __mul__(self, operand: Part) -> Recorded:
         if isinstance(operand, Recorded) and operand.step == "exp":
             return self.tape.record("scaled_exp", (self, *operand.parts))
         return self.tape.record("*", (self, operand))
-
-    def __rmul__(self, operand: Part) -> Recorded:
-        return self.tape.record("*", (operand, self))
-
-    def __truediv__(self, operand: Part) -> Recorded:
-        return self.tape.record("/", (self, operand))
-
-    def __rtruediv__(self, operand: Part) -> Recorded:
-        return self.tape.record("/", (operand, self))
-
-    def __lt__(self, operand: Part) -> Recorded:
-        return self.tape.record("<", (self, operand))
-
-    def __le__(self, operand: Part) -> Recorded:
-        return self.tape.record("<=", (self, operand))
-
-    def __gt__(self, operand: Part) -> Recorded:
-        return self.tape.record(">", (self, operand))
-
-    def __ge__(self, operand: Part) -> Recorded:
-        return self.tape.record(">=", (self, operand))
-
-    def __eq__(self, operand: Part) -> Recorded:  # type: ignore[override]
-        return self.tape.record("==", (self, operand))
-
-    def __ne__(self, operand: Part) -> Recorded:  # type: ignore[override]
-        return self.tape.record("!=", (self, operand))
-
-    def __and__(self, operand: Part) -> Recorded:
-        return self.tape.record("&", (self, operand))
-
-    def __or__(self, operand: Part) -> Recorded:
-        return self.tape.record("|", (self, operand))
 
     def __xor__(self, negate: bool) -> Recorded:
         return self.tape.record("not", (self,)) if negate else self
@@ -225,16 +193,12 @@ def _record_chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
     total: Slope = None
     for rate, slope in zip(_PARTIAL_DERIVATIVES[step.step](step, *step.parts), slopes, strict=True):
         if slope is not None:
-            term = _record_product(rate, slope)
+            if not isinstance(rate, Recorded) and abs(rate) == 1.0:  # no multiplication by ±1
+                term = slope if rate > 0 else -slope
+            else:
+                term = rate * slope
             total = term if total is None else total + term
     return total
-
-
-def _record_product(rate: Part, slope: Part) -> Part:
-    """Record the product of a partial derivative and a slope, without a multiplication by ±1."""
-    if not isinstance(rate, Recorded) and abs(rate) == 1.0:
-        return slope if rate > 0 else -slope
-    return rate * slope
 
 
 def _asin_derivative(a: Part) -> Part:

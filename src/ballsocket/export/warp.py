@@ -64,12 +64,18 @@ def warp_texts(job: ExportJob) -> Texts:
     require("density", curve.density, curve.density in (1, 2, 4, 8), "the number of pieces of an octave: 1, 2, 4 or 8")
     load = dict(zip(("fx", "fy", "fz", "mx", "my", "mz", "energy"), recording.load.values(), strict=True))
     tangent = {f"k{index}": part for index, part in enumerate(recording.tangent.values())}
+    # rows: origin of a piece, its inverse width, and coefficients over the part of the width; the widths keep the
+    # coefficients within the range of single precision
+    _, exponent = numpy.frexp(curve.origins)
+    width = numpy.ldexp(0.5 / curve.density, exponent)
+    powers = numpy.arange(curve.coefficients.shape[1] - 1, -1, -1)[:, None]
+    rows = numpy.column_stack([curve.origins, 1.0 / width, (curve.coefficients[0] * width**powers).T])
     text = fill_template(
         "warp.py.txt",
         load=WARP.statements(load, indent=8),
         tangent_statements=WARP.statements(tangent, indent=8),
         tangent=", ".join(tangent),
-        rows=_table_text(curve),
+        rows=",\n".join(f"    {row}" for row in rows.tolist()),
         low=repr(curve.low),
         pieces=str(len(curve.origins)),
         terms=str(curve.coefficients.shape[1]),
@@ -79,15 +85,3 @@ def warp_texts(job: ExportJob) -> Texts:
         **job.template_context,
     )
     return {f"{job.name}_warp.py": text}
-
-
-def _table_text(curve: OctaveCurve) -> str:
-    """Return rows of a curve: origin of a piece, its inverse width, and coefficients over the part of the width.
-
-    The widths keep the coefficients within the range of single precision.
-    """
-    _, exponent = numpy.frexp(curve.origins)
-    width = numpy.ldexp(0.5 / curve.density, exponent)
-    powers = numpy.arange(curve.coefficients.shape[1] - 1, -1, -1)[:, None]
-    rows = numpy.column_stack([curve.origins, 1.0 / width, (curve.coefficients[0] * width**powers).T])
-    return ",\n".join(f"    {row}" for row in rows.tolist())

@@ -22,26 +22,22 @@ _ANY = "any"  # wear coefficient of a row that holds for all coefficients
 
 def describe_bands(bands: Bands) -> Answer:
     """Describe the bands of patients who differ."""
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
+    among = "predictions from " if bands.subject == "predictions" else ""
+    held = f"{share} of {among}{patients} {bands.noun}"
+    if bands.shared is not None:
+        held = (
+            f"{share} of {patients} {bands.noun} for a low, median and high wear coefficient, and {share} of the "
+            f"predictions for {_ANY} coefficient,"
+        )
     tables = [band_table(bands)] + ([] if bands.indices is None else [_influence_table(bands)])
-    return Answer(title=f"{_summary(bands)} lie between", tables=tables, notes=bands.notes)
+    return Answer(title=f"{held} lie between", tables=tables, notes=bands.notes)
 
 
 def describe_cohort(bands: Bands) -> Answer:
     """Describe the bands of a cohort, with the notes on its nominal patient."""
     answer = describe_bands(bands)
     return replace(answer, notes=[*answer.notes, *bands.nominal_notes])
-
-
-def _summary(bands: Bands) -> str:
-    """Describe what a band holds: the share of the patients or of the predictions."""
-    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
-    if bands.shared is None:
-        among = "predictions from " if bands.subject == "predictions" else ""
-        return f"{share} of {among}{patients} {bands.noun}"
-    return (
-        f"{share} of {patients} {bands.noun} for a low, median and high wear coefficient, and {share} of the "
-        f"predictions for {_ANY} coefficient,"
-    )
 
 
 def band_table(bands: Bands) -> Table:
@@ -66,21 +62,17 @@ def band_table(bands: Bands) -> Table:
             rows += [row(report, name, partial(shared.quantile, name), None) for name in shared.values]
         rows.append(row(report, _ANY, bands.quantile, bands.edge_loaded_fraction(report)))
     text = "contact at the rim, worn to it or edge loading: {} after {} cycles"
-    lines = [
+    lines: list[str] = [
         Sentence(text, Amount(bands.edge_loading(report), PERCENT, 3), Amount(count, MILLIONS))
         for report, count in enumerate(bands.counts)
     ]
-    return Table("bands", "Bands of different patients", columns, rows, [*lines, _contact_line(bands)])
-
-
-def _contact_line(bands: Bands) -> str:
-    """Describe validity and utilisation of the contacts from the first cycle to the last report."""
-    low, high = (bands.utilisation_quantile(share)[-1] for share in bands.ends)
+    least, largest = (bands.utilisation_quantile(share)[-1] for share in bands.ends)
     patients = bands.variability.coarse_simulation
     reasons = [check.utilisation_note for check in patients.unworn_checks] or ["nothing is pressed"]
-    peak = reasons[0] if isnan(low) else f"estimated utilisation σv/σy {low:.3g} to {high:.3g}"
-    model = patients.contact_model.name
-    return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
+    peak = reasons[0] if isnan(least) else f"estimated utilisation σv/σy {least:.3g} to {largest:.3g}"
+    model, valid = patients.contact_model.name, f"{100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}"
+    lines.append(f"contact ({model}): valid in {valid}; {peak}")
+    return Table("bands", "Bands of different patients", columns, rows, lines)
 
 
 def _influence_table(bands: Bands) -> Table:

@@ -20,14 +20,7 @@ from ..studies.axes import SampleAxis
 from ..studies.variance_indices import sobol_indices
 from .chebyshev_fit import Box
 from .cohort import CohortRun, CohortStore, ProgressCallback
-from .patient_series import (
-    MEMBERS_PER_PIECE,
-    FamilyRun,
-    NoSeriesError,
-    PatientSeries,
-    fit_series,
-    members_of,
-)
+from .patient_series import MEMBERS_PER_PIECE, FamilyRun, NoSeriesError, PatientSeries, fit_series, members_of
 from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
 from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_COLUMNS, CohortResult
@@ -230,7 +223,6 @@ def cover_orientations(
         name: (max(low, _ANGLE_LIMITS[name][0]), min(high, _ANGLE_LIMITS[name][1]))
         for name, (low, high) in ranges.items()
     }
-
     covered, ends = {name: (centre[name], centre[name]) for name in limited}, list(product(limited, (0, 1)))
     for moved_ends in (ends, *([end] for end in ends)):  # all ends together, then each alone
         covered = _extend(similarity, covered, limited, moved_ends)

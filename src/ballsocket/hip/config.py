@@ -142,7 +142,6 @@ def _lubricant(table: FilmTable) -> Lubricant:
     return Lubricant(**values, friction=Stribeck(boundary=boundary))
 
 
-_DENSITY_UNIT = "mg/mm^3"
 _WEAR_UNITS = {"volume": "mm^3", "mass": "mg"}  # units of measured wear; others are in mm
 
 
@@ -212,7 +211,7 @@ def _density(table: WearDataTable, quantity: str) -> float | None:
     value = table.density.value
     try:
         number, text = split_quantity(str(value))
-        density = convert(number, parse_units(text), parse_units(_DENSITY_UNIT))
+        density = convert(number, parse_units(text), parse_units("mg/mm^3"))
     except ValueError as error:
         raise ValueError(f"density = {shown(value)} must be a number with a unit, such as '0.94 g/cm^3'") from error
     require("density", density, 0 < density < inf, "a density (mg/mm³) is positive and finite")

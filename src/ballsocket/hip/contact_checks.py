@@ -180,19 +180,6 @@ def grid_contact(
     )
 
 
-def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Numbers]) -> Numbers:
-    """Compute the largest ratio of von Mises to yield stress, and validity, at each stage: (stages, 2).
-
-    `stages` are tables of worst contacts. Utilisation is NaN where no yield stress is known.
-    """
-    shape = (len(stages), -1)
-    table = numpy.concatenate(stages)
-    if not len(table):
-        return numpy.tile([nan, 1.0], (len(stages), 1))
-    utilisation, valid = check_rows(model, joint, table)
-    return numpy.stack([utilisation.reshape(shape).max(axis=1), valid.reshape(shape).min(axis=1)], axis=1)
-
-
 def check_rows(model: Model, joint: Joint, worst: Numbers) -> Numbers:
     """Compute the ratio of von Mises to yield stress, and validity, of rows of worst contacts: (2, rows).
 

@@ -97,11 +97,6 @@ def constrained_share(poisson: float) -> float:
     return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson)
 
 
-def creep_notes(creep: CreepLaw, poisson: float) -> tuple[str, ...]:
-    """List notes on a creep law and the confinement of the liner."""
-    return (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
-
-
 def confinement_note(creep: CreepLaw, poisson: float) -> str:
     """Describe the lateral confinement that a creep law assumes, for a liner's Poisson's ratio."""
     if creep.confinement != 1:

@@ -14,7 +14,7 @@ from ..core.checks import check_names, known_name, require, shown
 from ..core.display import plain_number
 from ..files.columns import ALL_COLUMNS, HeadChoice
 from ..problem.cup import Side
-from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
+from .cycle import DEFAULT_STEPS, Cycle, Frame
 from .cycle_registry import CYCLES, named_cycle
 from .cycle_tables import (
     ANGLES,
@@ -23,11 +23,12 @@ from .cycle_tables import (
     HipColumns,
     check_closed,
     combine_columns,
-    extract_hip_columns,
     monotone_periodic,
+    opensim_columns,
     phases_and_duration,
     read_table,
     select_time_range,
+    text_columns,
     time_column,
 )
 from .in_vivo_cycles import check_body_weight
@@ -123,10 +124,11 @@ def read_cycle(
         raise ValueError("no table is named")
     tables = [read_table(file, options.heads) for file in paths]
     try:
-        parts = [
-            replace(hip, columns=select_time_range(hip.columns, options.begin, options.end))
-            for hip in (extract_hip_columns(table, body_weight, options.side) for table in tables)
+        hips = [
+            opensim_columns(table, options.side) if table.is_opensim else text_columns(table, body_weight)
+            for table in tables
         ]
+        parts = [replace(hip, columns=select_time_range(hip.columns, options.begin, options.end)) for hip in hips]
         remark = "; ".join(table.remark() for table in tables if table.remark())
         cycle = _table_cycle(combine_columns(parts), order, options)
         return replace(cycle, name=paths[0].stem, n_steps=n_steps, remark=remark)
@@ -139,10 +141,21 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
     columns, motion = table.columns, options.motion
     phase, duration = phases_and_duration(columns)
     for title, values in columns.items():
-        _check_size(title, values)
+        largest = float(values[abs(values).argmax()])
+        if title.startswith("force") and abs(largest) > _MAX_FORCE:
+            allowed = f"allowed are forces up to {plain_number(_MAX_FORCE)} N"
+            raise ValueError(f"{title} goes to {plain_number(abs(largest))} N; {allowed}")
+        if title in ANGLES and abs(largest) > pi:
+            degrees = f"{180 / pi * largest:.4g}°"
+            raise ValueError(f"{title} goes to {degrees}; allowed are angles up to 180°: check its unit")
         if title != time_column(columns):
             check_closed(title, values, options.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
-    angles = _angle_function(phase, columns, motion)
+    if motion is None:
+        angles = monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
+    elif any(name in columns for name in ANGLES):
+        raise ValueError(f"the table has angles, so the motion of {motion.name} cannot be used: remove one of them")
+    else:
+        angles = motion.angles
     frame = known_name("frame", options.frame or table.frame or _FRAMES[0], _FRAMES)
     loaded_body = known_name("force_on", options.force_on or table.force_on or _BODIES[0], _BODIES)
     force = monotone_periodic(phase, _socket_force(columns, options.side, loaded_body))
@@ -186,25 +199,6 @@ def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:
         else "cross-shear and crossing angle mean nothing, nor does wear by a law with cross-shear"
     )
     return (f"the motion has no columns of {', '.join(missing)}: they are assumed to be 0, so that {meaning}",)
-
-
-def _check_size(title: str, values: Numbers) -> None:
-    """Raise ValueError for forces (N) above those of any hip and for angles (rad) beyond 180°: a wrong unit."""
-    largest = float(values[abs(values).argmax()])
-    if title.startswith("force") and abs(largest) > _MAX_FORCE:
-        allowed = f"allowed are forces up to {plain_number(_MAX_FORCE)} N"
-        raise ValueError(f"{title} goes to {plain_number(abs(largest))} N; {allowed}")
-    if title in ANGLES and abs(largest) > pi:
-        raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
-
-
-def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
-    """Return the angles in rad as a function of phase, from the columns of the table or from another cycle."""
-    if motion is None:
-        return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
-    if any(name in columns for name in ANGLES):
-        raise ValueError(f"the table has angles, so the motion of {motion.name} cannot be used: remove one of them")
-    return motion.angles
 
 
 def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> Numbers:

@@ -70,12 +70,8 @@ class HipColumns:
     orthoload: bool = False
 
 
-def extract_hip_columns(table: NumberTable, body_weight: float | None, side: Side) -> HipColumns:
-    """Extract the columns of the hip on one side from a table."""
-    return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
-
-
-def _convert_text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
+def text_columns(table: NumberTable, body_weight: float | None) -> HipColumns:
+    """Convert the columns of a text table, whose heads have units; forces in %BW need the body weight in N."""
     columns: dict[str, Numbers] = {}
     orthoload = any(head.name in _ORTHOLOAD for head in table.heads)
     names = _ORTHOLOAD if orthoload else {"f": "force"}
@@ -110,7 +106,7 @@ def _unit_factor(name: str, head: Head, body_weight: float | None) -> float:
     return factors[plain] * body_weight
 
 
-def _convert_opensim_columns(table: NumberTable, side: Side) -> HipColumns:
+def opensim_columns(table: NumberTable, side: Side) -> HipColumns:
     """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
     letter = side.value[0]
     names = [head.name for head in table.heads]
@@ -142,12 +138,24 @@ def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
     """Combine the columns of several tables of one cycle, interpolated at the times of the first table."""
     if len(tables) == 1:
         return tables[0]
-    columns = dict(tables[0].columns)
+    columns, name = dict(tables[0].columns), time_column(tables[0].columns)
+    reference_time = columns[name]
+    time_tolerance = _TIME_TOLERANCE * (reference_time[-1] - reference_time[0])
     for table in tables[1:]:
-        for name, values in resample(table.columns, columns).items():
-            if name in columns:
-                raise ValueError(f"the column {name} is in two files")
-            columns[name] = values
+        if time_column(table.columns) != name:
+            raise ValueError("one file has a column time and another one phase: they cannot be combined")
+        time = table.columns[name]
+        _check_increasing_times(name, time)
+        if time[0] > reference_time[0] + time_tolerance or time[-1] < reference_time[-1] - time_tolerance:
+            spans = (f"{times[0]:g} to {times[-1]:g}" for times in (reference_time, time))
+            ends = f"one file goes from {next(spans)}, and another one only from {next(spans)}"
+            raise ValueError(f"{ends}: use from and to")
+        for title, values in table.columns.items():
+            if title == name:
+                continue
+            if title in columns:
+                raise ValueError(f"the column {title} is in two files")
+            columns[title] = numpy.interp(reference_time, time, values)
     reaction = next((table for table in tables if table.frame is not None), HipColumns())
     return replace(reaction, columns=columns)
 
@@ -180,20 +188,6 @@ def time_column(columns: dict[str, Numbers]) -> str:
     if ("time" in columns) == ("phase" in columns):
         raise ValueError("a column time [s] or phase [%] is needed, and not both")
     return "time" if "time" in columns else "phase"
-
-
-def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict[str, Numbers]:
-    """Interpolate the columns of a table at the times of a reference table."""
-    name = time_column(columns)
-    if name != time_column(reference):
-        raise ValueError("one file has a column time and another one phase: they cannot be combined")
-    time, reference_time = columns[name], reference[name]
-    _check_increasing_times(name, time)
-    time_tolerance = _TIME_TOLERANCE * (reference_time[-1] - reference_time[0])
-    if time[0] > reference_time[0] + time_tolerance or time[-1] < reference_time[-1] - time_tolerance:
-        spans = (f"{times[0]:g} to {times[-1]:g}" for times in (reference_time, time))
-        raise ValueError(f"one file goes from {next(spans)}, and another one only from {next(spans)}: use from and to")
-    return {title: numpy.interp(reference_time, time, values) for title, values in columns.items() if title != name}
 
 
 def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:

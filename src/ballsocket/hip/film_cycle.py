@@ -51,28 +51,6 @@ def carry_film(
     mesh = polar_mesh(foundation.socket_radius, grid.edges, meridians)
     starts = numpy.concatenate([[0], numpy.cumsum(meridians)[:-1]])
     merged = (starts[:, None] + numpy.arange(grid.meridians) * meridians[:, None] // grid.meridians).ravel()
-    instants = _instants(frame, foundation, equilibrium, depth, mesh, grid, merged)
-    films = [
-        carry_over_cycle(mesh, viscosity, [instants[index] for index in loads], cycles) for _, loads in frame.activities
-    ]
-    return CarriedFilm(films=tuple(films), mesh=mesh, merged=merged)
-
-
-def _merge(fields: Numbers, merged: Numbers) -> Numbers:
-    """Compute means of fields (instants, cells of the bore) over the merged cells."""
-    means: Numbers = numpy.stack([numpy.bincount(merged, row) for row in fields]) / numpy.bincount(merged)
-    return means
-
-
-def _instants(
-    frame: CupFrame,
-    foundation: SocketFoundation,
-    equilibrium: CycleEquilibrium,
-    depth: Numbers,
-    mesh: FilmMesh,
-    grid: Grid,
-    merged: Numbers,
-) -> list[CycleInstant]:
     pressure, levels = _merge(equilibrium.pressure, merged), foundation.edge_field(equilibrium, depth)
     forces = frame.socket_forces(equilibrium.displacement)
     axes = forces / numpy.linalg.norm(forces, axis=1)[:, None]
@@ -86,7 +64,7 @@ def _instants(
     else:
         edges = _elastic_edges(frame, foundation, equilibrium, levels, grid, axes)
     gaps = numpy.diff(frame.loaded, prepend=frame.loaded[-1] - frame.cycle.n_steps)
-    return [
+    instants = [
         CycleInstant(
             pressure=pressure[index],
             continuation=continuation[index],
@@ -98,6 +76,16 @@ def _instants(
         )
         for index in range(len(axes))
     ]
+    films = [
+        carry_over_cycle(mesh, viscosity, [instants[index] for index in loads], cycles) for _, loads in frame.activities
+    ]
+    return CarriedFilm(films=tuple(films), mesh=mesh, merged=merged)
+
+
+def _merge(fields: Numbers, merged: Numbers) -> Numbers:
+    """Compute means of fields (instants, cells of the bore) over the merged cells."""
+    means: Numbers = numpy.stack([numpy.bincount(merged, row) for row in fields]) / numpy.bincount(merged)
+    return means
 
 
 def _spring_edges(mesh: FilmMesh, pressure: Numbers, modulus: float) -> list[Edge]:

@@ -27,7 +27,7 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..problem.gaps import LinearGap
 from .contact_checks import UNWORN_ERRORS, ContactCheck, check_contact, half_angles
-from .creep_law import CreepLaw, creep_notes
+from .creep_law import CreepLaw, confinement_note
 from .cup_frame import CupFrame
 from .cycle import Cycle
 from .film import METHODS as FILM_METHODS
@@ -125,16 +125,14 @@ class HipSetup(OneLine):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on the cycle, the cup and the laws, for reports."""
-        law_notes = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
-        return (
-            *self.remarks,
-            *filter(None, [self.cycle.remark]),
-            *self.cycle.notes,
-            *self.frame.notes,
-            *law_notes,
-            *([self.film_limit.note(self.excluded_work_share)] if self.film_limit else ()),
-            *(() if self.creep is None else creep_notes(self.creep, float(self.joint.liner.poisson))),
-        )
+        notes = [*self.remarks, self.cycle.remark, *self.cycle.notes, *self.frame.notes, *self.wear.notes]
+        if self.ball_wear is not None:
+            notes += self.ball_wear.notes
+        if self.film_limit is not None:
+            notes.append(self.film_limit.note(self.excluded_work_share))
+        if self.creep is not None:
+            notes += [*self.creep.notes, confinement_note(self.creep, float(self.joint.liner.poisson))]
+        return tuple(filter(None, notes))
 
     @cached_property
     def grid(self) -> Grid:

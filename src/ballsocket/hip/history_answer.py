@@ -35,22 +35,10 @@ from .history import History
 
 def describe_history(history: History, name: str = "") -> Answer:
     """Describe a wear simulation, with the name of its hip at the start of the title."""
-    use, film = history.use, history.film
-    wear = history.table()._replace(lines=list(_wear_lines(history)))
-    contacts = [contact_table(history)] if use.unworn_checks else []
-    return Answer(
-        title=Sentence("{}{}; {}", f"{name}: " if name else "", str(use.joint), use.cycle.name),
-        lines=list(_first_cycle(history)),
-        tables=[wear, *contacts, *([] if film is None else [film_table(film)])],
-        notes=[note for note in history.notes if note != use.cycle.remark],
-    )
-
-
-def _first_cycle(history: History) -> Iterator[Sentence]:
-    cycle, first = history.use.cycle, history.use.first
-    yield Sentence(
+    use, film, first = history.use, history.film, history.use.first
+    first_cycle = Sentence(
         "{}: slide {} a cycle, pressure times slide {}, cross-shear {}, up to {} and {}",
-        f"{cycle.name} ({cycle.remark})" if cycle.remark else cycle.name,
+        f"{use.cycle.name} ({use.cycle.remark})" if use.cycle.remark else use.cycle.name,
         Amount(first.slide, MILLIMETRES),
         Amount(first.work, Unit("N m")),
         Amount(first.cross_shear, digits=3),
@@ -58,7 +46,14 @@ def _first_cycle(history: History) -> Iterator[Sentence]:
         Amount(first.max_pressure, MEGAPASCALS),
     )
     rates = Amount(first.volume, CUBIC_MILLIMETRES), Amount(first.depth, MILLIMETRES)
-    yield Sentence("unworn: {} and {} a million cycles", *rates)
+    wear = history.table()._replace(lines=list(_wear_lines(history)))
+    contacts = [contact_table(history)] if use.unworn_checks else []
+    return Answer(
+        title=Sentence("{}{}; {}", f"{name}: " if name else "", str(use.joint), use.cycle.name),
+        lines=[first_cycle, Sentence("unworn: {} and {} a million cycles", *rates)],
+        tables=[wear, *contacts, *([] if film is None else [film_table(film)])],
+        notes=[note for note in history.notes if note != use.cycle.remark],
+    )
 
 
 def _wear_lines(history: History) -> Iterator[Sentence]:
@@ -192,13 +187,6 @@ class HipRun:
 
 def describe_hips(runs: Sequence[HipRun]) -> Answer:
     """Describe several hips: one below the other at each report."""
-    named_uses = [(run.name, run.history.use) for run in runs]
-    joints = [Sentence("{}: {}; {}", name, str(use.joint), use.cycle.name) for name, use in named_uses]
-    notes = list(_comparison_notes(runs))
-    return Answer(title="hips side by side", lines=joints, tables=[_comparison_table(runs)], notes=notes)
-
-
-def _comparison_table(runs: Sequence[HipRun]) -> Table:
     columns = [Column.of(QUANTITIES["cycles"], digits=6), Column.of_words("hip")]
     columns += [Column.of(QUANTITIES[name]) for name in _COMPARED] + [Column.of_words("edge_loading", "edge loading")]
     if any(run.bands is not None for run in runs):
@@ -220,15 +208,16 @@ def _comparison_table(runs: Sequence[HipRun]) -> Table:
         )
         for run in runs
     ]
-    return Table("hips", "Wear", columns, rows, lines)
+    named_uses = [(run.name, run.history.use) for run in runs]
+    joints = [Sentence("{}: {}; {}", name, str(use.joint), use.cycle.name) for name, use in named_uses]
+    noted = ((run.name, (*run.history.notes, *(run.bands.notes if run.bands else ()))) for run in runs)
+    notes = [  # each with the names of the hips that have it, unless all have it
+        note if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), note)
+        for note, names in holders_of(noted).items()
+    ]
+    wear = Table("hips", "Wear", columns, rows, lines)
+    return Answer(title="hips side by side", lines=joints, tables=[wear], notes=notes)
 
 
 def _band(run: HipRun, name: str, report: int) -> Cell:
     return None if run.bands is None else tuple(float(end[report]) for end in run.bands.band(name))
-
-
-def _comparison_notes(runs: Sequence[HipRun]) -> Iterator[str]:
-    """Yield the notes of all hips, each with the names of the hips that have it, unless all have it."""
-    noted = ((run.name, (*run.history.notes, *(run.bands.notes if run.bands else ()))) for run in runs)
-    for note, names in holders_of(noted).items():
-        yield note if len(names) == len(runs) else Sentence("{}: {}", ", ".join(names), note)

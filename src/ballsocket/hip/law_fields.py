@@ -77,12 +77,6 @@ class LawField:
         """True if the value of the field is a tuple of numbers."""
         return isinstance(self.example, tuple)
 
-    @property
-    def allowed_range(self) -> str:
-        """Allowed range of the field in words, for messages."""
-        low = f"{self.meaning} ({self.unit.text or 'a number'}) is {'at least' if self.low_included else 'above'} "
-        return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
-
     def check(self, value: Any) -> None:
         """Check type and limits of a value of this field; TypeError or ValueError otherwise."""
         for number in value if self.is_list else (value,):
@@ -91,7 +85,10 @@ class LawField:
                 raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
             float_number = float(number)
             above_low = self.low <= float_number if self.low_included else self.low < float_number
-            require(self.name, number, above_low and float_number < self.high, self.allowed_range)
+            low = f"{'at least' if self.low_included else 'above'} {self.low:g}"
+            high = "finite" if self.high == inf else f"below {self.high:g}"
+            rule = f"{self.meaning} ({self.unit.text or 'a number'}) is {low}, and {high}"
+            require(self.name, number, above_low and float_number < self.high, rule)
 
 
 def law_field(

@@ -140,12 +140,6 @@ class MeasuredWear:
     def __len__(self) -> int:
         return len(self.values)
 
-    @property
-    def specimen_numbers(self) -> list[int]:
-        """Number of the specimen of each value in a data set without stations, from 0: its repetition of a count."""
-        counts = [0.0] * len(self) if self.rate is not None else self.cycles.tolist()
-        return [counts[:index].count(count) for index, count in enumerate(counts)]
-
     def standard_uncertainty(self, fitted: Numbers) -> Numbers:
         """Compute the standard uncertainty of each value from its fitted value, which it is itself if unknown."""
         if self.uncertainty is not None:

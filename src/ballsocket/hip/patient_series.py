@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import ceil, log
@@ -55,20 +56,17 @@ class FamilyRun:
         """Simulate the members of a piece; those without a result are NaN."""
         check_worker_code(self.code)
         first = piece * MEMBERS_PER_PIECE
-        members = [self._simulate(numbers) for numbers in self.box.sample(first + MEMBERS_PER_PIECE)[first:]]
-        return {"unworn": numpy.stack([unworn for unworn, _ in members]), "worn": numpy.stack([w for _, w in members])}
-
-    def _simulate(self, numbers: Mapping[str, float]) -> tuple[Numbers, Numbers]:
-        """Simulate one member; return its numbers of the unworn and of the worn bore."""
+        members = self.box.sample(first + MEMBERS_PER_PIECE)[first:]
         contacts = _CONTACT_FIELDS * len(self.similarity.setup.frame.activities)
+        n_worn = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
+        unworn = numpy.full((len(members), len(UNWORN_NUMBERS) + contacts), numpy.nan)
+        worn = numpy.full((len(members), self.n_nodes, n_worn), numpy.nan)
         low, high = self.log_exposures
-        exposures = (low + high) / 2 + (high - low) / 2 * chebyshev_points(self.n_nodes)
-        try:
-            return self.similarity.simulate(numbers, exposures.tolist())
-        except ValueError:
-            n_numbers = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
-            unworn = numpy.full(len(UNWORN_NUMBERS) + contacts, numpy.nan)
-            return unworn, numpy.full((self.n_nodes, n_numbers), numpy.nan)
+        exposures = ((low + high) / 2 + (high - low) / 2 * chebyshev_points(self.n_nodes)).tolist()
+        for row, numbers in enumerate(members):
+            with suppress(ValueError):
+                unworn[row], worn[row] = self.similarity.simulate(numbers, exposures)
+        return {"unworn": unworn, "worn": worn}
 
 
 def members_of(box: Box, degree: int) -> int:

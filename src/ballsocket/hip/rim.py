@@ -148,16 +148,11 @@ def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, i
     end_angles = numpy.where(fraction * spacing >= 0, polar_nodes[ring] + fraction * spacing, grid.reach)
     edge_angle = numpy.zeros((len(level), grid.meridians))
     numpy.maximum.at(edge_angle, (step, meridian), numpy.minimum(end_angles, grid.reach))
+    outermost = edge_angle.max(axis=1, initial=0.0)
+    weight = numpy.where(edge_angle >= outermost[:, None], numpy.maximum(level[:, -1], 1e-300), 0.0)
+    x, y = weight @ numpy.cos(grid.azimuth), weight @ numpy.sin(grid.azimuth)
     return RimDistance(
-        distance=(grid.reach - edge_angle.max(axis=1, initial=0.0)) * radius,
-        azimuth=_edge_azimuth(edge_angle, level[:, -1], grid.azimuth),
+        distance=(grid.reach - outermost) * radius,
+        azimuth=numpy.arctan2(numpy.where(abs(y) < 1e-9 * abs(x), 0.0, y), x),
         pressure=pressure.reshape(level.shape)[:, -1].max(axis=1, initial=0.0),
     )
-
-
-def _edge_azimuth(edge_angle: Numbers, last_ring: Numbers, azimuth: Numbers) -> Numbers:
-    """Compute the azimuth in rad of the contact edge that is closest to the rim: (loads,)."""
-    outermost = edge_angle >= edge_angle.max(axis=1, initial=0.0)[:, None]
-    weight = numpy.where(outermost, numpy.maximum(last_ring, 1e-300), 0.0)
-    x, y = weight @ numpy.cos(azimuth), weight @ numpy.sin(azimuth)
-    return numpy.arctan2(numpy.where(abs(y) < 1e-9 * abs(x), 0.0, y), x)

@@ -27,7 +27,6 @@ import numpy
 from ..core.arrays import Numbers
 from .cup_frame import ANGLES
 from .cycle import Frame
-from .history import Report
 from .simulation import HipSimulation, make_report
 from .variability import PatientVariability
 from .wear_integrator import WearIntegrator
@@ -192,10 +191,15 @@ class Similarity:
         use, per_cycle = self.make_member(numbers)
         integrator = WearIntegrator(setup=use)
         clearance, worn, converged = float(use.joint.clearance), [], True
+        units = self.units(numpy.asarray(clearance))
         for log_exposure in log_exposures:
             report = make_report(integrator.run_until(exp(log_exposure) / per_cycle, lambda cycles: None))
             depth = integrator.depth + integrator.creep_depth
-            worn.append(self._worn_numbers(use, report, depth, integrator))
+            with numpy.errstate(divide="ignore"):
+                logarithms = [float(numpy.log(getattr(report, name) / units[name])) for name in self.results]
+            displacement = use.solve_equilibrium(depth, integrator.equilibrium).displacement
+            rim_numbers = self._rim_numbers(use, depth, displacement, float(report.edge_distance.min()))
+            worn.append([*logarithms, *rim_numbers, *self._contact_numbers(use, report.worst_contacts)])
             converged = converged and report.converged
         if not converged:
             raise ValueError("a contact did not balance its load")
@@ -219,16 +223,6 @@ class Similarity:
             seconds_per_cycle=exp(numbers[TIME]) * per_cycle if TIME in numbers else self.setup.seconds_per_cycle,
         )
         return member, per_cycle
-
-    def _worn_numbers(
-        self, use: HipSimulation, report: Report, depth: Numbers, integrator: WearIntegrator
-    ) -> list[float]:
-        units = self.units(numpy.asarray(float(use.joint.clearance)))
-        with numpy.errstate(divide="ignore"):
-            logarithms = [float(numpy.log(getattr(report, name) / units[name])) for name in self.results]
-        displacement = use.solve_equilibrium(depth, integrator.equilibrium).displacement
-        rim = self._rim_numbers(use, depth, displacement, float(report.edge_distance.min()))
-        return [*logarithms, *rim, *self._contact_numbers(use, report.worst_contacts)]
 
     def _rim_numbers(
         self, use: HipSimulation, depth: Numbers, displacement: Numbers, distance: float | None

@@ -271,7 +271,8 @@ class HipSimulation(HipSetup):
         stored, (volume, depth) = None if store is None else make_checkpoint(self, store), self.discretization_error
         integrator = WearIntegrator(setup=self)
         reports = run_to_report_points(integrator, counts, progress, stored)
-        blocks = integrator.relative_volume_error
+        worn = integrator.volume + integrator.ball_volume
+        blocks = integrator.volume_error / worn if worn > 0 else 0.0
         error = NumericalError(blocks=blocks, volume=blocks + volume, depth=blocks + depth)
         return History(use=self, reports=reports, error=error, steps=integrator.steps, lubricant=lubricant)
 

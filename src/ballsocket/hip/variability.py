@@ -16,7 +16,7 @@ from ..core.records import Record
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution
-from .contact_checks import utilisation_and_validity
+from .contact_checks import check_rows
 from .cup_frame import ANGLES
 from .cycle import Cycle
 from .cycle_registry import CYCLES
@@ -294,12 +294,15 @@ def result_table(reports: Sequence[Report]) -> Numbers:
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     """Tabulate ratio of von Mises to yield stress, validity and edge loading of the first cycle and each report."""
-    contacts = utilisation_and_validity(
-        use.contact_model, use.joint, [use.unworn_worst_contacts, *(report.worst_contacts for report in reports)]
-    )
+    worst = numpy.stack([use.unworn_worst_contacts, *(report.worst_contacts for report in reports)])
+    utilisation, valid = numpy.full(len(worst), numpy.nan), numpy.ones(len(worst))
+    if worst.size:  # something is pressed
+        checked = check_rows(use.contact_model, use.joint, worst.reshape(-1, worst.shape[-1]))
+        by_stage = checked.reshape(2, *worst.shape[:2])
+        utilisation, valid = by_stage[0].max(axis=1), by_stage[1].min(axis=1)
     at_rim = use.edge(use.unworn).distance <= 0
     edge_loaded = [float(mask.any()) for mask in (at_rim, *(report.edge_loaded for report in reports))]
-    return numpy.column_stack([contacts, edge_loaded])
+    return numpy.column_stack([utilisation, valid, edge_loaded])
 
 
 def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:

@@ -262,7 +262,9 @@ def _specimens(sets: Sequence[MeasuredWear]) -> dict[str, Numbers]:
         if measured.station is not None:
             names += measured.station
             continue
-        title, numbers = measured.name or f"data {number}", measured.specimen_numbers
+        counts = [0.0] * len(measured) if measured.rate is not None else measured.cycles.tolist()
+        numbers = [counts[:index].count(count) for index, count in enumerate(counts)]  # repetitions of a cycle count
+        title = measured.name or f"data {number}"
         title = f"{title} ({number})" if title in names else title
         names += [f"{title}, specimen {n + 1}" if max(numbers) else title for n in numbers]
     return {name: numpy.flatnonzero(numpy.array(names) == name) for name in dict.fromkeys(names)}

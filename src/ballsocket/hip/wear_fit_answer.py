@@ -15,29 +15,21 @@ def describe_wear_fit(fit: WearFit) -> Answer:
     """Describe a fitted wear coefficient."""
     use = fit.simulation
     law = str(getattr(use.wear, "name", type(use.wear).__name__))
-    title = "{}; {}: coefficient of the wear law {}"
-    return Answer(
-        title=Sentence(title, str(use.joint), use.cycle.name, repr(law)),
-        tables=[_coefficients(fit), *([_readings(fit)] if fit.readings else []), _measured(fit)],
-        notes=fit.notes,
-    )
-
-
-def _coefficients(fit: WearFit) -> Table:
-    unit = Unit(fit.unit)
+    title, unit = "{}; {}: coefficient of the wear law {}", Unit(fit.unit)
     columns = [Column.of_words("coefficient"), Column.of_number("best", unit=unit)]
     columns += [Column.of_number("band", "95 %", unit)]
     rows = [Row(["coefficient", fit.coefficient, (fit.low, fit.high) if isfinite(fit.high) else None])]
     if len(fit.stations) > 1:
         rows += [Row([station, coefficient, None]) for station, coefficient in fit.stations.items()]
-    return Table("coefficient", "Coefficient", columns, rows)
-
-
-def _readings(fit: WearFit) -> Table:
-    columns = [Column.of_words("rate", "the same as another rate")]
-    columns.append(Column.of_number("coefficient", unit=Unit(fit.unit)))
-    rows = [Row([description, coefficient]) for description, coefficient in fit.readings.items()]
-    return Table("readings", "Rates of other kinds", columns, rows)
+    tables = [Table("coefficient", "Coefficient", columns, rows)]
+    if fit.readings:
+        heads = [Column.of_words("rate", "the same as another rate"), Column.of_number("coefficient", unit=unit)]
+        tables.append(Table("readings", "Rates of other kinds", heads, list(map(Row, fit.readings.items()))))
+    return Answer(
+        title=Sentence(title, str(use.joint), use.cycle.name, repr(law)),
+        tables=[*tables, _measured(fit)],
+        notes=fit.notes,
+    )
 
 
 def _measured(fit: WearFit) -> Table:

@@ -74,12 +74,6 @@ class WearIntegrator:
     def ball_volume(self) -> float:
         return float(self.ball @ self.setup.ball_areas) if len(self.ball) else 0.0
 
-    @property
-    def relative_volume_error(self) -> float:
-        """Estimated integration error of the worn volume, divided by the worn volume."""
-        total_volume = self.volume + self.ball_volume
-        return self.volume_error / total_volume if total_volume > 0 else 0.0
-
     def _update_active_cells(self) -> None:
         """Select the active cells, those near the contacts, and compute their wear per cycle."""
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, self.depth + self.creep_depth, self.margin)

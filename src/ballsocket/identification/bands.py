@@ -38,11 +38,17 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     ----------
     Birge 1932, Phys. Rev. 40, 207; Particle Data Group 2024, Phys. Rev. D 110, 030001, section 5.2.2.
     """
+    from scipy.stats import chi2, t
+
     widening_factor = scatter_ratio(misfit, best)
     if widening_factor > 1:
         misfit = replace(misfit, widening=widening_factor)
         best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
-    quantile = _band_half_width(widening_factor, misfit.freedom, misfit.noise_freedom)
+    freedom, quantile = misfit.freedom, QUANTILE_95
+    if isfinite(misfit.noise_freedom):  # of estimated uncertainties
+        quantile = float(t.ppf(0.975, misfit.noise_freedom))
+    elif widening_factor > 1 and chi2.sf(widening_factor**2 * freedom, freedom) < _SIGNIFICANCE:
+        quantile = float(t.ppf(0.975, freedom))
     chi_squared_limits = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
         rivals = [
@@ -84,16 +90,6 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     while excess_of_squares(upper) > 0:
         upper *= 2
     return float(brentq(excess_of_squares, 1.0, upper, rtol=1e-6))
-
-
-def _band_half_width(factor: float, freedom: int, noise_freedom: float) -> float:
-    """Compute the half width of a 95 % band; by Student for estimated uncertainties and improbably large scatter."""
-    from scipy.stats import chi2, t
-
-    if isfinite(noise_freedom):
-        return float(t.ppf(0.975, noise_freedom))
-    improbable = freedom > 0 and chi2.sf(factor**2 * freedom, freedom) < _SIGNIFICANCE
-    return float(t.ppf(0.975, freedom)) if factor > 1 and improbable else QUANTILE_95
 
 
 @dataclass(frozen=True, eq=False)

@@ -160,7 +160,12 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
 
 def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
     """List the default candidates for the next measurement: the standard quantities at several loads."""
-    forces = _candidate_forces(fitted)
+    force_arrays = [measured.loads for measured in fitted.data if measured.load == "force"]
+    force_arrays += [
+        forces for measured, forces in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"
+    ]
+    largest = float(numpy.max(numpy.concatenate(force_arrays), initial=0.0)) if force_arrays else 0.0
+    forces = numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
     quantities_and_forces = [
         (quantity, None) if quantity in OF_JOINT else (quantity, force)
         for quantity in STANDARD_QUANTITIES
@@ -177,16 +182,6 @@ def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
         for candidate, value in zip(candidates, values.tolist(), strict=True)
         if value > 0
     )
-
-
-def _candidate_forces(fitted: FittedModel) -> list[float]:
-    """Return equally spaced candidate forces in N, up to 1.5 times the largest force of the data."""
-    force_arrays = [measured.loads for measured in fitted.data if measured.load == "force"]
-    force_arrays += [
-        forces for measured, forces in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"
-    ]
-    largest = float(numpy.max(numpy.concatenate(force_arrays), initial=0.0)) if force_arrays else 0.0
-    return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
 def _choose_indentation_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:

@@ -230,23 +230,22 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
         name: Machine(name=name, **parsed_values(table, content["machine"][name]))
         for name, table in (tables.machine or {}).items()
     }
+    free, free_numbers = tables.free or FreeTable(), content.get("free", {})
+    priors, bodies = parsed_values(free, free_numbers), {"liner": free.liner, "ball": free.ball}
+    unknowns: dict[str, Prior] = {}
+    for name, numbers in free_numbers.items():
+        if name in priors:
+            unknowns[name] = priors[name]
+        else:  # a material with a table of its own
+            own = parsed_values(bodies[name], numbers)
+            unknowns |= {f"{name}_{number}": prior for number, prior in own.items()}
     return IdentifyFile(
         model=with_gap(named_models[tables.model], tables.gap).in_cup(joint_file.cup, **joint_file.aim),
         joint=joint_file.joint,
         data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
-        free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),
+        free=unknowns,
         scatter=_SCATTER_MODELS[tables.scatter],
     )
-
-
-def _parse_unknowns(table: FreeTable, content: Mapping[str, Any]) -> dict[str, Prior]:
-    """Return the priors of the unknowns by name; those of a material may have their own table, `liner.young`."""
-    priors, bodies = parsed_values(table, content), {"liner": table.liner, "ball": table.ball}
-    unknowns: dict[str, Prior] = {}
-    for name, numbers in content.items():
-        own = {name: priors[name]} if name in priors else parsed_values(bodies[name], numbers)
-        unknowns |= own if name in priors else {f"{name}_{number}": prior for number, prior in own.items()}
-    return unknowns
 
 
 def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
@@ -270,16 +269,12 @@ def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder:
         )
     own = [key for key in table.__struct_fields__ if key not in ("file", *_FILE_KEYS)]
     check_names(table.stated(), own, "in [[data]] with values")
-    return (_parse_listed_values(table, table.values, common),)
-
-
-def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
     if table.quantity is None:
         raise ValueError("[[data]] with values needs its quantity")
     quantity = _QUANTITIES[table.quantity]
-    values = Numbers.of(quantity.kind).parse(quantity.name, readings.value)
+    values = Numbers.of(quantity.kind).parse(quantity.name, table.values.value)
     loads = parsed_values(table, dict.fromkeys((*LOADS, "order", "angle")))
-    return Measured(
+    measured = Measured(
         quantity=quantity.name,
         values=values,
         **parse_uncertainty(quantity, None if table.uncertainty is None else table.uncertainty.value),
@@ -289,6 +284,7 @@ def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[s
         **loads,
         **common,
     )
+    return (measured,)
 
 
 def _parse_observable(name: str, table: DataTable) -> CustomObservable | None:

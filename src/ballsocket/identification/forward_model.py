@@ -61,18 +61,9 @@ class ForwardModel:
         joint, valid_geometry = vary_joint(self.joint, joint_values)
         errors = {name: size for measured in self.data for name, size in measured.machine.known_errors().items()}
         model = insert_model_numbers(self.model, model_values)
-        joints_at_points = _JointsAtPoints(model, joint, errors | values_by_name)
-        result_rows = self._compute_results(joints_at_points, 1 + load_perturbation)
-        xp = arrays.namespace(values)
-        result_rows = [
-            xp.broadcast_to(xp.asarray(result_row), (len(values), result_row.shape[-1])) for result_row in result_rows
-        ]
-        return arrays.where(valid_geometry, xp.concat(result_rows, axis=1), float("nan"))
-
-    def _compute_results(self, joints_at_points: _JointsAtPoints, load_factor: float) -> list[Array]:
-        """Compute the results (points, values) of each data set; those with the same kind of load share one press."""
+        joints_at_points, load_factor = _JointsAtPoints(model, joint, errors | values_by_name), 1 + load_perturbation
         results_by_index: dict[int, Array] = {}
-        shared_by_load: dict[str, list[int]] = {}
+        shared_by_load: dict[str, list[int]] = {}  # data sets with the same kind of load share one press
         for index, measured in enumerate(self.data):
             if not measured.load:
                 results_by_index[index] = _read_joint_number(joints_at_points.joint, measured)
@@ -89,7 +80,10 @@ class ForwardModel:
                 results_by_index[index] = joints_at_points.compute_readings(
                     contact, len(loads), self.data[index], value_range
                 )
-        return [results_by_index[index] for index in range(len(self.data))]
+        xp = arrays.namespace(values)
+        rows = [results_by_index[index] for index in range(len(self.data))]
+        rows = [xp.broadcast_to(xp.asarray(row), (len(values), row.shape[-1])) for row in rows]
+        return arrays.where(valid_geometry, xp.concat(rows, axis=1), float("nan"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from ..core.answers import Answer, Cell, Column, Row, Table
@@ -27,7 +26,7 @@ def describe_identification(result: IdentificationResult, posterior: Posterior |
             [f"{result.model.name} fitted to {counted(len(result.misfit.value), 'value')} ({sets})", *remarks]
         ),
         tables=[
-            _estimates(result, posterior)._replace(lines=[*_quality(result, posterior)]),
+            _estimates(result, posterior),
             *([_machine_errors(result)] if result.sensitivity else []),
             _proposals(result),
         ],
@@ -48,10 +47,6 @@ def _estimates(result: IdentificationResult, posterior: Posterior | None) -> Tab
     for product in result.information.products:
         numbers = (product.value, product.low, product.high)
         rows.append(Row([product.name, *(Amount(number, Unit(product.unit)) for number in numbers), *missing]))
-    return Table("estimates", "Estimates", columns, rows)
-
-
-def _quality(result: IdentificationResult, posterior: Posterior | None) -> Iterator[str]:
     information = result.information
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
     if result.freedom <= 0:
@@ -62,14 +57,15 @@ def _quality(result: IdentificationResult, posterior: Posterior | None) -> Itera
         widening = result.misfit.widening
         widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
         scatter = f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
-    yield f"information of {rank}; {scatter}"
+    lines = [f"information of {rank}; {scatter}"]
     if posterior is not None:
         worst, fewest = max(posterior.r_hat.values()), min(posterior.effective.values())
         verdict = "converged" if posterior.converged else f"not converged, which is up to {CONVERGED}"
-        yield (
+        lines.append(
             f"{len(posterior.samples)} samples, as good as {fewest:.0f} independent ones; "
             f"acceptance {posterior.acceptance:.2f}, R-hat {worst:.4f}: {verdict}"
         )
+    return Table("estimates", "Estimates", columns, rows, lines)
 
 
 def _machine_errors(result: IdentificationResult) -> Table:

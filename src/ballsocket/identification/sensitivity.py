@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -64,7 +63,16 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     The shifts are linear at the best point: δθ = (Jᵀ W J)⁻¹ Jᵀ W δ, with the errors δ of the values. Errors that are
     unknowns of the fit are omitted. Their sizes are those assumed in the registry.
     """
-    neglected_errors = list(_neglected_errors(fitted))
+    machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
+    registered = sorted(  # in descending order of the effect
+        MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0))
+    )
+    neglected_errors = [
+        (name, error)
+        for name, machine in machines.items()
+        for error in registered
+        if machine.key(error.name) not in machine.unknown_errors
+    ]
     if not neglected_errors:
         return ()
     theta, transform, forward = fitted.best.theta, fitted.transform, fitted.misfit.forward
@@ -81,16 +89,6 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
         Sensitivity(machine, error.name, error.assumed, dict(zip(transform.names, shift_column.tolist(), strict=True)))
         for (machine, error), shift_column in zip(neglected_errors, shifts.T, strict=True)
     )
-
-
-def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield machine name and error for each error that the fit neglects, in descending order of its effect."""
-    machines = {measured.machine.name: measured.machine for measured in fitted.data if _reads_indentation(measured)}
-    errors = sorted(MACHINE_ERRORS.values(), key=lambda error: -error.assumed * abs(error.effect(_TYPICAL_FORCE, 1.0)))
-    for name, machine in machines.items():
-        for error in errors:
-            if machine.key(error.name) not in machine.unknown_errors:
-                yield name, error
 
 
 def _reads_indentation(measured: Measured) -> bool:

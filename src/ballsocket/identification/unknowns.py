@@ -102,7 +102,18 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
 
 
 def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine: bool = False) -> Unknown:
-    prior = _make_prior(name, stated_prior)
+    if isinstance(stated_prior, Distribution):
+        prior = stated_prior
+    else:
+        try:
+            least, largest = map(float, stated_prior)
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"{name} = {shown(stated_prior)} must be two ends, such as (0.02, 0.3), or a distribution"
+            ) from error
+        if not -inf < least < largest < inf:
+            raise ValueError(f"{name} = {shown(stated_prior)} is not allowed: two finite ends in ascending order")
+        prior = Rectangular(low=least, high=largest)
     low, high = _search_range(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
@@ -116,21 +127,6 @@ def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine
         logarithmic=logarithmic_range or isinstance(prior, LogNormal),
         of_machine=of_machine,
     )
-
-
-def _make_prior(name: str, stated_prior: Prior) -> Distribution:
-    """Convert two ends to a uniform distribution; return a stated distribution unchanged."""
-    if isinstance(stated_prior, Distribution):
-        return stated_prior
-    try:
-        low, high = map(float, stated_prior)
-    except (TypeError, ValueError) as error:
-        raise ValueError(
-            f"{name} = {shown(stated_prior)} must be two ends, such as (0.02, 0.3), or a distribution"
-        ) from error
-    if not -inf < low < high < inf:
-        raise ValueError(f"{name} = {shown(stated_prior)} is not allowed: two finite ends in ascending order")
-    return Rectangular(low=low, high=high)
 
 
 def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:

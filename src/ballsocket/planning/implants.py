@@ -44,15 +44,11 @@ _MIN_ALIGNMENT = 0.9  # least cosine between the normal of a facet and the radia
 _MIN_COVERAGE = 0.06  # least share of the full sphere that facets must cover
 _MAX_ROUGHNESS = 0.015  # largest standard deviation of a bearing from its sphere, over the radius
 _MIN_OPENING = 0.005  # distance of a sphere's centroid from its centre over the radius, below which it is complete
-
-
 _FLAT_FACETS = 0.02  # depth in mm of facets below the sphere through their corners from which a note is given
 _TANGENT_BAND = radians(20.0)  # width of the band at the rim in which a cylinder may continue the sphere
 _MIN_TANGENT = radians(0.4)  # smallest polar angle in rad of a cylinder that is left out
 _MIN_GAIN = 25.0  # least decrease of the sum of squares over its mean per facet that is evidence for a cylinder
 _UNEVEN_RIM = radians(3.0)  # deviation of the rim from a plane from which the rim has a lip
-
-
 _MIN_OUTWARDS = 0.35  # least cosine between the normal of an outer surface and the direction from the bore's centre
 
 
@@ -337,7 +333,10 @@ def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
     radial, distances = polar(mesh.middles, centre)
     outwards = numpy.sum(radial * mesh.normals, axis=1) > _MIN_OUTWARDS
     outer = mesh.part(outwards & (distances > 1.02 * bore.radius))
-    moments = numpy.cross(outer.middles - centre, _smooth_normals(outer)) * outer.areas[:, None]
+    normals, sphere = outer.normals, _find_sphere(outer, 1.0, (RADII[0], _MAX_OUTER_RADIUS))
+    if sphere is not None:
+        normals = numpy.where(sphere.facets[:, None], polar(outer.middles, sphere.centre)[0], normals)
+    moments = numpy.cross(outer.middles - centre, normals) * outer.areas[:, None]
     axis, ambiguous = numpy.asarray(fit.axis), False
     for _ in range(3):
         ends = farthest_points(points, -axis)
@@ -351,14 +350,6 @@ def _with_lip(mesh: Mesh, bore: _SphereFit, fit: ImplantFit) -> ImplantFit:
     angle = acos(float(numpy.clip(-planes[0].height / bore.radius, -1.0, 1.0)))
     deviation = rim_deviation(ends, -planes[0].normal, angle)
     return replace(fit, axis=axis, arc_of_cover=2 * angle, rim_deviation=deviation, rim=planes, ambiguous=ambiguous)
-
-
-def _smooth_normals(mesh: Mesh) -> Numbers:
-    """Return the normals (n, 3) of a mesh, on a convex sphere those of the sphere."""
-    sphere, normals = _find_sphere(mesh, 1.0, (RADII[0], _MAX_OUTER_RADIUS)), mesh.normals
-    if sphere is not None:
-        normals = numpy.where(sphere.facets[:, None], polar(mesh.middles, sphere.centre)[0], normals)
-    return normals
 
 
 def _with_wall(mesh: Mesh, fit: ImplantFit) -> ImplantFit:

@@ -107,7 +107,8 @@ def read_mesh(path: str | Path, *, units: str = "mm") -> Mesh:
         points, corners = read_mesh_file(path)
         triangles = points[corners]
     else:
-        triangles, header = _read_stl(path)
+        with open_input(path) as stream:
+            triangles, header = _read_stl(stream, path)
     if not len(triangles):
         raise ValueError(f"{path.name} has no triangles")
     length = check_extent(triangles.reshape(-1, 3), units, path.name)
@@ -116,18 +117,13 @@ def read_mesh(path: str | Path, *, units: str = "mm") -> Mesh:
     return mesh.part(mesh.areas > 0)
 
 
-def _read_stl(path: Path) -> tuple[Numbers, bytes]:
-    with open_input(path) as stream:
-        size = stream.seek(0, 2)
-        stream.seek(0)
-        if size > _MAX_FILE_SIZE:
-            raise ValueError(f"{path.name} has {size / 1e6:.0f} MB: at most {_MAX_FILE_SIZE // 1_000_000} are read")
-        return _read_triangles(stream, size, path)
-
-
-def _read_triangles(stream: BinaryIO, size: int, path: Path) -> tuple[Numbers, bytes]:
-    """Return the triangles (n, 3, 3) of a file of some size in bytes, and its header."""
-    start, name = stream.read(_BINARY_HEADER), path.name
+def _read_stl(stream: BinaryIO, path: Path) -> tuple[Numbers, bytes]:
+    """Return the triangles (n, 3, 3) of a file and its header."""
+    name, size = path.name, stream.seek(0, 2)
+    if size > _MAX_FILE_SIZE:
+        raise ValueError(f"{name} has {size / 1e6:.0f} MB: at most {_MAX_FILE_SIZE // 1_000_000} are read")
+    stream.seek(0)
+    start = stream.read(_BINARY_HEADER)
     count = int.from_bytes(start[80:84], "little") if len(start) == _BINARY_HEADER else -1
     if size == _BINARY_HEADER + _BINARY_FACET * count:
         kind = numpy.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -9,7 +9,9 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import check_vectors
+from ..core.checks import check_vectors, shown
+from ..core.kinds import MILLIMETRES
+from ..core.unit_systems import Amount, Sentence
 from ..problem.cup import Cup, Side
 from .geometry import fit_plane
 from .landmarks import ROLES, Landmarks, missing_landmarks, read_side
@@ -21,6 +23,8 @@ _HEIGHTS = (30.0, 250.0)  # allowed distance in mm of the pubis from the line th
 _MIN_SIDE_DISTANCE = 20.0  # distance in mm from the middle of the pelvis from which the side of a cup is clear
 _MIN_RIM_POINTS = 3
 _MIN_RIM_SPREAD = 0.15  # least width of the points of a rim over their length; below it they lie on a line
+_ROUGH_RIM = 1.0  # root mean square distance in mm of rim points from their plane from which a note is given
+_UNCERTAIN_AXIS = radians(2.0)
 _MAX_TILT = radians(60.0)  # largest angle of the vertical from the pelvic plane
 
 
@@ -148,8 +152,8 @@ def _landmarks_of_plane(landmarks: Landmarks) -> tuple[Numbers, Numbers, Numbers
 def _check_distance(text: str, distance: float, allowed: tuple[float, float]) -> None:
     """Raise ValueError for a distance in mm that no pelvis has."""
     if not allowed[0] <= distance <= allowed[1]:
-        shown = text.format(f"{distance:.3g} mm")
-        raise ValueError(f"{shown}: {allowed[0]:g} to {allowed[1]:g} mm are allowed (points on a line, or not in mm?)")
+        stated = text.format(f"{distance:.3g} mm")
+        raise ValueError(f"{stated}: {allowed[0]:g} to {allowed[1]:g} mm are allowed (points on a line, or not in mm?)")
 
 
 def _vertical(axes: Numbers, vertical: Any, pelvic_tilt: float | None) -> Numbers | None:
@@ -205,6 +209,23 @@ class CupOrientation:
     residual: float | None = None
     angle_error: float | None = None
     largest_deviation: tuple[str, float] | None = None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on the accuracy of the angles."""
+        notes: list[str] = []
+        if (self.residual or 0.0) > _ROUGH_RIM and self.largest_deviation is not None:
+            name, distance = self.largest_deviation
+            ends = (Amount(length, MILLIMETRES, decimals=1) for length in (self.residual or 0.0, distance))
+            text = "the rim's points are {} from their plane (rms), {} {}: look at it"
+            notes.append(Sentence(text, next(ends), shown(name), next(ends)))
+        if self.points == 3:
+            notes.append("three points on the rim leave no residual: more points show how exact the angles are")
+        if (self.angle_error or 0.0) > _UNCERTAIN_AXIS:
+            notes.append(f"the axis of the cup has a standard error of {degrees(self.angle_error or 0.0):.1f}°")
+        if self.frame.vertical is None:
+            notes.append("the angles are those in the anterior pelvic plane: the pelvic tilt is not known")
+        return tuple(notes)
 
     def cup(self, upright: bool = True, **attributes: Any) -> Cup:
         """Create the cup with its radiographic angles in the upright body, or in the pelvic frame.

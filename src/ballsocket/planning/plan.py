@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import require, shown
+from ..core.checks import require
 from ..core.kinds import MILLIMETRES
 from ..core.unit_systems import Amount, Sentence
 from ..files.joint_file import JointFile, joint_of
@@ -28,8 +28,6 @@ CLEARANCE_REFUSAL = Sentence(
 """Sentence on the difference of the radii of two files."""
 
 _MAX_DIFFERENCE = 1.0  # largest difference in mm of the radii of bore and head; sizes of heads differ by 2 mm
-_ROUGH_RIM = 1.0  # root mean square distance in mm of rim points from their plane from which a note is given
-_UNCERTAIN_AXIS = radians(2.0)
 _UNEVEN_TUBERCLES = 10.0  # mm
 _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
@@ -80,39 +78,23 @@ class HipPlan:
         notes = [note for fit in (self.liner, self.head) if fit is not None for note in fit.notes]
         if self.liner is not None and self.liner.wall_thickness is None:
             notes.append(f"{self.liner.name}: the outer surface is no sphere around the bore: no wall thickness")
-        notes += self._orientation_notes()
+        frame, orientation = self.frame, self.orientation
+        if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
+            offset = Amount(frame.tubercle_offset or 0.0, MILLIMETRES, decimals=0)
+            text = "the pubic tubercles are {} apart across the line of the spines: look at the landmarks"
+            notes.append(Sentence(text, offset))
+        if orientation is not None:
+            notes += orientation.notes
+        elif frame is not None:
+            notes.append(
+                "the orientation of the cup is not known: the landmarks have no points named rim, and no liner lies in "
+                "the coordinates of the scan"
+            )
         if self.worn is not None:
             notes += self.worn.notes
         if self.liner is not None and self.head is not None:
             notes.append(CLEARANCE_REFUSAL)
         return tuple(notes)
-
-    def _orientation_notes(self) -> list[str]:
-        frame, orientation = self.frame, self.orientation
-        notes: list[str] = []
-        if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
-            offset = Amount(frame.tubercle_offset or 0.0, MILLIMETRES, decimals=0)
-            text = "the pubic tubercles are {} apart across the line of the spines: look at the landmarks"
-            notes.append(Sentence(text, offset))
-        if orientation is None and frame is not None:
-            notes.append(
-                "the orientation of the cup is not known: the landmarks have no points named rim, and no liner lies in "
-                "the coordinates of the scan"
-            )
-        if orientation is None:
-            return notes
-        if (orientation.residual or 0.0) > _ROUGH_RIM and orientation.largest_deviation is not None:
-            name, distance = orientation.largest_deviation
-            ends = (Amount(length, MILLIMETRES, decimals=1) for length in (orientation.residual or 0.0, distance))
-            text = "the rim's points are {} from their plane (rms), {} {}: look at it"
-            notes.append(Sentence(text, next(ends), shown(name), next(ends)))
-        if orientation.points == 3:
-            notes.append("three points on the rim leave no residual: more points show how exact the angles are")
-        if (orientation.angle_error or 0.0) > _UNCERTAIN_AXIS:
-            notes.append(f"the axis of the cup has a standard error of {degrees(orientation.angle_error or 0.0):.1f}°")
-        if orientation.frame.vertical is None:
-            notes.append("the angles are those in the anterior pelvic plane: the pelvic tilt is not known")
-        return notes
 
     def joint_file(
         self,
@@ -168,7 +150,9 @@ class HipPlan:
         tables |= {"ball": {"material": ball}} if ball else {}
         tables |= {"load": {"force": force}} if force is not None else {}
         tables |= {"name": name} if name else {}
-        return replace(joint_of(tables), cup=_rounded(self.cup))
+        names = ("arc_of_cover", "inclination", "anteversion") if self.cup.oriented else ("arc_of_cover",)
+        angles: Any = {name: radians(round(degrees(getattr(self.cup, name)), 3)) for name in names}
+        return replace(joint_of(tables), cup=replace(self.cup, **angles))
 
     def summary(self) -> dict[str, Any]:
         """Return all results for JSON, in mm and degrees; a missing number is None."""
@@ -232,12 +216,6 @@ def make_plan(
             axis, centre = frame.axes @ to_ras @ liner.axis, frame.convert(to_ras @ liner.centre)
             orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
     return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head, worn=worn)
-
-
-def _rounded(cup: Cup) -> Cup:
-    names = ("arc_of_cover", "inclination", "anteversion") if cup.oriented else ("arc_of_cover",)
-    rounded: Any = {name: radians(round(degrees(getattr(cup, name)), 3)) for name in names}
-    return replace(cup, **rounded)
 
 
 def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:

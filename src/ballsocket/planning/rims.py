@@ -134,23 +134,17 @@ def main_plane_first(
         main, lip = planes if sums[0] < sums[1] else planes[::-1]
         axis = _turned_axis(moments, main.normal)
         return (main, lip), main.normal if angle_between(axis, main.normal) < _SAME_AXIS else axis, False
-    normal = _outer_end(outer.triangles - centre, -planes[0].normal)
+    normal = None  # of the plane in which the outer surface ends, if most of its end lies in one
+    if len(outer.triangles):
+        corners, dome = outer.triangles - centre, -planes[0].normal
+        points = edge_points(corners / numpy.linalg.norm(corners, axis=2).mean())
+        plane = fit_plane_robustly(farthest_points(points, dome), RIM_TOLERANCE)
+        if numpy.mean(abs(plane.distances) < RIM_TOLERANCE) >= _MIN_END:
+            normal = plane.normal if plane.normal @ dome < 0 else -plane.normal
     for main, lip in (planes, planes[::-1]):
         if normal is not None and angle_between(normal, main.normal) < DISTINCT_AXES:
             return (main, lip), main.normal, False
     return planes, planes[0].normal, True
-
-
-def _outer_end(corners: Numbers, dome: Numbers) -> Numbers | None:
-    """Return the normal of the plane in which the outer surface, facets (n, 3, 3), ends; None without such a plane."""
-    if not len(corners):
-        return None
-    points = edge_points(corners / numpy.linalg.norm(corners, axis=2).mean())
-    ends = farthest_points(points, dome)
-    plane = fit_plane_robustly(ends, RIM_TOLERANCE)
-    if numpy.mean(abs(plane.distances) < RIM_TOLERANCE) < _MIN_END:
-        return None
-    return plane.normal if plane.normal @ dome < 0 else -plane.normal
 
 
 def _turned_axis(moments: Numbers, start: Numbers) -> Numbers:

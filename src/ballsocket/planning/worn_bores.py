@@ -209,17 +209,21 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
     spheres = _find_unworn(local, name)
     bores = [_integrate(cloud, local, sphere) for sphere in spheres]
     unworn = bores[0]
-    if head_radius is not None and not 0.0 < head_radius <= unworn.radius + unworn.radius_error:
-        raise ValueError(
-            f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
-            f"{2 * unworn.radius:.6g} ± {2 * unworn.radius_error:.2g} mm; check the head and --stl-units"
-        )
-    unused = "" if head_radius is None else _unused_head(unworn, head_radius)
+    head_note = ""
+    if head_radius is not None:
+        if not 0.0 < head_radius <= unworn.radius + unworn.radius_error:
+            raise ValueError(
+                f"head_diameter = {2 * head_radius:.6g} mm is not allowed: the bore of {name} has a diameter of "
+                f"{2 * unworn.radius:.6g} ± {2 * unworn.radius_error:.2g} mm; check the head and --stl-units"
+            )
+        gap = Amount(2 * (unworn.radius - head_radius), MILLIMETRES, 2)
+        text = "{}: the head, with a diameter of {} less than the bore, changes no number"
+        head_note = Sentence(text, name, gap)
     if len(bores) == 1:
         shifted = _add_hidden_shift(unworn, local, spheres[0])
         excludes = head_radius is not None and unworn.radius - head_radius > unworn.radius_error
         if not (excludes and shifted.hidden_shift):
-            return replace(shifted, head_note=unused)
+            return replace(shifted, head_note=head_note)
         length = Amount(shifted.hidden_shift, MILLIMETRES, 2)
         return replace(unworn, head_note=Sentence(_HEAD_EXCLUDES, name, length))
     errors = {}
@@ -227,13 +231,7 @@ def measure_wear(cloud: PointCloud, *, head_radius: float | None = None) -> Worn
         difference = abs(getattr(bores[0], quantity) - getattr(bores[1], quantity))
         own, other = (getattr(bore, f"{quantity}_error") for bore in bores)
         errors[f"{quantity}_error"] = max(difference + other, own)
-    return replace(unworn, **errors, ambiguous=True, head_note=unused)
-
-
-def _unused_head(bore: WornBore, head_radius: float) -> Sentence:
-    """Describe a head that changes no number: it is as large as the bore, or the points exclude a hidden shift."""
-    gap = Amount(2 * (bore.radius - head_radius), MILLIMETRES, 2)
-    return Sentence("{}: the head, with a diameter of {} less than the bore, changes no number", bore.name, gap)
+    return replace(unworn, **errors, ambiguous=True, head_note=head_note)
 
 
 _HEAD_EXCLUDES = (

@@ -237,19 +237,14 @@ def _engine(table: EngineTable) -> Engine:
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
 
-def _texts_of_values(axes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of axes as the file writes them, by name and index; of equal steps both ends."""
-    texts: dict[str, Any] = {}
-    for name, values in axes.items():
-        ends = [values.get("from"), values.get("to")] if isinstance(values, Mapping) else values
-        texts |= {f"{name}[{i}]": text for i, text in enumerate(ends if isinstance(ends, list) else [ends])}
-    return texts
-
-
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
     axes = content.get("axes", {})
     values = parsed_values(tables.axes, axes)
-    with as_given(_texts_of_values(axes), "axes."):
+    texts: dict[str, Any] = {}  # as the file writes them, by name and index; of equal steps both ends
+    for name, stated in axes.items():
+        ends = [stated.get("from"), stated.get("to")] if isinstance(stated, Mapping) else stated
+        texts |= {f"{name}[{i}]": text for i, text in enumerate(ends if isinstance(ends, list) else [ends])}
+    with as_given(texts, "axes."):
         design = grid(**values)
     if tables.samples is not None:
         samples = tables.samples

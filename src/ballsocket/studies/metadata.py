@@ -135,11 +135,9 @@ def as_data(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
     A content is a number, a list, or a mapping with numbers and the point `at` which they are.
     """
-    return {_data_key(name): _datum(name, content) for name, content in numbers.items()}
-
-
-def _data_key(name: str) -> str:
-    return QUANTITIES[name].key if name in QUANTITIES else name
+    return {
+        QUANTITIES[name].key if name in QUANTITIES else name: _datum(name, content) for name, content in numbers.items()
+    }
 
 
 def _datum(name: str, content: Any) -> Any:

@@ -37,19 +37,15 @@ def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: in
     """Draw chunk `number` of a design of `count` uniform points in the unit cube: (dimension, points of the chunk)."""
     start, stop = number * CHUNK_SIZE, min(count, (number + 1) * CHUNK_SIZE)
     if method is Method.SOBOL:
-        return _draw_sobol(dimension, seed, start, stop).T
+        engine = _sobol_engine(dimension, seed, get_ident())
+        if engine.num_generated > start:
+            engine.reset()
+        if engine.num_generated < start:
+            engine.fast_forward(start - engine.num_generated)
+        return draw_points(engine, stop - start).T
     if count > _MAX_SCIPY_COUNT:
         return _draw_latin_hypercube(count, dimension, seed, start, stop).T
     return _scipy_hypercube(count, dimension, seed)[start:stop].T
-
-
-def _draw_sobol(dimension: int, seed: int, start: int, stop: int) -> Numbers:
-    engine = _sobol_engine(dimension, seed, get_ident())
-    if engine.num_generated > start:
-        engine.reset()
-    if engine.num_generated < start:
-        engine.fast_forward(start - engine.num_generated)
-    return draw_points(engine, stop - start)
 
 
 def draw_points(engine: Sobol, count: int) -> Numbers:

@@ -15,14 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceStore
-from .axes import Axis
-from .metadata import (
-    list_differences,
-    order_coordinates,
-    study_attributes,
-    study_identity,
-    variable_attributes,
-)
+from .metadata import list_differences, order_coordinates, study_attributes, study_identity, variable_attributes
 from .sampling import CHUNK_SIZE
 from .task import DTYPES, VERDICT, Task
 
@@ -165,7 +158,20 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     for name, value in task.design.constants.items():
         group.create_array(name, shape=(), dtype="float64", attributes=variable_attributes(name))[...] = value
     for axis in task.design.axes:
-        _write_axis(group, axis)
+        coordinates = {
+            name: group.create_array(
+                name,
+                shape=(len(axis),),
+                chunks=(min(len(axis), CHUNK_SIZE),),
+                dtype="float64",
+                dimension_names=(axis.name,),
+                attributes=variable_attributes(name),
+            )
+            for name in axis.names
+        }
+        for section in axis.sections:  # large axes of samples are not held in memory
+            for name, values in axis.values_in(section).items():
+                coordinates[name][section] = values
     for name in task.variables:
         dtype = numpy.dtype(DTYPES[name])
         group.create_array(
@@ -181,21 +187,3 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     group.create_array(
         CHECKSUM, shape=(len(task.blocks),), chunks=(1,), dtype="int64", fill_value=-1, dimension_names=("block",)
     )
-
-
-def _write_axis(group: Any, axis: Axis) -> None:
-    """Write the values along an axis in sections, since large axes of samples are not held in memory."""
-    coordinates = {
-        name: group.create_array(
-            name,
-            shape=(len(axis),),
-            chunks=(min(len(axis), CHUNK_SIZE),),
-            dtype="float64",
-            dimension_names=(axis.name,),
-            attributes=variable_attributes(name),
-        )
-        for name in axis.names
-    }
-    for section in axis.sections:
-        for name, values in axis.values_in(section).items():
-            coordinates[name][section] = values

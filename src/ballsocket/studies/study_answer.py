@@ -51,7 +51,13 @@ class _StudyReport:
             for name in self.sampled:
                 values = part[name].values.ravel()
                 self.sampled[name].append(values[::stride].copy())
-                self._add_ends(name, values, first)
+                if numpy.isnan(values).all():
+                    continue
+                places = {"least": int(numpy.nanargmin(values)), "largest": int(numpy.nanargmax(values))}
+                found = {end: (float(values[place]), first + place) for end, place in places.items()}
+                known = self.ends.setdefault(name, found)
+                known["least"] = min(known["least"], found["least"])
+                known["largest"] = max(known["largest"], found["largest"], key=itemgetter(0))
             bad = ~part.valid.values
             codes = numpy.stack([part.status.values[bad], part.broken_limit.values[bad]], axis=-1)
             kinds, counts = numpy.unique(codes, axis=0, return_counts=True)
@@ -60,15 +66,6 @@ class _StudyReport:
                 self.verdicts[verdict] += int((part[VERDICT].values == int(verdict)).sum())
             self.valid += int(part.valid.values.sum())
             first += part.status.size
-
-    def _add_ends(self, name: str, values: numpy.ndarray, first: int) -> None:
-        if numpy.isnan(values).all():
-            return
-        places = {"least": int(numpy.nanargmin(values)), "largest": int(numpy.nanargmax(values))}
-        found = {end: (float(values[place]), first + place) for end, place in places.items()}
-        known = self.ends.setdefault(name, found)
-        known["least"] = min(known["least"], found["least"])
-        known["largest"] = max(known["largest"], found["largest"], key=itemgetter(0))
 
     def quantities(self) -> dict[str, dict[str, Any]]:
         """Return least and largest value of each result with coordinates, and its median; None without an answer."""

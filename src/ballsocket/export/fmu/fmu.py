@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -19,14 +19,7 @@ from ...dynamics import ForceElement, PreloadedElement
 from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
-from ..compiler import (
-    LIBRARY_ENDING,
-    THIS_PLATFORM,
-    NoCompiler,
-    Platform,
-    compile_library,
-    cross_compilers,
-)
+from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library, cross_compilers
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
 from ..tunable import TUNABLES
@@ -51,30 +44,19 @@ LOG_CATEGORIES = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class UnitInformation:
-    """Name, identifier and texts of an FMU for its description."""
-
-    name: str
-    guid: str
-    text: str
-    tool: str
-    sources: Sequence[str]
-
-
-def fmi2_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+def fmi2_description(fmu: Fmu) -> bytes:
     """Return the XML file `modelDescription.xml` of an FMU for FMI 2.0, as bytes."""
-    root = _description_root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
+    root = _description_root(fmu, {"guid": fmu.guid, "numberOfEventIndicators": "0"})
     files = SubElement(root[1], "SourceFiles")
     for parent in (SubElement(root[0], "SourceFiles"), files):
-        for source in information.sources:
+        for source in fmu.c_sources:
             SubElement(parent, "File", name=source)
     variables_element = _add_units_and_logs(root)
-    for variable in variables:
+    for variable in fmu.variables:
         scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
         SubElement(scalar_variable, "Real", _unit_and_start_attributes(variable))
     structure = SubElement(root, "ModelStructure")
-    outputs = [variable for variable in variables if variable.causality == "output"]
+    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
     for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
         for variable in outputs:
             dependencies = _dependency_attributes(variable.needs, parent.tag)
@@ -82,18 +64,18 @@ def fmi2_description(information: UnitInformation, variables: Sequence[Variable]
     return _xml_bytes(root)
 
 
-def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+def fmi3_description(fmu: Fmu) -> bytes:
     """Return the XML file `modelDescription.xml` of an FMU for FMI 3.0, as bytes."""
-    root = _description_root("3.0", information, {"instantiationToken": information.guid})
+    root = _description_root(fmu, {"instantiationToken": fmu.guid})
     variables_element = _add_units_and_logs(root)
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
     SubElement(variables_element, "Float64", time, unit="s")
-    for variable in variables:
+    for variable in fmu.variables:
         SubElement(
             variables_element, "Float64", {**_variable_attributes(variable), **_unit_and_start_attributes(variable)}
         )
     structure = SubElement(root, "ModelStructure")
-    outputs = [variable for variable in variables if variable.causality == "output"]
+    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
     for tag in ("Output", "InitialUnknown"):
         for variable in outputs:
             dependencies = _dependency_attributes(variable.needs, tag)
@@ -101,38 +83,39 @@ def fmi3_description(information: UnitInformation, variables: Sequence[Variable]
     return _xml_bytes(root)
 
 
-def build_description(information: UnitInformation) -> bytes:
+def build_description(fmu: Fmu) -> bytes:
     """Return the XML file `buildDescription.xml` of FMI 3.0, a list of the source files, as bytes."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
-    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=information.name)
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=fmu.name)
     files = SubElement(configuration, "SourceFileSet", language="C99")
-    for source in information.sources:
+    for source in fmu.c_sources:
         SubElement(files, "SourceFile", name=source)
     return _xml_bytes(root)
 
 
-def terminals_description(variables: Sequence[Variable]) -> bytes:
+def terminals_description(fmu: Fmu) -> bytes:
     """Return the XML file `terminalsAndIcons.xml` of FMI 3.0 as bytes: one terminal with all inputs and outputs."""
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     terminal = SubElement(SubElement(root, "Terminals"), "Terminal", name="ball", matchingRule="bus")
-    for variable in variables:
+    for variable in fmu.variables:
         if variable.causality != "parameter":
             name = {"variableName": variable.name, "memberName": variable.name}
             SubElement(terminal, "TerminalMemberVariable", {**name, "variableKind": "signal"})
     return _xml_bytes(root)
 
 
-def _description_root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
+def _description_root(fmu: Fmu, identifiers: dict[str, str]) -> Element:
     """Make the root element of a model description in XML, with the capabilities of the FMU."""
-    texts = {
-        "description": information.text,
-        "generationTool": information.tool,
-        "variableNamingConvention": "structured",
-    }
-    attributes = {"fmiVersion": version, "modelName": information.name, **identifiers, **texts}
+    description = f"ball in a socket, {fmu.element.model.title}"
+    if isinstance(fmu.element, PreloadedElement):
+        description += "; the start values of the position are those of the ball at rest, without a force"
+    tool = {"generationTool": f"ballsocket {__version__}", "variableNamingConvention": "structured"}
+    version = fmu.standard.version
+    names = {"fmiVersion": version, "modelName": fmu.name, **identifiers}
+    attributes = {**names, "description": description, **tool}
     root = Element("fmiModelDescription", attributes)
     capabilities = dict.fromkeys(_CAPABILITIES[version], "true")
-    identifier = {"modelIdentifier": information.name, **capabilities}
+    identifier = {"modelIdentifier": fmu.name, **capabilities}
     not_needed = (
         {"completedIntegratorStepNotNeeded": "true"} if version == "2.0" else {"needsCompletedIntegratorStep": "false"}
     )
@@ -187,7 +170,7 @@ class Standard:
 
     version: str
     folder: Callable[[Platform], str]  # returns the folder name of the binaries of a platform
-    describe: Callable[[UnitInformation, Sequence[Variable]], bytes]  # returns the file `modelDescription.xml`
+    describe: Callable[[Fmu], bytes]  # returns the file `modelDescription.xml`
     words: Mapping[str, str]  # words in which the C functions of the versions differ, by their placeholders
 
     @property
@@ -317,31 +300,28 @@ class Fmu:
         }
 
     @property
-    def information(self) -> UnitInformation:
-        """Name, identifier and texts for the description file of the FMU."""
-        c_sources = [name for name in self.sources if name.endswith(".c")]
-        description = f"ball in a socket, {self.element.model.title}"
-        if isinstance(self.element, PreloadedElement):
-            description += "; the start values of the position are those of the ball at rest, without a force"
-        return UnitInformation(
-            name=self.name, guid=self.guid, text=description, tool=f"ballsocket {__version__}", sources=c_sources
-        )
+    def c_sources(self) -> list[str]:
+        """Names of the C files, which a tool compiles."""
+        return [name for name in self.sources if name.endswith(".c")]
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """Inputs, outputs and parameters."""
+        return variables(self.element)
 
     def write(self, path: Path) -> FmuFile:
         """Write the FMU archive, and return its path with a note on each binary that could not be made.
 
         Raises OSError: a folder that cannot be written to.
         """
-        files: dict[str, bytes] = {
-            "modelDescription.xml": self.standard.describe(self.information, variables(self.element))
-        }
+        files: dict[str, bytes] = {"modelDescription.xml": self.standard.describe(self)}
         files |= {f"sources/{name}": text.encode() for name, text in self.sources.items()}
         page = escape(self._job.readme(f"functional mock-up unit of FMI {self.standard.version}"))
         files["documentation/index.html"] = f'<!doctype html><meta charset="utf-8"><pre>{page}</pre>\n'.encode()
         files["documentation/licenses/license.txt"] = fill_template("license.txt").encode()
         if self.version == 3:
-            files["sources/buildDescription.xml"] = build_description(self.information)
-            files["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_description(variables(self.element))
+            files["sources/buildDescription.xml"] = build_description(self)
+            files["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_description(self)
         binaries, failures = self._compile_binaries()
         for platform, binary in binaries.items():
             files[f"binaries/{self.standard.folder(platform)}/{self.name}{platform.library_ending}"] = binary
@@ -369,7 +349,7 @@ class Fmu:
             library = folder / f"{self.name}{LIBRARY_ENDING}"
             for program in ((), *cross_compilers()):
                 try:
-                    platform = compile_library(self.information.sources, library, folder, program=program)
+                    platform = compile_library(self.c_sources, library, folder, program=program)
                     binaries[platform] = library.read_bytes()
                 except NoCompiler as error:
                     errors.append(f"no binary by {program[0]}: {error}" if program else str(error))

@@ -68,10 +68,8 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 def variables(element: ForceElement | PreloadedElement) -> tuple[Variable, ...]:
     """List all variables of an FMU in the order of their reference numbers, from 1."""
-    properties = [*_input_properties(element), *_output_properties(), *_parameter_properties(element)]
     return tuple(
-        Variable(reference=reference, **variable_properties)
-        for reference, variable_properties in enumerate(properties, 1)
+        Variable(reference=reference, **properties) for reference, properties in enumerate(_properties(element), 1)
     )
 
 
@@ -81,26 +79,19 @@ def start_inputs(element: ForceElement | PreloadedElement) -> tuple[float, ...]:
     return (*(_MM * component for component in position), *(0.0,) * 6)
 
 
-def _input_properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
-    """Yield the properties of all inputs: position, velocity and spin."""
+def _properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
+    """Yield the properties of all inputs, outputs and tunable parameters."""
     starts = iter(start_inputs(element))
     for name, (unit, meaning) in _VECTORS.items():
         for axis in (1, 2, 3):
             properties = {"causality": "input", "unit": unit, "description": meaning, "start": next(starts)}
             yield {"name": f"{name}[{axis}]", **properties}
-
-
-def _output_properties() -> Iterator[dict]:
-    """Yield the properties of all outputs: force, moment, energy, half angle and largest pressure."""
     for name, (unit, meaning) in _LOADS.items():
         for axis in (1, 2, 3):
             described = {"name": f"{name}[{axis}]", "unit": unit, "description": meaning}
             yield {**described, "causality": "output", "needs": _STATE}
     for name, (unit, meaning) in _SCALARS.items():
         yield {"name": name, "causality": "output", "unit": unit, "description": meaning, "needs": _POSITION}
-
-
-def _parameter_properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
     for parameter in TUNABLES:
         start = getattr(element.constants, parameter.constant) * parameter.si
         properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
