@@ -9,6 +9,12 @@ NUMERICAL = {"plane-layer", "exact", "tabulated"}
 CLOSED_FORMS = {name: model for name, model in bs.catalogue.items() if name not in NUMERICAL}
 
 
+def lined(poisson=0.4, thickness=6.75, *, ball_radius=17.9, clearance=0.1, young=1000.0, **others) -> bs.Joint:
+    """A rigid ball in the liner of a hip, with some of its numbers replaced."""
+    liner = bs.Material(young=young, poisson=poisson)
+    return bs.Joint(ball_radius=ball_radius, clearance=clearance, liner_thickness=thickness, liner=liner, **others)
+
+
 def random_joint(
     size: int, seed: int, *, clearance: tuple[float, float] = (-6.0, -1.0), thickness: tuple[float, float] = (-1.5, 1.5)
 ) -> bs.Joint:

@@ -97,35 +97,6 @@ def test_joints_are_solved_once_with_all_of_their_loads_and_each_has_its_own_sol
     np.testing.assert_allclose(solution.pressure(np.array([[0.5], [2.0]])), np.outer([0.5, 2.0], solution.force))
     np.testing.assert_allclose(solution.pressure(np.array(0.5)), 0.5 * solution.force)
     np.testing.assert_allclose(solution.combine(lambda piece: piece.error["force"]), 0.01 * solution.force)
-    clearance = np.array([[0.3, 0.1, 0.2, 0.4], [0.1, 0.4, 0.3, 0.2]])
-    load = np.array([[1.0], [2.0]])
-    solution = solve_per_joint(bs.Exact(), replace(HIP, clearance=clearance), load, doubled, np.array(0.0))
-    np.testing.assert_allclose(solution.force, clearance * load, rtol=1e-14)
-    profile = solution.pressure(np.array([0.5, 2.0]).reshape(2, 1, 1))
-    np.testing.assert_allclose(profile, np.array([0.5, 2.0]).reshape(2, 1, 1) * clearance * load, rtol=1e-14)
-    np.testing.assert_allclose(solution.pressure(clearance), clearance * clearance * load, rtol=1e-14)
-
-
-def test_solutions_of_one_contact_need_one_contact():
-    many = bs.Exact().press(HIP, force=np.array([1.0, 2.0]))
-    with pytest.raises(ValueError, match=r"displacements and stresses are for one contact, got the shape \(2,\)"):
-        _ = many.single_state
-    for alone in (bs.Exact().press(HIP, force=0.0), bs.Exact().press(HIP, half_angle=1.569)):
-        with pytest.raises(ValueError, match="displacements and stresses need a contact under load"):
-            _ = alone.single_state
-
-
-@pytest.mark.parametrize("peak", [0.0, 0.3, 0.62, 0.9])
-def test_the_largest_pressure_is_located_on_a_profile(peak):
-    """Pressure falls with the squared distance from its peak, relative to the half angle."""
-    edge = np.array([0.5, 1.0, 1.2])
-
-    def pressure(angle):
-        return 10.0 - (angle / edge - peak) ** 2
-
-    largest, angle = find_peak_pressure(pressure, pressure(0.0 * edge), edge, 1e-9)
-    np.testing.assert_allclose(angle / edge, peak, atol=1e-3)
-    np.testing.assert_allclose(largest, 10.0, rtol=1e-7)
 
 
 def test_an_excess_within_the_noise_counts_as_the_pole():
@@ -158,11 +129,3 @@ def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, lo
     softer = replace(joint, ball=bs.Material(young=50e3, poisson=0.3))
     soft = bs.Exact().press(softer, force=load)
     assert closed_sphere.hemisphere_indentation_change(soft) > change
-
-
-def test_shapes_that_do_not_broadcast_are_refused():
-    message = r"the shapes \(2,\), \(3,\) of joint, load and direction do not broadcast"
-    with pytest.raises(ValueError, match=message):
-        bs.HessForsbach().press(HIP.replace(clearance=np.array([0.1, 0.2])), force=[1.0, 2.0, 3.0])
-    with pytest.raises(ValueError, match=message):
-        bs.Sphere().press(HIP, force=[1.0, 2.0, 3.0], tilt=[0.1, 0.2])

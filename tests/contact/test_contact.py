@@ -1,6 +1,7 @@
 """Quantities of contacts, and their text, dictionaries, frames and plots."""
 
 import json
+from dataclasses import replace
 from math import cos, pi, sin
 
 import numpy as np
@@ -18,11 +19,6 @@ def test_a_contact_is_summarised_for_json():
     assert PRESSED.joint is HIP
     assert type(PRESSED.joint.ball_radius) is float
     summary = json.loads(json.dumps(PRESSED.summary(), allow_nan=False))
-    assert list(summary) == [
-        *("model", "force", "indentation", "half_angle_deg", "max_pressure", "area", "stiffness", "energy"),
-        *("foundation_modulus", "pole_pressure", "max_pressure_angle_deg", "utilisation"),
-        *("pressure_ratio", "utilisation_note", "valid", "notes"),
-    ]
     assert summary["half_angle_deg"] == pytest.approx(44.7199, abs=1e-4)
     assert summary["valid"] is True
     assert str(bs.HessForsbach().press(HIP, force=-0.0).summary()["force"]) == "0.0"
@@ -125,6 +121,9 @@ def test_area_ratios_and_moduli_follow_their_definitions_and_have_their_limits()
     assert deep.area == pytest.approx(4 * pi * 17.9**2, rel=1e-12)
 
 
+TWO_JOINTS = HIP.replace(clearance=np.array([0.1, 0.2]))
+APART = r"the shapes \(2,\), \(3,\) of joint, load and direction do not broadcast"
+
 test_arguments_that_are_not_allowed_are_refused = refused_calls(
     (lambda: bs.compare(HIP, force=-1.0), "force = -1 is not allowed"),
     (lambda: bs.Hertz().press(HIP, force=[1.0, 2.0]).plot(), "a plot shows one contact for each model, got 2"),
@@ -142,6 +141,11 @@ test_arguments_that_are_not_allowed_are_refused = refused_calls(
     (lambda: PRESSED.pressure(45.0), "angle = 45 is not allowed: .* 45 degrees are 0.7854 radians"),
     (lambda: PRESSED.pressure_at([0.0, 0.0, 1.001]), "a direction is a unit vector"),
     (lambda: PRESSED.pressure_at([0.0, 0.0, 0.999]), "a direction is a unit vector"),
+    (lambda: bs.HessForsbach().press(TWO_JOINTS, force=[1.0, 2.0, 3.0]), APART),
+    (lambda: bs.Sphere().press(HIP, force=[1.0, 2.0, 3.0], tilt=[0.1, 0.2]), APART),
+    (lambda: replace(bs.UHMWPE, yield_stress=0.0), r"yield_stress = 0 is not allowed: a yield stress \(MPa\) is"),
+    (lambda: replace(bs.UHMWPE, fatigue_limit="5 MPa"), "fatigue_limit must be a number"),
+    error=(ValueError, TypeError),
 )
 
 
@@ -177,11 +181,3 @@ def test_friction_torque_has_the_shape_of_the_contact_and_the_period_of_half_a_t
     for angle in (-0.7, pi - 0.7, pi + 0.7, 2 * pi - 0.7, 0.7 - 2 * pi):
         assert PRESSED.friction_torque(0.1, angle) == pytest.approx(torque, rel=1e-12)
     assert PRESSED.friction_torque(0.1, 2 * pi) == pytest.approx(PRESSED.friction_torque(0.1, 0.0), rel=1e-12)
-
-
-def test_force_vector_is_zero_within_the_clearance():
-    vector, displacement = bs.HessForsbach().force_vector, np.array([[0.0, 0.0, 0.0999], [0.0, 0.1001, 0.0]])
-    np.testing.assert_array_equal(vector(HIP, displacement)[0], 0.0)
-    assert vector(HIP, displacement)[1, 1] < 0.0
-    fitted = HIP.replace(clearance=0.0)
-    np.testing.assert_array_equal(vector(fitted, np.zeros(3)), 0.0)

@@ -88,28 +88,12 @@ def test_contacts_of_a_curve_are_pickled():
         np.testing.assert_array_equal(same.energy, contact.energy)
 
 
-def test_no_curve_is_built_for_few_loads_or_for_arrays_of_joints():
-    before = joint_curve.joint_curve.cache_info().misses
-    joint = HIP.replace(clearance=0.0987)
-    force = np.linspace(100.0, 3000.0, FEW)
-    many_joints = joint.replace(clearance=np.linspace(0.05, 0.2, FEW + 1))
-    bs.Tabulated().press(joint, force=force)
-    bs.Tabulated().press(many_joints, force=1000.0)
-    bs.Tabulated().press(joint, half_angle=np.linspace(0.1, 1.0, FEW + 1))
-    assert joint_curve.joint_curve.cache_info().misses == before
-
-
 @pytest.mark.parametrize("name", ["cosine-limit", "bonded-layer"])
 def test_a_curve_of_a_joint_without_clearance_equals_its_formula(name):
     model, joint = bs.catalogue[name], HIP.replace(clearance=0.0, ball_radius=18.0).with_floats()
     curve, law = model.curve(joint), model.law(joint)
     for depth in np.geomspace(1e-5, 0.5, 20).tolist():
         assert curve(depth) == pytest.approx(law(depth), rel=1e-7)
-
-
-def test_a_force_that_is_not_positive_has_no_curve():
-    with pytest.raises(TypeError, match="no force law: the load at an indentation of .* mm must be above 0 N"):
-        bs.AdhesiveSocket(work_of_adhesion=1e-3).curve(HIP.with_floats())
 
 
 @pytest.mark.parametrize("n", [1.0, 1.5, 2.0])

@@ -54,6 +54,19 @@ def test_single_precision_has_numbers_at_small_loads(model, force):
         assert getattr(single, name) == pytest.approx(getattr(double, name), rel=3e-6)
 
 
+ELASTIC = {model.name: model for model in (bs.Exact(), bs.Tabulated(), bs.Refined())} | {"curve": bs.ExactCurve()}
+BEYOND = {"force": [3000.0, 1e9], "half_angle": np.radians([84.9, 85.1]), "indentation": [0.01, 1e5]}
+
+
+@pytest.mark.parametrize("model", ELASTIC.values(), ids=ELASTIC)
+@pytest.mark.parametrize("kind", BEYOND)
+def test_loads_beyond_85_degrees_have_no_result(model, kind):
+    contact = model.press(HIP, **{kind: BEYOND[kind]})
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
+    for name in {"force", "half_angle", "max_pressure", "energy", "foundation_modulus"} - {kind}:
+        np.testing.assert_array_equal(np.isnan(getattr(contact, name)), [False, True])
+
+
 ABSURD = [(1e-200, 18.0), (1e-308, 18.0), (1.0, 1e-160), (1e-300, 1e200), (1e300, 1e5), (1.0, 1e150), (1e308, 1e308)]
 
 

@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.contact import strength
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION, TABLE_ERROR
 from ballsocket.contact.stress_ratio import poisson_at, thickness_ratio_at, von_mises_ratio
-from ballsocket.contact.verdict import Bounded, Verdict, error_bar, exact_number
+from ballsocket.contact.verdict import Bounded, Verdict, error_bar
 from ballsocket.design_checks import assess_strength, strength_checks
 from ballsocket.elasticity.exact import subsurface
 
@@ -161,47 +161,16 @@ def test_bars_of_a_closed_sphere_contain_the_stress_in_a_cup_with_a_free_rim():
             assert contact.max_pressure < free.max_pressure < error_bar(contact, "max_pressure").high
 
 
-def test_bounds_of_the_stress_contain_the_exact_one_in_99_of_100_joints():
-    """Random joints in the range of each model; the error that it promises for its pressure comes on top."""
-    random, inside = np.random.default_rng(3), []
-    for _ in range(either(10, 100)):
-        joint = joint_with(random.uniform(0.3, 0.46), random.uniform(1.0, 7.0))
-        joint = joint.replace(ball=bs.Material(young=random.uniform(2e5, 4e5), poisson=0.3))
-        force = joint.liner.young * np.exp(random.uniform(-2.0, 2.0))
-        known = bs.Exact(tolerance=1e-4).press(joint, force=force).peak_stress.von_mises
-        for model in (bs.Tabulated(), bs.Refined(), bs.HessForsbach()):
-            contact = model.press(joint, force=force)
-            if contact.valid:
-                stress, low, high = contact.quick_von_mises
-                assert high - low == pytest.approx(2 * TABLE_ERROR * stress, rel=0.02)  # a stiff ball adds at most 1 %
-                inside.append(low * (1 - model.promise.within) <= known <= high * (1 + model.promise.within))
-    assert np.mean(inside) >= 0.99
-
-
-def test_stresses_of_a_soft_backed_socket_are_solved_only_near_yield(monkeypatch):
+def test_bounds_of_the_stress_in_a_soft_backed_socket_contain_it_and_it_decides_the_validity():
     cement = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
     soft = HIP.replace(backing=(cement, bs.Layer(thickness=4.0, material=bs.CANCELLOUS_BONE)))
     forces = np.array([300.0, 1000.0, 3000.0, 9000.0, 30000.0])
-    known, looks, peak = bs.Exact().press(soft, force=forces), [], subsurface.find_peak_stress
-    monkeypatch.setattr(subsurface, "find_peak_stress", lambda *arguments: looks.append(1) or peak(*arguments))
-    assert bs.Exact().press(soft, force=forces[:3]).valid.all()
-    assert not looks
+    known = bs.Exact().press(soft, force=forces)
     _, least, most = known.quick_von_mises
     assert ((least <= known.von_mises) & (known.von_mises <= most)).all()
+    np.testing.assert_allclose(most / least, 1.1 / 0.9, rtol=1e-12)  # ten percent from a coarse sum
     strong = soft.replace(liner=replace(soft.liner, yield_stress=known.von_mises[3] / (1.01 * MAX_ELASTIC_UTILISATION)))
-    looks.clear()
     assert bs.Exact().press(strong, force=forces).valid.tolist() == [True, True, True, False, False]
-    assert len(looks) == 1
-
-
-@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact(), bs.Sphere()], ids=lambda model: model.name)
-def test_a_liner_without_a_yield_stress_is_noted_once_for_any_shape(model):
-    joint = replace(HIP, liner=BARE, ball=None)
-    for force in (3000.0, np.array([2000.0, 3000.0])):
-        contact = model.press(joint, force=force)
-        assert np.isnan(contact.utilisation).all()
-        assert [note for note in contact.notes if "checked" in note] == [NOT_CHECKED]
-        assert contact.summary()["utilisation_note"] == contact.utilisation_note == NOT_CHECKED
 
 
 @pytest.mark.parametrize(
@@ -256,16 +225,6 @@ def test_a_proportional_limit_changes_no_number_and_no_validity():
         assert (one.max_pressure, one.utilisation, one.valid) == (other.max_pressure, other.utilisation, True)
 
 
-def test_proportional_limits_may_be_arrays_of_any_library():
-    from array_api_strict import asarray
-
-    for array in (np.array, asarray):
-        liner = replace(HIP.liner, proportional_limit=array([1.0, 20.0]))
-        contact = bs.HessForsbach().press(replace(HIP, liner=liner), force=3000.0)
-        assert contact.force.shape == (2,)
-        assert contact.notes[0].startswith("1 of 2: von Mises stress up to")
-
-
 def test_fatigue_and_allowable_pressure_are_noted_and_do_not_end_validity():
     weak = replace(BARE, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)
     contact = bs.HessForsbach().press(replace(HIP, liner=weak), force=3000.0)
@@ -283,13 +242,6 @@ def test_contacts_broadcast_against_arrays_of_strengths():
         assert contact.notes[-1].startswith("1 of 2: von Mises stress up to")
 
 
-def test_validity_and_notes_solve_for_no_stresses_where_bounds_decide(monkeypatch):
-    monkeypatch.setattr("ballsocket.elasticity.exact.contact.largest_von_mises", None)
-    contact = bs.Exact().press(HIP, force=np.array([0.0, 3000.0, 80e3]))
-    assert contact.valid.tolist() == [True, True, False]
-    assert [len(bs.Exact().press(HIP, force=force).notes) for force in (3000.0, 6000.0)] == [0, 1]
-
-
 def test_stresses_of_layered_sockets_are_solved():
     """A liner on bone bends: no share of the pressure tells its stress."""
     bone = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)
@@ -299,38 +251,12 @@ def test_stresses_of_layered_sockets_are_solved():
     assert contact.von_mises > 1.3 * flat * contact.max_pressure
 
 
-def test_strengths_that_are_not_allowed_are_rejected():
-    with pytest.raises(ValueError, match="yield_stress = 0 is not allowed: a yield stress \\(MPa\\) is above 0"):
-        bs.Material(young=1.0, poisson=0.3, yield_stress=0.0)
-    with pytest.raises(TypeError, match="fatigue_limit must be a number"):
-        bs.Material(young=1.0, poisson=0.3, fatigue_limit="5 MPa")
-
-
 @pytest.mark.parametrize("name", bs.materials)
 def test_presets_with_a_limit_state_its_source(name):
     material = bs.materials[name]
     for text, limit in (("yield", material.yield_stress), ("proportional limit", material.proportional_limit)):
         assert (f"{text}: " in material.source) == (limit is not None)
     assert name != "uhmwpe" or material.proportional_limit < material.yield_stress
-
-
-def test_each_material_of_an_axis_has_its_own_strength():
-    axis = {"liner": [bs.UHMWPE, bs.POM], "force": 3000.0}
-    study = bs.study(bs.HessForsbach(), HIP, bs.studies.grid(**axis), quantities=["utilisation"])
-    for material, found in zip(axis["liner"], study.utilisation.values, strict=True):
-        alone = bs.HessForsbach().press(replace(HIP, liner=material), force=3000.0).utilisation
-        assert found == pytest.approx(alone, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("ratio", "text"), [(1.004, "1.0 times"), (12.3, "12 times"), (np.array([np.nan, 0.5, 2.34]), "up to 2.3 times")]
-)
-def test_ratios_above_one_are_printed_with_two_digits(ratio, text):
-    joint = replace(HIP, liner=replace(BARE, allowable_pressure=10.0), ball=None)
-    stresses = {"max_pressure": 10.0 * ratio, "quick_von_mises": exact_number(0.0), "von_mises": 0.0}
-    contact = SimpleNamespace(yields=False, joint=joint, **stresses)
-    notes = [note for _, note in strength.strength_remarks(contact)]
-    assert notes == [f"pressure {text} the allowable pressure of the liner"]
 
 
 def test_uses_of_strengths_are_stresses_over_strengths_with_the_largest_first():

@@ -36,11 +36,6 @@ def test_friction_moment_equals_the_integral_of_the_contact_pressure(spin, axis)
 
 PLAIN = replace(SMOOTH, friction=None)
 RADIUS, SOCKET = HIP.ball_radius, HIP.socket_radius
-MIXED = {
-    "slide and drill": ((30.0, 0.0, 0.0), (0.0, 0.0, 2.0)),
-    "roll and drill": ((0.0, 0.0, 0.0), (2.0, 0.0, 2.0)),
-    "all": ((10.0, -5.0, 0.0), (1.0, 2.0, 3.0)),
-}
 
 
 def integrated(half_angle, velocity, spin, rings=200, meridians=400):
@@ -66,18 +61,6 @@ def friction_loads(half_angle, velocity, spin, element=SMOOTH):
     position = (0.0, 0.0, HIP.clearance / np.cos(half_angle))
     plain, load = PLAIN(position).force, element(position, tuple(velocity), tuple(spin))
     return np.subtract(load.force, plain) / -plain[2], np.array(load.moment) / -plain[2], load.dissipation / -plain[2]
-
-
-@pytest.mark.parametrize("state", MIXED.values(), ids=MIXED)
-@pytest.mark.parametrize("degrees", [17, 36, 55])
-def test_friction_of_mixed_motion_equals_the_integral_over_the_patch(state, degrees):
-    velocity, spin = (np.array(rates) for rates in state)
-    force, moment, power = integrated(np.radians(degrees), velocity, spin)
-    computed = friction_loads(np.radians(degrees), velocity, spin)
-    assert computed[1][2] == pytest.approx(moment[2], rel=0.045)
-    np.testing.assert_allclose(computed[0][:2], force[:2], atol=0.012 * 0.1)
-    np.testing.assert_allclose(computed[1][:2], moment[:2], atol=0.012 * 0.1 * RADIUS)
-    assert computed[2] == pytest.approx(power, rel=1e-3)
 
 
 @pytest.mark.parametrize("degrees", [17, 36, 55, 69])
@@ -208,6 +191,3 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     slipping = replace(element, friction=Friction(coefficient=0.1))
     creeping = simulate(slipping, pull=(side, 0.0, normal), inertia=1e9, **thrown)
     assert abs(held.velocity[-1, 0]) < 0.01 * creeping.velocity[-1, 0]
-    ended = simulate(element, **thrown | {"position": (np.nan, 0.0, 0.0)})
-    assert "after 0 s: the state is not finite" in ended.end_reason
-    assert "exceeds the wall thickness" in simulate(element, velocity=(0.0, 0.0, 1e7), **thrown).end_reason

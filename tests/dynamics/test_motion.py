@@ -18,20 +18,13 @@ THROW = {"mass": 1.0, "position": (0.01, 0.02, 0.0), "velocity": (10.0, 50.0, 20
 LOSSY = replace(FREE, damping=Damping(hysteresis=1e-3, time=1e-5), friction=Friction(coefficient=0.1))
 
 
-@pytest.mark.parametrize("smoothing", [0.0, 0.02])
-def test_energy_is_conserved_over_bounces_without_losses(smoothing):
-    motion = simulate(replace(FREE, smoothing=smoothing), duration=0.02, **THROW)
-    assert motion.bounces > 10
-    assert motion.drift < 1e-12
-
-
 ORBIT = {"mass": 0.35, "position": (0.1, 0.0, 0.0), "velocity": (20.0, 60.0, 15.0)}
 
 
 @pytest.mark.parametrize("step", [1e-5, 1e-4])
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
 def test_frictionless_orbit_conserves_angular_momentum_at_any_step(model, step):
-    element = bs.ForceElement(model, HIP, damping=Damping(hysteresis=1e-4))
+    element = bs.ForceElement(model, HIP, damping=Damping(hysteresis=1e-4), smoothing=0.01)
     for pull in ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), lambda t: (0.0, 5.0 * np.sin(1e3 * t), 0.0)):
         motion = simulate(element, pull=pull, duration=400 * step, step=step, **ORBIT)
         assert motion.bounces >= 2

@@ -70,12 +70,6 @@ def test_a_single_term_is_the_standard_linear_solid():
     np.testing.assert_allclose(one.creep_compliance(time), expected, rtol=1e-12)
 
 
-def test_mean_of_the_modulus_is_its_average_over_an_interval():
-    time = np.linspace(0.05, 0.4, 20_001)
-    average = np.trapezoid(PE.relaxation(time), time) / 0.35
-    assert PE.mean(np.array(0.05), np.array(0.4)) == pytest.approx(average, rel=1e-9)
-
-
 @pytest.mark.parametrize(("seconds", "share"), [(1e-6, 1.0), (1e6, PE.long_term_share)])
 def test_fast_and_slow_limits_are_elastic(seconds, share):
     for model in (bs.HessForsbach(), bs.Refined()):

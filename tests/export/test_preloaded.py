@@ -76,19 +76,6 @@ def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp
     assert np.ptp(reference["energy"]) > 0
 
 
-@needs_compiler
-def test_fmpy_validates_and_simulates_the_unit(element, fmpy, tmp_path):
-    from fmpy.validation import validate_fmu
-
-    path = tmp_path / "rod.fmu"
-    Fmu(element=element, name="rod").write(path)
-    write_cross_check(element, path)
-    assert validate_fmu(str(path)) == []
-    given, reference = table(tmp_path / "rod_in.csv"), table(tmp_path / "rod_ref.csv")
-    loads = fmpy.simulate_fmu(str(path), fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
-    assert_allclose(loads["force[3]"], reference["force[3]"], rtol=1e-10, atol=1e-6)
-
-
 def test_a_table_has_the_forces_of_the_solver_along_two_axes(element):
     (text,) = TARGETS["table"].texts(ExportJob(element=element, name="rod", depth=0.1)).values()
     rows = np.genfromtxt(text.splitlines(), delimiter=",", names=True)[20::80]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Processes, Serial
+from ballsocket.core.executors import Processes
 from ballsocket.hip import population, read_hip
 from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, table_columns, write_csv
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
@@ -30,31 +30,12 @@ def cohort_run(n_patients, **distributions):
     return CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, n_patients, 0))
 
 
-def fake(monkeypatch, calls):
-
-    def simulate(self, number):
-        calls.append(number)
-        return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), ""
-
-    monkeypatch.setattr(CohortRun, "_simulate_patient", simulate)
-
-
 def test_more_patients_keep_the_first_ones():
     one = variability(clearance=TIGHT, body_weight=WEIGHT)
     few, more = sample_patients(one, 5, 3), sample_patients(one, 9, 3)
     for name in ("clearance", "body_weight"):
         np.testing.assert_array_equal(more[name][:5], few[name])
     assert (sample_patients(one, 5, 4)["clearance"] != few["clearance"]).any()
-
-
-def test_every_patient_is_simulated_in_order_in_pieces_of_sixteen(monkeypatch):
-    calls, finished = [], []
-    fake(monkeypatch, calls)
-    cohort = cohort_run(35).simulate(Serial(), progress=finished.append)
-    assert calls == list(range(35))
-    assert finished == [0, 16, 32, 35]
-    np.testing.assert_array_equal(cohort.table[:, 0, 0], np.arange(35.0))
-    assert [len(cohort_run(n_patients).pieces) for n_patients in (1, 16, 17)] == [1, 1, 2]
 
 
 def test_a_patient_without_a_result_has_its_error_and_a_worker_of_another_version_is_refused():
@@ -71,7 +52,12 @@ def test_a_patient_without_a_result_has_its_error_and_a_worker_of_another_versio
 
 def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
     one, calls, finished = quick_variability(), [], []
-    fake(monkeypatch, calls)
+
+    def simulate(self, number):
+        calls.append(number)
+        return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), ""
+
+    monkeypatch.setattr(CohortRun, "_simulate_patient", simulate)
     store = cohort_store(tmp_path / "store", one, [FEW_CYCLES], 0)
     first = cohort_run(20).simulate(store=store).table
     assert calls == list(range(20))
@@ -86,19 +72,6 @@ def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
     np.testing.assert_array_equal(cohort_run(32).simulate(store=store, progress=finished.append).table, more[:32])
     assert calls == []
     assert finished[4:] == [32]
-
-
-def test_a_stored_result_is_read_as_it_was_written(tmp_path):
-    table, contact = np.full((3, 1, len(RESULT_UNITS)), np.nan), np.full((3, 2, 3), np.nan)
-    store = replace(cohort_store(tmp_path, quick_variability(), [FEW_CYCLES], 0), n_patients=19)
-    store.create()
-    store.save(1, CohortResult(table=table, refused=np.array(["dislocated: µ"] * 3), contact=contact))
-    assert store.load([0, 2]) == {}
-    loaded = store.load([0, 1])[1]
-    assert loaded.refused.tolist() == ["dislocated: µ"] * 3
-    assert np.isnan(loaded.table).all()
-    assert replace(store, n_patients=20).load([1]) == {}  # one patient is missing
-    assert replace(store, identity="another").load([1]) == {}
 
 
 def test_another_cohort_is_refused(tmp_path):

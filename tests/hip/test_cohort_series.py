@@ -16,7 +16,7 @@ from ballsocket.hip import cohort_series as module
 from ballsocket.hip.chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
-from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
+from ballsocket.hip.series_accuracy import TOLERANCES
 from ballsocket.hip.similarity import Similarity, find_obstacle
 from ballsocket.hip.variability import RESULT_COLUMNS, result_table
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
@@ -106,47 +106,12 @@ def test_a_series_has_the_indices_of_a_product(few_held_out):
         assert bands.indices[order][0] == pytest.approx([0.2, 0.8], abs=0.02)
 
 
-@pytest.mark.long
-def test_more_patients_keep_the_first_ones(few_held_out):
-    few, more = (population(quick(coefficient=COEFFICIENT), COUNTS, patients=n)[1].cohort.table for n in (150, 300))
-    np.testing.assert_allclose(more[:150], few, rtol=1e-12)
-
-
-@pytest.mark.long
-def test_the_error_is_that_of_the_held_out_patients(few_held_out, monkeypatch):
-    """A series of a low degree is refined; without refinement its error is stated, or patients are simulated."""
-    monkeypatch.setattr(module, "_FIRST_DEGREES", (0,) * 5)
-    monkeypatch.setattr(module, "_DEGREE_STEP", 6)
-    patients = quick(body_weight=Normal(mean=800.0, deviation=130.0, low=400.0, high=1400.0))
-    refined = population(patients, COUNTS[:1], patients=200, method="series")[1].accuracy
-    assert refined.degree == 6
-    monkeypatch.setattr(module, "_MAX_MEMBERS", 8)
-    run, bands = population(patients, COUNTS[:1], patients=200, method="series")
-    accuracy = bands.accuracy
-    assert (accuracy.degree, accuracy.within_tolerance) == (0, False)
-    assert accuracy.relative["volume"] > refined.relative["volume"]
-    assert any("this exceeds the tolerance of 0.1 % in volume" in note for note in bands.notes)
-    solution = solve(run)
-    assert solution.is_acceptable  # a simulation of 200 patients takes much longer than one of 8 members
-    monkeypatch.setattr(module, "_MAX_MEMBERS", 100)
-    assert not solution.is_acceptable
-
-
 def test_patients_are_simulated_where_the_error_of_their_series_is_too_large(few_held_out, monkeypatch):
     monkeypatch.setattr(module, "_FIRST_DEGREES", (0,) * 5)
     monkeypatch.setattr(module, "_MAX_MEMBERS", 15)
     bands = population(quick(), [1e3], patients=40)[1]
     assert bands.accuracy is None
     assert "each of the patients was simulated, without a series: its error exceeds the tolerance" in bands.notes
-
-
-def test_another_edge_loading_is_stated():
-    """Above 5 % of the held-out results, as for cups whose contacts often just reach the rim."""
-    errors = {"relative": {"volume": 1e-4}, "largest": {"volume": 1e-3}, "edge_distance": 0.1, "utilisation": 0.0}
-    for fraction, stated in ((0.0, False), (0.03, False), (0.08, True)):
-        wrong = {"wrong_edge_loading": fraction, "wrong_validity": 0.0}
-        accuracy = SeriesAccuracy(n_simulations=8, degree=1, n_held_out=64, **errors, **wrong)
-        assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
 
 
 def test_few_patients_and_those_who_are_not_similar_are_simulated_and_the_reason_is_stated():

@@ -11,9 +11,8 @@ import ballsocket as bs
 from ballsocket.core.validity import Status
 from ballsocket.elasticity.off_axis.compliance import cached_compliance
 from ballsocket.elasticity.off_axis.grid import Grid
-from ballsocket.lubrication import film_problem
 from ballsocket.lubrication.balance import balance_cells
-from ballsocket.lubrication.dry_contact import CupCorrection, ElasticSoftness, dry_contact, frame_about
+from ballsocket.lubrication.dry_contact import CupCorrection, ElasticSoftness, frame_about
 from ballsocket.lubrication.mesh import polar_mesh
 from ballsocket.problem.cup import Interface
 
@@ -68,23 +67,6 @@ def test_a_near_rim_starves_the_inlet_but_not_the_outlet(rate):
     film = bs.film(press(56.0), spin=(0.0, rate, 0.0), method="reynolds")
     assert film.status is Status.OK
     assert 1e6 * film.central == pytest.approx(464.0 if rate > 0 else 422.0, rel=0.01)
-
-
-@pytest.mark.long
-def test_central_films_of_a_tilted_load_converge_with_the_mesh(monkeypatch):
-    """Central films 467.4 and 465.5 nm with cells of a half, of order two."""
-    contact, films, settings = press(45.0), [], film_problem._ELASTIC
-    spin = np.array(spin_towards_rim(45.0, 10.0))
-    for scale in (0.75, 1, 1.5):
-        rings = {"rings_of_inlet": settings.rings_of_inlet * scale, "coarsest": settings.coarsest / scale}
-        finer = replace(settings, **rings, growth=settings.growth ** (1 / scale))
-        monkeypatch.setattr(film_problem, "_ELASTIC", finer)
-        monkeypatch.setattr(film_problem, "_meridians", lambda *words, count=int(40 * scale): count)
-        case = film_problem.make_contact_film([contact], [dry_contact(contact, radians(2.0))], spin, 2.5e-9)
-        films.append(float(case.central(case.problem.thickness(case.solve_steady()))))
-    changes = np.abs(np.diff(films))
-    assert (np.diff(changes) < 0).all()
-    assert films[1] == pytest.approx(films[2], rel=0.008)
 
 
 @pytest.mark.long

@@ -9,6 +9,7 @@ from scipy.interpolate import PchipInterpolator
 import ballsocket as bs
 from ballsocket.models.table_3 import table_3
 
+from ..joints import lined
 from ..places import ROOT
 
 TABLE = ROOT / "src" / "ballsocket" / "data" / "closed_forms.csv"
@@ -29,15 +30,10 @@ def model_of(name: str, clearance: float) -> bs.Model:
     }[name]
 
 
-def joint_of(clearance: float) -> bs.Joint:
-    liner = bs.Material(young=1000.0, poisson=0.4)
-    return bs.Joint(ball_radius=18.0 - clearance, clearance=clearance, liner_thickness=6.75, liner=liner)
-
-
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['model']}-{row['clearance']}-{row['indentation']}")
 def test_forward_and_inverse_laws_have_thirteen_digits(row):
     clearance, indentation = float(row["clearance"]), float(row["indentation"])
-    model, joint = model_of(row["model"], clearance), joint_of(clearance)
+    model, joint = model_of(row["model"], clearance), lined(ball_radius=18.0 - clearance, clearance=clearance)
     forward = model.press(joint, indentation=indentation)
     for name in ("force", "half_angle", "pole_pressure", "stiffness", "energy"):
         # the energy of adhesion, counted from d = 0 through tension, is a difference

@@ -14,13 +14,6 @@ FOUNDATIONS = [bs.HessForsbach(), bs.Vessel(), bs.BondedLayer()]
 
 
 @pytest.mark.parametrize("model", FOUNDATIONS, ids=lambda model: model.name)
-def test_force_is_quadratic_at_small_indentation(model):
-    """d << c: F -> π K (R2²/c) d²."""
-    contact = model.press(HIP, indentation=1e-9)
-    assert contact.force == pytest.approx(np.pi * model.modulus(HIP) * 18.0**2 / 0.1 * 1e-18, rel=1e-7)
-
-
-@pytest.mark.parametrize("model", FOUNDATIONS, ids=lambda model: model.name)
 def test_zero_clearance_gives_a_cosine_pressure(model):
     """c = 0: ε = 90°, F = (2π/3) K R2² d, p = p0 cos φ, and half of the work of a constant force."""
     contact = model.press(hip(clearance=0.0), force=3000.0)
@@ -30,6 +23,7 @@ def test_zero_clearance_gives_a_cosine_pressure(model):
     np.testing.assert_allclose(contact.pressure(angle), contact.max_pressure * np.cos(angle), rtol=1e-12)
     assert contact.energy == pytest.approx(contact.force * contact.indentation / 2)
     assert contact.pressure_integral == pytest.approx(1.5 * contact.force)
+    np.testing.assert_array_equal(model.force_vector(hip(clearance=0.0, ball_radius=18.0), np.zeros(3)), 0.0)
 
 
 def test_small_clearance_approaches_the_cosine_limit():
@@ -48,17 +42,6 @@ def test_half_angle_does_not_determine_the_load_without_clearance():
     line = bs.PinInHole().press(hip(clearance=0.0), half_angle=np.array([0.0, 0.5]))
     np.testing.assert_array_equal(line.status, [bs.Status.OK, bs.Status.NOT_REACHED])
     np.testing.assert_array_equal(line.line_load, [0.0, np.nan])
-
-
-@pytest.mark.parametrize("modulus", [bs.hess_forsbach, bs.spherical_vessel, bs.bonded_layer], ids=str)
-def test_exact_kinematics_approach_linear_ones_in_a_large_socket(modulus):
-    """Eq. (5) becomes Eq. (6) when clearance and indentation are small against the radius."""
-    joint = hip(ball_radius=1e5, liner_thickness=4e4)
-    kinds = bs.linear_kinematics, bs.exact_kinematics
-    models = [bs.RadialFoundation(modulus=modulus, kinematics=kinematics) for kinematics in kinds]
-    linear, exact = (model.press(joint, indentation=0.05) for model in models)
-    for name in ("force", "half_angle", "pressure_integral"):
-        assert getattr(exact, name) == pytest.approx(getattr(linear, name), rel=1e-5)
 
 
 def test_exact_kinematics_have_no_result_at_extreme_loads():
@@ -153,26 +136,11 @@ def test_adhesive_socket_without_adhesion_is_hess_forsbach():
         assert linear == [clearance == 3.0] * 2
 
 
-def test_custom_moduli_are_accepted():
-    own = bs.RadialFoundation(modulus=bs.polynomial(1.06, 1.23, 0.09))
-    expected = bs.HessForsbach().press(HIP, force=3000.0).indentation
-    assert own.press(HIP, force=3000.0).indentation == pytest.approx(expected)
-    fixed = bs.RadialFoundation(modulus=bs.constant(bs.hess_forsbach(HIP)))
-    assert fixed.press(HIP, force=3000.0).max_pressure == pytest.approx(11.27, abs=5e-4)
-
-
 @pytest.mark.long
 def test_plane_layer_too_thin_to_compute_does_not_change_other_points():
     contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 0.01])), half_angle=0.3)
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN])
     assert contact.max_pressure[0] == pytest.approx(bs.PlaneLayer().press(HIP, half_angle=0.3).max_pressure, rel=1e-9)
-
-
-@pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
-def test_overflowing_numbers_become_infinite_or_nan_without_an_error(model):
-    contact = model.press(hip(ball_radius=1e200, liner_thickness=1e200), force=1.0)
-    repr(contact)
-    contact.summary()
 
 
 @pytest.mark.parametrize(("clearance", "count"), [(1e-12, 1), (0.0, 0), (0.1, 0)])

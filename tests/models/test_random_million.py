@@ -13,10 +13,11 @@ JOINT = random_joint(SIZE, seed=20211125)
 FORCE = JOINT.liner.young * JOINT.ball_radius**2 * 10 ** np.random.default_rng(1).uniform(-12, 0, SIZE)
 
 
-IN_ONE_STEP = {name: model for name, model in CLOSED_FORMS.items() if name != "refined"}  # refined: test_refined.py
+LEAST_SHARES = {"bartel": 0.95, "bonded-layer-exact": 0.95, "refined": 0.85}
+"""Share of loads with an answer: others lie beyond the perfect fit of a ball in its socket."""
 
 
-@pytest.mark.parametrize("model", IN_ONE_STEP.values(), ids=IN_ONE_STEP)
+@pytest.mark.parametrize("model", CLOSED_FORMS.values(), ids=CLOSED_FORMS)
 def test_every_random_point_has_numbers_or_a_status(model):
     contact = model.press(JOINT, force=FORCE)
     answered = (contact.status == bs.Status.OK) | (contact.status == bs.Status.BEYOND_EQUATOR)
@@ -24,8 +25,7 @@ def test_every_random_point_has_numbers_or_a_status(model):
         assert not np.any(np.isnan(getattr(contact, name)[answered])), name
     assert np.all(np.isnan(contact.indentation[~answered]))
     assert not np.any(contact.status == bs.Status.NOT_CONVERGED)
-    reached = np.mean(answered)
-    assert reached > (0.95 if model.name in {"bartel", "bonded-layer-exact"} else 0.999999)
+    assert np.mean(answered) > LEAST_SHARES.get(model.name, 0.999999)
     back = model.press(JOINT, indentation=np.where(answered, contact.indentation, 0.0))
     # with adhesion a small force is the difference of large ones: there the indentation is what is known to 1e-12
     scale = contact.stiffness * contact.indentation if model.name == "adhesive" else FORCE

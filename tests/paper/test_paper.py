@@ -195,34 +195,6 @@ def test_largest_errors_include_the_ends_of_the_ranges():
         assert 16 - 1e-9 <= outer.min() < outer.max() <= 26 + 1e-9
 
 
-def test_a_stopped_plan_is_resumed(tmp_path):
-    computed = []
-
-    def piece(name, value):
-        def compute():
-            computed.append(name)
-            if value is None:
-                raise KeyboardInterrupt
-            return value
-
-        return compute
-
-    def plan(name, **values):
-        return Plan(name=name, parts={"x": {key: piece(key, value) for key, value in values.items()}})
-
-    with pytest.raises(KeyboardInterrupt):
-        plan("a", one=1, two=None).results(tmp_path)
-    complete, names = plan("a", one=1, two=2), []
-    assert complete.results(tmp_path, names.append) == {"x": [1, 2]}
-    assert names == ["x one", "x two"]
-    assert computed == ["one", "two", "two"]
-    (tmp_path / "a" / "x_one.json").write_text('{"key": "half of', encoding="utf-8")
-    assert complete.results(tmp_path) == {"x": [1, 2]}
-    assert plan("b", one=3).results(tmp_path) == {"x": [3]}
-    assert complete.results(tmp_path) == {"x": [1, 2]}  # plans do not share results
-    assert computed == ["one", "two", "two", "one", "one"]
-
-
 def test_the_full_plan_adds_finite_elements_to_the_parts_of_the_quick_plan():
     quick, full = quick_plan().parts, full_plan().parts
     assert list(quick) == list(full)

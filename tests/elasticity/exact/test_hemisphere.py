@@ -4,17 +4,13 @@ import json
 import re
 from dataclasses import replace
 from math import inf, radians
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.cli.json_answers import next_steps
-from ballsocket.contact.closed_sphere import NOTED_CHANGE, hemisphere_indentation_change, max_hemisphere_change
-from ballsocket.elasticity.exact.contact import NearHemisphere
-from ballsocket.elasticity.exact.free_face import FreeFace
-from ballsocket.elasticity.exact.modes import Shell, Socket
+from ballsocket.contact.closed_sphere import NOTED_CHANGE
 
 from ...extent import some
 from ...places import DATA
@@ -59,15 +55,10 @@ def thick(ratio, poisson):
 @pytest.mark.parametrize(
     ("changes", "angle", "change", "rel", "noted"),
     [
-        ({"backing": (TITANIUM, layer(5.0, 500.0))}, 45.0, 0.09, 0.2, ("d +", "dF/dd -")),
         ({"backing": (TITANIUM, layer(15.0, 500.0))}, 45.0, 0.22, 0.2, ("d +", "dF/dd -")),
-        ({"backing": (TITANIUM, layer(15.0, 2000.0))}, 45.0, 0.055, 0.2, ("d +", "dF/dd -")),
         ({"backing": (layer(20.0, 500.0),)}, 45.0, 0.062, 0.2, ("d +", "dF/dd -")),
         (thick(1.2, 0.45), 50.0, 0.009, 0.1, ("von Mises +",)),
-        (thick(1.2, 0.48), 50.0, 0.034, 0.1, ("von Mises +",)),
-        (thick(1.2, 0.495), 50.0, 0.067, 0.1, ("von Mises +",)),
         (thick(0.8, 0.495), 50.0, 0.085, 0.1, ("von Mises +",)),
-        ({"liner": material(2600.0, 0.4), "ball": material(110e3, 0.3)}, 50.0, 0.0233, 0.1, ()),
         ({"liner": material(756.0, 0.48), "ball": material(110e3, 0.3)}, 50.0, 0.0190, 0.1, ()),
     ],
 )
@@ -88,23 +79,6 @@ def test_the_note_has_the_changes_in_percent():
     change = {symbol: 100 * contact.hemisphere[name] for symbol, name in symbols.items()}
     assert noted == {symbol: pytest.approx(value, rel=5e-3) for symbol, value in change.items() if abs(value) > 1}
     assert {"d", "dF/dd"} <= set(noted)
-    assert "up to" not in note
-    several = bs.Exact().press(joint, half_angle=np.radians([20.0, 45.0]))
-    largest = max(several.hemisphere["indentation"])
-    assert any(f"has up to d +{100 * largest:.3g} %" in note for note in several.notes)
-
-
-def test_a_contact_is_near_the_hemisphere_up_to_fifteen_percent():
-    limit = NearHemisphere()
-    for indentation, pressure, near in ((0.14, -0.14, True), (0.16, 0.0, False), (0.0, -0.16, False)):
-        contact = SimpleNamespace(
-            hemisphere={"indentation": indentation, "max_pressure": pressure},
-            hemisphere_change_bound=lambda name: inf,
-            indentation=0.1,
-        )
-        assert limit.holds(contact) == near
-        contact.hemisphere_change_bound = lambda name: 0.15
-        assert limit.holds(contact)
 
 
 def test_a_free_socket_has_the_change_of_finite_elements():
@@ -123,25 +97,11 @@ def test_the_change_does_not_depend_on_clearance_modulus_or_array():
         assert several.hemisphere[name][1] == pytest.approx(value, rel=1e-6), name
 
 
-def test_layers_of_one_material_are_one_layer():
-    whole, inner, outer = (Shell(thickness=thickness, young=2.0, poisson=0.4) for thickness in (8.0, 3.0, 5.0))
-    single, double = (
-        FreeFace(socket=Socket(radius=10.0, shells=shells)).bore_displacement[:, :6]
-        for shells in ((whole,), (inner, outer))
-    )
-    x = np.cos(np.linspace(0.0, 1.3, 9))
-    waves = np.polynomial.legendre.legvander(x, len(single) - 1)
-    assert waves @ single == pytest.approx(waves @ double, abs=0.02 * abs(waves @ single).max())
-
-
 def test_tabulated_and_refined_models_estimate_the_change():
     joint = BASE.replace(liner_thickness=14.1 / 1.2, liner=material(1000.0, 0.46))
-    exact = bs.Exact().press(joint, half_angle=radians(50.0))
     for model in (bs.Tabulated(), bs.Refined()):
         contact = model.press(joint, half_angle=radians(50.0))
         assert closed_sphere_notes(contact)
-        assert hemisphere_indentation_change(contact) == pytest.approx(exact.hemisphere["indentation"], rel=0.4)
-        assert max_hemisphere_change(contact) > NOTED_CHANGE
     thicker = joint.replace(liner_thickness=30.0, liner=material(1000.0, 0.499))
     for model in (bs.Tabulated(), bs.Exact()):
         assert not model.press(thicker, half_angle=radians(60.0)).valid

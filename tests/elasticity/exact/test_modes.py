@@ -54,8 +54,8 @@ def powers(n: int, nu: mpmath.mpf, shear: mpmath.mpf, r: mpmath.mpf, inner: mpma
     return [[part[row] * unit[row] * scale for part, scale in zip((A, B, C, D), size, strict=True)] for row in range(4)]
 
 
-def reference(socket: Socket, n: int) -> float:
-    """c_n from one linear system for the constants of all layers, with 50 digits."""
+def reference(socket: Socket, n: int | mpmath.mpf) -> mpmath.mpf:
+    """c_n from one linear system for the constants of all layers, with 50 digits; n may lie between integers."""
     with mpmath.workdps(50):
         radii = [mpmath.mpf(socket.radius)]
         for shell in socket.shells:
@@ -86,14 +86,7 @@ def reference(socket: Socket, n: int) -> float:
         matrix = mpmath.matrix([[x / scale for x in row] for row, scale in zip(rows, scales, strict=True)])
         sides = mpmath.matrix([x / scale for x, scale in zip(load, scales, strict=True)])
         constants = mpmath.lu_solve(matrix, sides)
-        return float(sum(a * b for a, b in zip(layer(0, radii[0])[0], constants[:4], strict=True)))
-
-
-@pytest.mark.parametrize("poisson", POISSON)
-@pytest.mark.parametrize("ratio", RATIOS)
-def test_uniform_pressure_is_the_spherical_vessel(ratio, poisson):
-    joint = HIP.replace(liner_thickness=18.0 / ratio, liner=bs.Material(young=1000.0, poisson=poisson))
-    assert single(ratio, poisson).compliance([0])[0] == pytest.approx(1 / bs.spherical_vessel(joint), rel=1e-13)
+        return sum(a * b for a, b in zip(layer(0, radii[0])[0], constants[:4], strict=True))
 
 
 @BOTH_SUPPORTS
@@ -101,8 +94,9 @@ def test_uniform_pressure_is_the_spherical_vessel(ratio, poisson):
 @pytest.mark.parametrize("ratio", [0.0, *RATIOS])
 def test_compliances_of_a_single_layer_have_twelve_digits(ratio, poisson, support):
     socket, n = single(ratio, poisson, support), np.array(DEGREES[::2])
-    expected = np.array([reference(socket, degree) for degree in n.tolist()])
+    expected = np.array([float(reference(socket, degree)) for degree in n.tolist()])
     np.testing.assert_allclose(socket.compliance(n), expected, rtol=5e-13)
+    assert socket.asymptote == pytest.approx(2 * (1 - poisson**2) * 18.0 / 1000.0)
     np.testing.assert_allclose(socket.excess(n), expected * (n + 0.5) / socket.asymptote - 1, rtol=5e-13, atol=1e-14)
 
 
@@ -119,21 +113,10 @@ def test_compliances_of_a_single_layer_have_twelve_digits(ratio, poisson, suppor
 @BOTH_SUPPORTS
 def test_compliances_of_several_layers_have_twelve_digits(shells, support):
     socket, n = Socket(radius=18.0, shells=shells, support=support), np.array(DEGREES)
-    expected = np.array([reference(socket, degree) for degree in DEGREES])
+    expected = np.array([float(reference(socket, degree)) for degree in DEGREES])
     np.testing.assert_allclose(socket.compliance(n), expected, rtol=1e-12)
     excess = expected * (n + 0.5) / socket.asymptote - 1
     np.testing.assert_allclose(socket.excess(n), excess, rtol=1e-12, atol=1e-12)
-
-
-@pytest.mark.parametrize("poisson", POISSON)
-@pytest.mark.parametrize("ratio", [0.0, *RATIOS])
-def test_every_degree_has_a_positive_compliance_that_tends_to_the_asymptote(ratio, poisson):
-    socket = single(ratio, poisson)
-    c = socket.compliance(np.arange(20_001))
-    assert (c > 0).all()
-    far = 20_000.5 * c[-1] / (2 * (1 - poisson**2) * 18.0 / 1000.0)
-    assert far - 1 == pytest.approx(socket.expansion(1)[0] / 20_000.5, abs=1e-8)
-    assert socket.asymptote == pytest.approx(2 * (1 - poisson**2) * 18.0 / 1000.0)
 
 
 @pytest.mark.parametrize("back", [Support.FIXED, Support.FREE, BONE, Shell(thickness=inf, young=1.0, poisson=0.2)])
@@ -147,15 +130,6 @@ def test_a_socket_is_massive_beyond_its_reach(ratio, back):
     n = np.arange(socket.backing_degree(1e-17), 3000)
     np.testing.assert_array_equal(socket.compliance(n), massive(shell).compliance(n))
     assert massive(shell).backing_degree() == 0
-
-
-def test_thin_layers_are_columns_or_squeezed_films():
-    """Columns that cannot widen if compressible, c_n = L³ n (n + 1)/(3 G R2²) from viscous-like flow if not."""
-    n = np.array([1, 2, 5])
-    columns = Socket(radius=18.0, shells=(Shell(thickness=1e-3, young=1000.0, poisson=0.3),))
-    np.testing.assert_allclose(columns.compliance(n), 1.3 * 0.4 / 0.7 * 1e-3 / 1000.0, rtol=1e-3)
-    flow = Socket(radius=18.0, shells=(Shell(thickness=0.018, young=3.0, poisson=0.5),))
-    np.testing.assert_allclose(flow.compliance(n), 0.018**3 * n * (n + 1) / (3 * 18.0**2), rtol=5e-3)
 
 
 def test_incompressible_layers_are_the_limit_of_nearly_incompressible_ones():
@@ -272,7 +246,7 @@ def test_compliances_of_a_ball_have_the_reference_values(poisson):
 
 
 @BOTH_SUPPORTS
-def test_bodies_of_a_joint_have_its_sizes_materials_and_support_as_floats(support):
+def test_bodies_of_a_joint_have_its_sizes_materials_and_support(support):
     backing = [
         bs.Layer(thickness=shell.thickness, material=bs.Material(young=shell.young, poisson=shell.poisson))
         for shell in CUP.shells[1:]
@@ -281,20 +255,6 @@ def test_bodies_of_a_joint_have_its_sizes_materials_and_support_as_floats(suppor
     assert socket_of(HIP) == LINED
     assert ball_of(HIP) == ElasticBall(radius=17.9, young=230000.0, poisson=0.3)
     assert ball_of(HIP.replace(ball=None)) is None
-    joint = HIP.with_numbers(np.float64(number) for number in HIP.numbers())
-    for body in (*socket_of(joint).shells, ball_of(joint)):
-        assert all(type(value) is float for value in vars(body).values())
-
-
-@BOTH_SUPPORTS
-@pytest.mark.parametrize(("more", "total"), [(0.01, 6.76), (3.25, 10.0), (inf, inf)])
-def test_a_backing_of_the_liner_material_is_a_thicker_liner(more, total, support):
-    n, backing = np.arange(200), (bs.Layer(thickness=more, material=bs.UHMWPE),)
-    backed, thicker = (
-        socket_of(HIP.replace(support=support, **change)).compliance(n)
-        for change in ({"backing": backing}, {"liner_thickness": total})
-    )
-    np.testing.assert_allclose(backed, thicker, rtol=1e-12)
 
 
 test_messages_state_the_allowed_values = refused_calls(

@@ -9,12 +9,13 @@ from numpy.polynomial.chebyshev import chebval, chebvander
 import ballsocket as bs
 from ballsocket.contact.coordinates import LIMIT
 from ballsocket.core import arrays
-from ballsocket.core.chebyshev import chebyshev_points, traced_series
+from ballsocket.core.chebyshev import chebyshev_points
 from ballsocket.elasticity.exact.tabulated import build as build_tables
 from ballsocket.elasticity.exact.tabulated import chebyshev
 
 from ...extent import either
 from ...joints import HIP
+from ...refusals import refused_calls
 
 RIGID = replace(HIP, ball=None)
 NAMES = ("indentation", "force", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
@@ -66,26 +67,21 @@ def test_the_pressure_profile_agrees_with_the_exact_solution(joint, half_angle):
     assert error.max() < 1e-4 * exact.max_pressure
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"liner_thickness": 200.0}, "R2/L = 0.09: outside the tables: use exact"),
-        ({"liner_thickness": 0.5}, "R2/L = 36"),
-        ({"liner": bs.Material(young=1000.0, poisson=0.4995)}, "ν = 0.4995"),
-        ({"ball": bs.Material(young=20000.0, poisson=0.3)}, "E/E_ball = 0.05"),
-        ({"backing": (bs.Layer(thickness=3.0, material=bs.TITANIUM),)}, "layers behind the liner = 1: .*use exact"),
-        ({"support": bs.Support.FREE}, "a free outer surface is not in the tables"),
-    ],
+def pressed(**change):
+    return lambda: bs.Tabulated().press(HIP.replace(**change), force=1000.0)
+
+
+test_joints_outside_the_tables_are_refused = refused_calls(
+    (pressed(liner_thickness=200.0), "R2/L = 0.09: outside the tables: use exact"),
+    (pressed(liner_thickness=0.5), "R2/L = 36"),
+    (pressed(liner=bs.Material(young=1000.0, poisson=0.4995)), "ν = 0.4995"),
+    (pressed(ball=bs.Material(young=20000.0, poisson=0.3)), "E/E_ball = 0.05"),
+    (pressed(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),)), "layers behind the liner = 1: .*use exact"),
+    (pressed(support=bs.Support.FREE), "a free outer surface is not in the tables"),
 )
-def test_joints_outside_the_tables_are_refused(change, message):
-    with pytest.raises(ValueError, match=message):
-        bs.Tabulated().press(HIP.replace(**change), force=1000.0)
 
 
-def test_loads_and_one_joint_of_several_beyond_the_tables_have_a_status():
-    contact = bs.Tabulated().press(HIP, half_angle=np.radians([84.9, 86.0]))
-    assert contact.status.tolist() == [bs.Status.OK, bs.Status.NOT_REACHED]
-    assert bs.Tabulated().press(HIP, force=1e9).status is bs.Status.NOT_REACHED
+def test_one_joint_of_several_beyond_the_tables_has_a_status():
     assert not bs.Tabulated().press(replace(HIP, ball=bs.Material(young=2e5, poisson=0.45)), force=1000.0).valid
     joints = bs.Tabulated().press(replace(HIP, liner_thickness=np.array([6.75, 200.0])), force=1000.0)
     assert joints.status.tolist() == [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN]
@@ -127,17 +123,10 @@ def test_every_field_has_derivatives_in_jax_and_a_traced_load_without_a_contact_
     assert pressures == pytest.approx([np.nan, 0.0, bs.Tabulated().press(HIP, force=1e3).max_pressure], nan_ok=True)
 
 
-def test_the_report_has_the_largest_error_of_each_quantity_and_its_joint():
+def test_the_largest_errors_of_the_report_are_within_the_promise():
     report = build_tables.check_tables(points=8, workers=1)
     assert max(worst.error for worst in report.rigid) < 1e-5
     assert max(worst.error for worst in report.elastic) < 2e-4
-    contacts = tuple(np.array([column, column]) for column in (0.1, 0.3, 1.0, 0.0, 0.3))
-    contacts[1][1] = 0.4
-    for errors, largest, poisson in (([1e-6, 2e-6], 2e-6, 0.4), ([np.nan, 2e-6], np.nan, 0.3)):
-        worst = build_tables._largest_error("force", np.array(errors), contacts)
-        assert worst.error == pytest.approx(largest, nan_ok=True)
-        assert f"ν {poisson}" in str(worst)
-        assert "ball" not in worst.location
 
 
 @pytest.mark.parametrize("name", build_tables._TABLE_SPECS)
@@ -198,16 +187,6 @@ def test_a_small_table_interpolates_its_function_by_products_of_limited_order():
     assert abs(stored[2, 0]).max() > 0
 
 
-def test_random_contacts_lie_in_their_ranges():
-    angle, poisson, ratio, softness, ball = build_tables.random_contacts(2000, seed=4, elastic=True)
-    limits = [(2, 80), (0, 0.499), (0.2, 20), (0, 0.02), (0.2, 0.35)]
-    for values, (low, high) in zip((np.degrees(angle), poisson, ratio, softness, ball), limits, strict=True):
-        assert low <= values.min() < low + 0.05 * (high - low)
-        assert high - 0.05 * (high - low) < values.max() <= high
-    assert not build_tables.random_contacts(5, seed=4)[3].any()
-    assert np.median(ratio) == pytest.approx(2.0, rel=0.15)
-
-
 def test_results_do_not_depend_on_the_number_of_joints_and_are_empty_without_contacts():
     """Few joints with many loads share their functions. The curve of one joint is accurate to 1e-9."""
     contact = bs.Tabulated().press(HIP, force=np.empty((0, 3)))
@@ -238,20 +217,6 @@ def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     assert np.all(found.status[reached] == bs.Status.OK)
     np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-12)
     np.testing.assert_allclose(found.force[reached], known.force[reached], rtol=2e-12)
-
-
-def test_traced_series_have_the_derivatives_of_the_polynomial():
-    jax = pytest.importorskip("jax")
-    coefficients, x = np.random.default_rng(2).normal(size=(6, 1)), 0.3
-    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients[:, 0])
-    with jax.enable_x64(True):
-        values = jax.jit(lambda c, x: traced_series(c, x[None]))(coefficients, x)
-        np.testing.assert_allclose(np.ravel(values), [polynomial(x), polynomial.deriv()(x)], rtol=1e-13)
-        bend = jax.jit(jax.grad(jax.grad(lambda x: traced_series(jax.numpy.asarray(coefficients), x[None])[1][0])))(x)
-        assert float(bend) == pytest.approx(polynomial.deriv(3)(x), rel=1e-10)
-        by_coefficient = jax.jit(jax.grad(lambda c: traced_series(c, jax.numpy.asarray([x]))[1][0]))(coefficients)
-        expected = [np.polynomial.chebyshev.Chebyshev.basis(k).deriv()(x) for k in range(6)]
-        np.testing.assert_allclose(by_coefficient[:, 0], expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined()], ids=lambda model: model.name)

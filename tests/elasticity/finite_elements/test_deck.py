@@ -132,7 +132,6 @@ def test_steps_have_their_displacements_and_expected_results():
     contact = pressed(STEEL.replace(name="ø 36\n*STEP"))
     made = deck_of(contact, steps=5, scale=0.01)
     deck = Read(made.text())
-    assert "multiplied by 0.01" in " ".join(deck.title)
     assert len(deck.heads("*STEP")) == len(deck.heads("*END STEP")) == 5
     heights = [float(row[3]) for row in deck.of("*BOUNDARY") if row[:3] == ["PUSHED", "2", "2"]]
     depths = contact.indentation * np.arange(1, 6) / 5
@@ -142,8 +141,6 @@ def test_steps_have_their_displacements_and_expected_results():
         np.testing.assert_allclose(made.expected[name], getattr(again, name))
     assert made.expected["force"][-1] == pytest.approx(contact.force, rel=1e-6)
     assert made.expected["half_angle_deg"][-1] == pytest.approx(40.0, abs=1e-4)
-    printed = np.array([line.split()[1:] for line in deck.title[-5:]], dtype=float)
-    np.testing.assert_allclose(printed, np.column_stack([range(1, 6), *made.expected.values()]), rtol=1e-6)
 
 
 def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes():
@@ -155,18 +152,6 @@ def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes()
     assert set(elastic.set("PUSHED")).isdisjoint(elastic.set("UPRIGHT"))
     ball = {int(node) for head, rows in rigid.blocks if head.endswith("ELSET=BALL") for row in rows for node in row[1:]}
     assert set(rigid.set("PUSHED")) == ball <= set(rigid.set("UPRIGHT"))
-
-
-def test_a_rigid_ball_is_a_thin_ring_one_element_longer_than_the_bore():
-    contact = pressed(RIGID)
-    deck = Read(deck_of(contact, scale=1.0).text())
-    x, y = np.add([deck.nodes[node] for node in deck.set("ROUND")], (0.0, 0.1)).T
-    angle = np.arctan2(x, -y)
-    assert np.diff(angle)[-2:] == pytest.approx(np.diff(angle)[-4:-2])
-    before, last = contact._solved.pair.angle[-2:]
-    assert angle[-1] == pytest.approx(2 * last - before)
-    inside = min(np.hypot(x, y + 0.1) for x, y in (deck.nodes[node] for node in deck.set("PUSHED")))
-    assert inside == pytest.approx(0.95 * 17.9)
 
 
 def test_facets_leave_a_gap_of_chords_or_parabolas():
@@ -216,21 +201,6 @@ def test_a_sliding_liner_in_a_rigid_socket_has_a_radial_support():
     assert not deck.heads("*EQUATION")
 
 
-@pytest.mark.long
-def test_a_sliding_liner_shares_the_radial_displacement_of_its_backing():
-    backed = RIGID.replace(backing=(SOFT, TITANIUM))
-    bonded, sliding = read(backed), read(backed, interface=SLIDING)
-    terms = [row for row in sliding.of("*EQUATION") if len(row) == 6]
-    assert len(terms) == len(sliding.nodes) - len(bonded.nodes) > 50
-    for inner, direction, one, outer, same, minus_one in terms:
-        np.testing.assert_array_equal(sliding.nodes[int(inner)], sliding.nodes[int(outer)])
-        on_axis = sliding.nodes[int(inner)][0] == 0
-        assert direction == same == ("2" if on_axis else "1")
-        assert (int(inner) in sliding.set("POLAR")) != on_axis
-        assert (float(one), float(minus_one)) == (1.0, -1.0)
-    assert not bonded.heads("*EQUATION")
-
-
 def test_a_chamfer_is_excluded_from_the_contact_surface():
     deck = read(RIGID, half_angle=60.0, arc=150.0, chamfer=2.0)
     (_, angle), (x, y) = deck.polar("BORE"), deck.side("LINED").T
@@ -265,7 +235,7 @@ def test_meshes_that_do_not_match_need_a_large_scale():
         deck_of(contact, scale=1e-4)
 
 
-def test_files_appear_complete_or_not_at_all(tmp_path, monkeypatch):
+def test_a_written_deck_has_its_expected_results_beside_it(tmp_path):
     made = deck_of(pressed(RIGID), steps=2)
     path = made.write(tmp_path / "new")
     assert sorted(os.listdir(path.parent)) == ["ballsocket.inp", "expected.json"]
@@ -273,15 +243,6 @@ def test_files_appear_complete_or_not_at_all(tmp_path, monkeypatch):
     told = json.loads((path.parent / "expected.json").read_text())
     assert [step["force"] for step in told["steps"]] == pytest.approx(made.expected["force"].tolist())
     assert told["bore"]["node"] == Read(made.text()).set("BORE")
-
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(os, "replace", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        deck_of(pressed(RIGID), steps=3).write(path.parent)
-    assert sorted(os.listdir(path.parent)) == ["ballsocket.inp", "expected.json"]
-    assert path.read_text() == made.text()
 
 
 def test_the_end_of_each_step_is_read_and_contact_pressures_are_separated_from_other_results(tmp_path):

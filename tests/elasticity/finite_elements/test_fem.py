@@ -12,11 +12,10 @@ from ballsocket.core.arrays import gauss_legendre
 from ballsocket.core.validity import Status
 from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.elasticity.finite_elements.section import write_vtk
-from ballsocket.elasticity.finite_elements.spacing import bytes_needed
 from ballsocket.reports.section_plots import section_figure
 
 from ...extent import either, some
-from ...joints import HIP
+from ...joints import HIP, lined
 from ...places import DATA
 from ...refusals import refused_calls
 
@@ -28,10 +27,6 @@ NARROW = bs.FiniteElement(cup=bs.Cup(arc_of_cover=np.radians(70.0)), meshes=1)
 CALCULIX = json.loads((DATA / "calculix.json").read_text(encoding="utf-8"))["cases"]
 RIGID = replace(HIP, ball=None)
 QUANTITIES = ("force", "indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
-
-
-def lined(poisson=0.4, thickness=6.75, **more):
-    return RIGID.replace(liner_thickness=thickness, liner=bs.Material(young=1000.0, poisson=poisson), **more)
 
 
 def assert_close(one, other, rtol, names=QUANTITIES):
@@ -395,7 +390,6 @@ def test_the_stated_mesh_size_equals_that_of_the_mesh(hip):
     along = np.sort(parts[0].angle[parts[0].radius < 18.0 + 1e-9])
     assert hip.mesh.element_size == pytest.approx(18.0 * along[2])  # an element has a node in its middle
     assert hip.summary()["mesh"] == vars(hip.mesh)
-    assert bytes_needed(2048, 2) == 2048 * (2 * 12 * 8 * 2 * 11 + 1000 * 2)
     with pytest.raises(KeyError, match="part 'cement' is not known; known parts: liner, ball"):
         _ = hip.section["cement"]
 
@@ -411,11 +405,10 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     assert len({bar.get_ylim()[1] for bar in bars}) == 3
 
 
-def test_a_vtk_file_has_the_mesh_and_its_stresses_or_does_not_exist(hip, tmp_path, monkeypatch):
+def test_a_vtk_file_has_the_mesh_and_its_stresses(hip, tmp_path):
     import meshio
 
     write_vtk(hip.section, tmp_path / "hip.vtu")
-    assert [path.name for path in tmp_path.iterdir()] == ["hip.vtu"]
     mesh = meshio.read(tmp_path / "hip.vtu")
     assert len(mesh.points) == hip.mesh.nodes
     elements, part = np.concatenate([cells.data for cells in mesh.cells]), np.concatenate(mesh.cell_data["part"])
@@ -425,15 +418,6 @@ def test_a_vtk_file_has_the_mesh_and_its_stresses_or_does_not_exist(hip, tmp_pat
     assert mesh.point_data["displacement"][np.unique(ball), 1].max() < 0  # it goes down
     with pytest.raises(ValueError, match="must end in"):
         write_vtk(hip.section, tmp_path / "hip.txt")
-
-    def interrupted(self, path):
-        path.write_text("half of")
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(meshio.Mesh, "write", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        write_vtk(hip.section, tmp_path / "other.vtu")
-    assert [path.name for path in tmp_path.iterdir()] == ["hip.vtu"]
 
 
 @pytest.mark.parametrize("thickness", some([5.0, 2.5, 10.0], 1))

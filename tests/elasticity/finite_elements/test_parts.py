@@ -8,19 +8,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.optimize import bisect
-from scipy.sparse.linalg import spsolve
 
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import Shell, Socket
 from ballsocket.elasticity.finite_elements import load_search, solver
-from ballsocket.elasticity.finite_elements.bodies import ball_body, factorize, socket_body
-from ballsocket.elasticity.finite_elements.elasticity import shape_functions
+from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
 from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points, socket_shape
 from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact, pressure_at_pole
-from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
 from ballsocket.elasticity.finite_elements.solver import load_curve_of
 from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
@@ -50,11 +47,6 @@ def curve():
 @pytest.fixture(scope="module")
 def pair(curve):
     return curve.pairs(0, solver.COARSE)
-
-
-@pytest.fixture(scope="module")
-def contact(pair):
-    return partial_contact(pair, GAP, 0.7)
 
 
 def socket(layers, *, rim=1.4, chamfer=0.0, interface=Interface.BONDED, support=Support.FIXED):
@@ -158,17 +150,6 @@ def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
     assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
 
 
-def test_stresses_are_extrapolated_bilinearly_to_the_nodes():
-    corners = np.array([[0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.0, 0.5], [0.0, 0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.5]])
-    assert shape_functions(2, corners)[0] == pytest.approx(np.eye(9), abs=1e-14)
-    points, extrapolation = superconvergent_points(2)
-    for function in (lambda x, y: 1.0 + 0 * x, lambda x, y: x, lambda x, y: y, lambda x, y: x * y):
-        assert function(*points) @ extrapolation == pytest.approx(function(*corners), abs=1e-14)
-    points, extrapolation = superconvergent_points(1)
-    assert points.ravel().tolist() == [0.5, 0.5]
-    assert (np.array([3.0]) @ extrapolation).tolist() == [3.0] * 4
-
-
 def test_resolutions_of_adapted_and_uniform_elements():
     classes = COARSE.classes(1.5, 18.0)
     assert len(classes) == 25
@@ -268,27 +249,6 @@ def test_a_contact_under_tension_or_overlap_is_not_round(monkeypatch):
     assert model.press(RIGID, force=[0.0, force]).status.tolist() == [bs.Status.OK, bs.Status.NOT_ROUND]
 
 
-def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair, contact):
-    assert contact.edge_element == pytest.approx(pair.resolution.size, rel=0.03)
-    assert 0.7 - 4.1 * pair.resolution.size < pair.angle[contact.last] < 0.7 - 2.9 * pair.resolution.size
-    assert -1.0 < contact.tension < 0.0
-    assert contact.overlap < 0.0
-    squeezed = replace(contact)
-    object.__setattr__(squeezed, "indentation", 1.2 * contact.indentation)
-    assert squeezed.overlap > 1e-3
-
-
-def test_loads_are_solved_on_the_mesh_of_their_class(curve):
-    angles = [contact_class * 0.99 for contact_class in curve.classes[1:6]]
-    assert [curve.mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
-    ends = ("half_angle", curve.classes[0]), ("half_angle", 1e-9), ("force", 1e9)
-    assert [curve.mesh_class(*load) for load in ends] == [0, len(curve.classes) - 2, 0]
-    for angle in angles[:3]:
-        contact = partial_contact(curve.pairs(0, solver.COARSE), curve.gap, 0.93 * angle)
-        for kind in ("force", "indentation"):
-            assert curve.mesh_class(kind, getattr(contact, kind)) == curve.mesh_class("half_angle", 0.93 * angle)
-
-
 @pytest.fixture(scope="module")
 def soft_pair():
     return coarse_curve(replace(RIGID, liner_thickness=inf), 340.0).pairs(0, solver.COARSE)
@@ -315,15 +275,6 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
             contact = bracket.solve(kind, load)
             assert getattr(contact, kind) == pytest.approx(load, rel=1e-8)
             assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=2e-3)
-
-
-@pytest.mark.parametrize(("order", "most"), [(1, 8.0), (2, 9.5)])
-def test_nested_dissection_leaves_the_factors_sparse(order, most):
-    """Separators in an element or along the longer side fill a quarter more."""
-    size = 0.05 * order
-    body = ball_body(0.3, Resolution(size=size, reach=inf, growth=1.1, widest=size, deepest=0.5, order=order))
-    nodes = body.elastic.block.number.size
-    assert factorize(body.free_stiffness()).L.nnz < most * nodes * np.log2(nodes)
 
 
 SLIDING_ON_NOTHING = (LINER, Interface.SLIDING, Support.FREE)
@@ -396,23 +347,6 @@ def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elemen
     coarse, fine = (thick_sphere_error(order, elements, poisson) for elements in (elements, 2 * elements))
     assert np.log2(coarse / fine) > least
     assert fine < (2e-5 if order == 1 else 1e-7)
-
-
-@pytest.mark.parametrize("interface", Interface)
-@ORDERS
-def test_condensed_compliance_equals_that_of_the_complete_system(order, interface):
-    backed = socket(BACKED, rim=pi / 2, chamfer=0.05, interface=interface)
-    body = socket_body(backed, resolution(0.2, order=order, halvings=1))
-    forces = np.random.default_rng(1).normal(size=len(body.contact))
-    K = body.elastic.stiffness_matrix().tolil()
-    load = np.zeros(K.shape[0])
-    load[body.normal_unknowns] = forces
-    fixed = np.flatnonzero(body.fixed_unknowns | (K.tocsr().diagonal() == 0))
-    K[fixed], K[fixed, fixed], load[fixed] = 0, 1, 0
-    whole = spsolve(K.tocsc(), load)
-    normal, rounding = whole[body.normal_unknowns], 1e-9 * abs(whole).max()
-    np.testing.assert_allclose(body.surface_compliance()[1] @ forces, normal, rtol=1e-8, atol=rounding)
-    np.testing.assert_allclose(body.displacements(forces)[body.contact, 1], normal, atol=rounding)
 
 
 def test_sliding_layers_move_together_across_the_interface_and_freely_along_it_and_at_the_rim():

@@ -9,6 +9,7 @@ import numpy as np
 import ballsocket as bs
 from ballsocket.elasticity.off_axis import patch_measures as measures
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField
+from ballsocket.elasticity.off_axis.directions import unit_vectors
 
 from ...joints import HIP
 
@@ -18,9 +19,8 @@ TIGHT = bs.Joint(ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner
 WRAPPED = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(300.0)), ring_width=radians(5.0))
 
 
-def lined(poisson=0.4, *, ball_radius=17.9, clearance=0.1, thickness=6.75, young=1000.0, **others):
-    liner = bs.Material(young=young, poisson=poisson)
-    return bs.Joint(ball_radius=ball_radius, clearance=clearance, liner_thickness=thickness, liner=liner, **others)
+def direction(tilt, azimuth=0.0):
+    return unit_vectors(np.asarray(tilt), np.asarray(azimuth))
 
 
 def gap_of(grid, depth=0.0, clearance=0.1, kind=bs.LinearGap):

@@ -13,7 +13,6 @@ from ballsocket.contact.verdict import Verdict
 from ballsocket.design_checks import assess_strength
 from ballsocket.elasticity.off_axis import bore_shapes
 from ballsocket.elasticity.off_axis.directions import unit_vectors
-from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.scans import scan_from_points
 
 from ...extent import some
@@ -60,25 +59,6 @@ def test_table_is_linear_between_its_angles_and_periodic(azimuth):
     if azimuth[-1] - azimuth[0] < 2 * pi - 1e-6:
         closing = depth(polar, np.full(3, (azimuth[-1] + azimuth[0] + 2 * pi) / 2))
         assert closing == pytest.approx((values[:, -1] + values[:, 0]) / 2)
-
-
-def test_measured_depth_is_computed_once_for_a_grid():
-    calls = []
-
-    class Counted(bore_shapes.InterpolatedDeviation):
-        def interpolate(self, directions):
-            calls.append(directions)
-            return directions[0] ** 2
-
-    measured, grid, other = Counted(), even_grid(1.2, 0.2), even_grid(1.2, 0.3)
-    first = measured.depth(grid.centroids)
-    assert measured.depth(grid.centroids) is first
-    assert len(calls) == 1
-    points = grid.centroids.copy()
-    assert measured.depth(points) == pytest.approx(first)
-    points[0] = 0.5
-    assert measured.depth(points) == pytest.approx(0.25)
-    assert measured.depth(other.centroids) == pytest.approx(other.centroids[0] ** 2)
 
 
 # --- scans ---
@@ -192,10 +172,7 @@ def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc
     assert fitted.separation_displacement((1.0, 0.0, 0.0)) == 0.0
     assert fitted.wear_depth_to_loosen() == pytest.approx(0.05, rel=1e-3)
     assert looser.wear_depth_to_loosen() == pytest.approx(0.04, rel=1e-3)
-    assert (
-        fitted.equilibrium.notes[-1]
-        == "the contact reaches the rim, as is normal in a preloaded joint, so its stress has no known bound"
-    )
+    assert "as is normal in a preloaded joint, so its stress has no known bound" in fitted.equilibrium.notes[-1]
 
 
 @pytest.mark.parametrize("rings", some([1.5, 2.0, 3.0, 4.0], 2))

@@ -10,8 +10,8 @@ import ballsocket as bs
 from ballsocket.elasticity.off_axis.deck import SphericalBlock, TiltedDeck, run
 
 from ...cli.command import printed
+from ...joints import lined
 from ..calculix import needs_ccx
-from .shapes import lined
 
 JOINT = lined()
 
@@ -129,16 +129,6 @@ def test_elements_divide_the_angles_evenly_grow_by_half_across_an_interface_and_
     assert np.diff(DECK.socket.polar) == pytest.approx(radians(15.0))
     narrow = deck_of(12.0, tilt=0.1, cup=bs.Cup(arc_of_cover=radians(50.0)))
     assert len(narrow.socket.polar) == 4 + 1
-
-
-def test_lines_of_a_deck_hold_their_numbers():
-    """CalculiX reads at most 16 entries of a line; a row that continues ends with a comma."""
-    lines = deck_text().splitlines()
-    start = next(i for i, line in enumerate(lines) if line.startswith("*ELEMENT, TYPE=C3D20R"))
-    first, second = lines[start + 1 : start + 3]
-    assert first.endswith(",")
-    assert (len(first.rstrip(",").split(",")), len(second.split(","))) == (12, 9)
-    assert len(lines[lines.index("*NSET, NSET=OUTSIDE") + 1].split(",")) == 16
 
 
 @pytest.mark.long

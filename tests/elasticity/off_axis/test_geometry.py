@@ -1,6 +1,5 @@
 """Directions in the cup, grids of rings and meridians, the gap between ball and bore, and the patch of a contact."""
 
-from dataclasses import replace
 from math import cos, pi, radians
 from types import SimpleNamespace
 
@@ -12,7 +11,6 @@ from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
 from ballsocket.elasticity.off_axis.contact_patch import ContactPatch
 from ballsocket.elasticity.off_axis.directions import (
     check_direction,
-    cup_frames,
     magnitudes_and_directions,
     polar_angle,
     tangents,
@@ -21,7 +19,7 @@ from ballsocket.elasticity.off_axis.directions import (
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid, graded_grid, rim_grid
 from ballsocket.elasticity.off_axis.surfaces import initial_displacement
 
-from .shapes import gap_of, measures_of
+from .shapes import direction, gap_of, measures_of
 
 POLAR, AZIMUTH = np.linspace(0.1, 3.0, 7)[:, None], np.linspace(-3.0, 3.0, 5)
 
@@ -53,18 +51,6 @@ def test_directions_of_extreme_length_are_scaled(scale):
     assert checked / length[:, None] == pytest.approx(np.array([[0.6, 0.0, 0.8]]))
     assert check_direction([1e99, 0, 0])[0] == 1e99
     assert check_direction([1e101, 0, 0])[0] == pytest.approx(1.0)
-
-
-def test_frames_of_many_cups_are_those_of_single_cups():
-    cup = bs.Cup(inclination=0.7, anteversion=0.2, side=bs.Side.LEFT)
-    inclination, anteversion = np.array([[0.3], [0.9]]), np.array([0.0, 0.4, 0.5])
-    frames = cup_frames(cup, inclination, anteversion)
-    assert frames.shape == (2, 3, 3, 3)
-    for i, j in np.ndindex(2, 3):
-        single = replace(cup, inclination=float(inclination[i, 0]), anteversion=float(anteversion[j]))
-        assert frames[i, j] == pytest.approx(np.array(single.frame))
-    assert cup_frames(cup, None, 0.4) == pytest.approx(np.array(replace(cup, anteversion=0.4).frame))
-    assert cup_frames(cup, 0.3, None) == pytest.approx(np.array(replace(cup, inclination=0.3).frame))
 
 
 # --- grids ---
@@ -185,13 +171,6 @@ def test_slope_is_the_derivative_of_the_overlap(kind):
         assert slope[:, axis] == pytest.approx(difference, abs=1e-8)
 
 
-def test_coarser_gap_averages_the_depth():
-    grid = even_grid(1.4, 1.4 / 30)
-    coarse = gap_of(grid, grid.middles[2]).on_coarser_grid(grid.coarser_grid)
-    assert coarse.depth == pytest.approx(grid.coarsen(grid.middles[2]))
-    assert (coarse.grid, coarse.clearance, coarse.kind) == (grid.coarser_grid, 0.1, bs.LinearGap)
-
-
 def test_initial_displacement_carries_the_load_on_springs_in_a_full_sphere():
     axes, force = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]]), np.array([2000.0, 100.0])
     bore, preloaded, without = (SimpleNamespace(clearance=c, socket_radius=18.0) for c in (0.1, -0.1, 0.0))
@@ -209,10 +188,6 @@ def test_initial_displacement_carries_the_load_on_springs_in_a_full_sphere():
 # --- patch of one contact, with synthetic pressures ---
 
 CAP_GRID = even_grid(radians(90.0), radians(3.0))
-
-
-def direction(tilt, azimuth=0.0):
-    return unit_vectors(np.asarray(tilt), np.asarray(azimuth))
 
 
 def cap(axis, half_angle, inset=0.0):

@@ -9,21 +9,16 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Processes
 from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.studies import table
 
 from ...extent import either, some
-from ...joints import HIP
+from ...joints import HIP, lined
 from ...places import DATA
-from .shapes import COARSE, RIGID, lined
+from .shapes import COARSE, RIGID, direction
 
 REAL_CUP = json.loads((DATA / "real_cup.json").read_text(encoding="utf-8"))
 STEPS = [(case, step) for case in REAL_CUP["cases"] for step in case["steps"]]
-
-
-def unit_vector(angle):
-    return np.array([sin(angle), 0.0, cos(angle)])
 
 
 # --- other solutions ---
@@ -122,15 +117,15 @@ def test_force_is_the_slope_of_energy_and_stiffness_that_of_force(tilt, gap, asy
     """The forces of a circular gap have no potential, but for the ratio of displacement and radius."""
     model, d, h = bs.Sphere(gap=gap), 0.04, 1e-4
     below, middle, above = (model.press(RIGID, indentation=depth, tilt=tilt) for depth in (d - h, d, d + h))
-    direction = unit_vector(tilt)
-    assert (above.energy - below.energy) / (2 * h) == pytest.approx(middle.force_vector @ direction, rel=1e-4)
+    n = direction(tilt)
+    assert (above.energy - below.energy) / (2 * h) == pytest.approx(middle.force_vector @ n, rel=1e-4)
     fine = bs.Sphere(
         ring_width=radians(either(quick=2.0, long=1.0)), gap=gap
     )  # the edge crosses several rings: the quotient does not see them
     force = fine.press(RIGID, indentation=[0.9 * d, 1.1 * d], tilt=tilt).force_vector
     slope = (force[1] - force[0]) / (0.2 * d)  # the edge crosses rings: the quotient does not see a single one
     error = middle.error["stiffness"] + fine.press(RIGID, indentation=d, tilt=tilt).error["stiffness"]
-    assert slope == pytest.approx(middle.stiffness_matrix @ direction, abs=error * np.linalg.norm(slope))
+    assert slope == pytest.approx(middle.stiffness_matrix @ n, abs=error * np.linalg.norm(slope))
     assert middle.stiffness_matrix == pytest.approx(
         middle.stiffness_matrix.T, abs=asymmetry * middle.stiffness_matrix.max()
     )
@@ -157,7 +152,7 @@ def test_contact_is_independent_of_the_meridians():
 def test_load_that_rotates_with_the_cup_gives_the_same_contact():
     cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0), side=bs.Side.LEFT)
     straight = bs.Sphere().press(RIGID, force=2000.0, tilt=0.5)
-    turned = bs.Sphere(cup=cup).press(RIGID, force=2000.0, direction=unit_vector(0.5) @ np.array(cup.frame))
+    turned = bs.Sphere(cup=cup).press(RIGID, force=2000.0, direction=direction(0.5) @ np.array(cup.frame))
     assert turned.force_vector == pytest.approx(straight.force_vector, rel=1e-6, abs=1e-3)
     assert turned.max_pressure == pytest.approx(straight.max_pressure, rel=1e-6)
     upright = bs.Sphere(cup=cup).press(RIGID, force=2000.0)
@@ -184,7 +179,7 @@ def test_contact_at_the_rim_moves_towards_it_is_reported_and_unbounded_at_a_shar
     assert inside.edge_distance == pytest.approx(18.0 * (pi / 2 - 0.5 - inside.half_angle), abs=0.15)
     assert inside.rim_distance == pytest.approx(18.0 * (pi / 2 - 0.5))
     assert cut.edge_loaded
-    assert cut.force_vector == pytest.approx(3000.0 * unit_vector(1.1), abs=1e-2)
+    assert cut.force_vector == pytest.approx(3000.0 * direction(1.1), abs=1e-2)
     assert np.arctan2(cut.displacement[0], cut.displacement[2]) > 1.1  # the rim is softer
     assert any("edge loading" in note for note in cut.notes)
     assert np.isfinite(cut.max_pressure)
@@ -268,13 +263,6 @@ def test_study_has_directions_and_steps_as_axes(tmp_path):
     step = bs.study(OVAL, RIGID, table(step_file))
     assert step.max_pressure.dims == ("row",)
     assert np.isfinite(step.max_pressure).all()
-
-
-@pytest.mark.long
-def test_study_of_directions_is_independent_of_the_executor(monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
-    serial = bs.study(OVAL, RIGID, **AXES)
-    assert bs.study(OVAL, RIGID, engine=Processes(workers=2), **AXES).equals(serial)
 
 
 # --- random cups: each contact obeys the laws of contact or has a status ---

@@ -102,12 +102,9 @@ def test_figure_of_one_changing_angle_is_a_curve_with_its_limits(oriented):
         ({"inclination": 0.1, "anteversion": 0.05}, [[0.1, 0.05]]),
     ],
 )
-def test_map_shows_its_fields_and_marks_a_stated_orientation_also_at_zero(angles, marked):
+def test_map_marks_a_stated_orientation_also_at_zero(angles, marked):
     model = replace(SPHERE, cup=replace(CUP, **angles))
-    left, right = orientation_figure(orient([0.0, 0.2], [0.0, 0.2], model)).axes
-    assert "edge distance [mm]" in left.get_title()
-    assert "largest pressure pmax [MPa]" in right.get_title()
-    assert left.get_xlabel() == "inclination [°]"
+    left, _ = orientation_figure(orient([0.0, 0.2], [0.0, 0.2], model)).axes
     shown = [line.get_xydata()[0] for line in left.lines if line.get_label() == "this cup"]
     assert np.reshape(shown, (-1, 2)) == pytest.approx(np.degrees(np.reshape(marked, (-1, 2))))
 
@@ -127,9 +124,3 @@ def test_each_limit_marks_the_table_of_its_quantity(oriented):
     assert "max_pressure ≤ 100 MPa: kept in 4, exceeded in 2" in described.notes
     keys = [table.key for table in describe_orientations(oriented, limits[:1]).tables]
     assert keys == ["edge_distance", "max_pressure"]
-
-
-def test_one_orientation_is_one():
-    notes = describe_orientations(orient(0.2, 0.1), [parse_limit("edge_distance>=0.1 mm")]).notes
-    assert any("kept in 1 of 1 orientation," in note for note in notes)
-    assert not any("1 orientations" in note for note in notes)

@@ -11,8 +11,9 @@ import ballsocket as bs
 from ballsocket.elasticity.off_axis.deck import TiltedDeck
 from ballsocket.elasticity.off_axis.scans import scan_from_points
 
+from ...joints import lined
 from ...refusals import refused_calls
-from .shapes import RIGID, TIGHT, WRAPPED, lined, scanned_points
+from .shapes import RIGID, TIGHT, WRAPPED, scanned_points
 
 COARSE = bs.Sphere(ring_width=radians(6.0))
 MANY = RIGID.replace(clearance=np.array([0.1, 0.2]))
