@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import atan2, degrees, inf, isinf, radians, tan
+from math import atan2, degrees, inf, isinf, pi, radians, tan
 from typing import Any
 
 from ...core.checks import check_text, shown
@@ -50,6 +50,9 @@ def joint_controls(screen: Screen) -> list[Control]:
     solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
     liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
     limit, load = partial(_edited, file, ("liner", "allowable_pressure")), number_of(f"load.{kind_of_load}")
+    if kind_of_load == "force":
+        stiffest = float(joint.liner.young) * pi * float(joint.socket_radius) ** 2
+        load = replace(load, largest=stiffest, reason="a mean pressure of Young's modulus of the liner")
     allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
     return [
         _control(words("name", "Design", joint.name), partial(_with_name, file)),
