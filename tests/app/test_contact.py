@@ -15,7 +15,6 @@ import ballsocket as bs
 from ballsocket.app import jobs, long_view, results
 from ballsocket.app.jobs import Job
 from ballsocket.app.pictures.bore import pressed_bore
-from ballsocket.app.pictures.section import petals
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.session import Page
@@ -29,6 +28,7 @@ from ballsocket.core.unit_systems import Units
 from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
+from ballsocket.reports.joint_drawing import petals
 from ballsocket.reports.pages import checks_html
 
 from ..extent import either

@@ -13,7 +13,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.app import server as serve
 from ballsocket.app.long_view import LongView
-from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
@@ -29,6 +28,7 @@ from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Cup
+from ballsocket.reports import svg
 
 from ..extent import either, some
 from .asking import does, edits, saved, trouble

@@ -117,8 +117,9 @@ _KINDS = {".html": "text/html; charset=UTF-8", ".js": "text/javascript; charset=
 
 def page_files() -> dict[str, tuple[str, str]]:
     """Read the files of the page: kind and content by name."""
-    folder = files("ballsocket") / "app" / "assets"
-    contents = {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
+    room = files("ballsocket")
+    drawing = room / "reports" / "templates" / "drawing.css"  # of the section, which reports have, too
+    contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
     kinds = {name: view_class(name) for name in VIEW_CLASSES}
     modules = sorted(name for name in contents if name.endswith(".js"))
     parts = {

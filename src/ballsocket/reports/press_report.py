@@ -29,10 +29,12 @@ from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
+from .joint_drawing import DrawnLoad, joint_svg
 from .pages import (
     HEAD_TEXTS,
     answer_table,
     checks_html,
+    data_address,
     letterhead,
     logo_address,
     render_page,
@@ -40,7 +42,6 @@ from .pages import (
     svg_address,
     trusted_html,
 )
-from .section_plots import joint_section
 
 _TEMPLATE = "press.html"
 _ROUNDING = 1e-7  # relative size of a component of a force that is the rounding error of zero
@@ -160,18 +161,25 @@ def _joint_sections(
     file: JointFile, sections: TitledHtml, units: Units, contact: Contact | None = None, command: str = ""
 ) -> TitledHtml:
     """Return the sections of a joint: checks, drawing, inputs, the given sections, and the joint file."""
-    drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
-    drawing = svg_address(joint_section(file.joint, file.cup, drawn_contact, units))
+    drawing = data_address(_drawing(file, contact, units), "svg+xml")
     text = toml_of(file)
     checksum = sha256(text.encode()).hexdigest()
     checked = () if contact is None else _checks(contact, file.cup)
     return {
         **({"checks": ("Checks", checks_html(checked, units.text_of))} if checked else {}),
-        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(str(file.joint)))),
+        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(file.joint.diameters))),
         "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
         "origin": ("Joint file", render_part(_TEMPLATE, "origin", text, checksum, command)),
     }
+
+
+def _drawing(file: JointFile, contact: Contact | None, units: Units) -> bytes:
+    """Draw the joint with its load, and with the pressure of a contact that has one."""
+    if contact is None or contact.status.failed:
+        return joint_svg(file, units=units)
+    load = DrawnLoad(text=units.text_of(CONTACT["force"], float(contact.force)), tilt=file.tilt)
+    return joint_svg(file, contact, 0.0 if file.tilt else float(contact.half_angle), load, units)
 
 
 def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:

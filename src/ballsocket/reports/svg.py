@@ -1,4 +1,4 @@
-"""SVG pictures of the page: paths, texts, ticks, colours and contours; colours follow the theme."""
+"""SVG pictures: paths, texts, ticks, colours and contours; other colours are those of the style of a page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from math import ceil, floor, log10
 from typing import Any
 
 import numpy
-from contourpy import FillType, LineType, contour_generator
 
 Numbers = numpy.ndarray
 _STEPS = 240
@@ -109,6 +108,8 @@ class Contours:
     """Contours of `values` (rows, columns) at pixels `x` and `y` of the same shape; NaN cuts them off."""
 
     def __init__(self, x: Numbers, y: Numbers, values: Numbers) -> None:
+        from contourpy import FillType, LineType, contour_generator
+
         masked = numpy.ma.masked_invalid(values)
         kinds: Any = {"fill_type": FillType.OuterOffset, "line_type": LineType.Separate}
         self._made: Any = contour_generator(x, y, masked, corner_mask=True, **kinds)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ...reports.style import INK, THICK, LineStyle
-from .svg import attribute
+from ...reports.svg import attribute
 
 _SIZE = (440.0, 300.0)
 _DIGITS = 4  # digits of the numbers of a curve: a pixel is more

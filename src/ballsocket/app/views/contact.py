@@ -24,7 +24,7 @@ from ...reports.style import line_of
 from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..long_view import LongView
 from ..pictures.chart import plain_numbers, swatch
-from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
+from ..pictures.section import LinerStresses, first_view, key, liner_stresses, painted_stresses
 from ..pressing import fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..running import Work
 from ..solving import heavy
@@ -32,7 +32,6 @@ from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
 from ..widgets.controls import Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
-from .contact_drawing import first_view, frame_of, key
 from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
 
 _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
@@ -180,9 +179,9 @@ class Press(LongView):
             self.compute(partial(liner_stresses, contact), partial(self._put_drawing, screen, contact))
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
-        file, tilt = complete(screen.file)[0], screen.file.tilt
-        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
-        drawing = first_view(file, contact, fields_of(self.page.controls), (tilt, screen.reading.length), painted)
+        file = complete(screen.file)[0]
+        painted = None if inside is None else painted_stresses(file, inside)
+        drawing = first_view(file, contact, fields_of(self.page.controls), screen.reading.units, painted)
         if contact is None:
             legend = ""
         elif inside is None:

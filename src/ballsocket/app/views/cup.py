@@ -18,12 +18,12 @@ from ...core.validity import Status
 from ...design_checks import checks_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...problem.cup import Cup
+from ...reports import svg
 from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table
 from ...reports.press_report import press_lede
 from ..long_view import LongView, LongWork, long_body
-from ..pictures import svg
 from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..running import Work

@@ -11,13 +11,13 @@ import numpy
 
 from ...core.quantities import JOINT, QUANTITIES, SHELL
 from ...files.joint_file import JointFile
+from ...reports import svg
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import answer_table
 from ...reports.study_plots import design_map
 from ...studies.limits import Limit, margin_on_plane, relative_margins
 from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
-from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
 from ..view import Document, View, field_places

@@ -23,14 +23,15 @@ from ...elasticity.finite_elements.section import Part
 from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference
 from ...question import complete
+from ...reports import svg
+from ...reports.joint_drawing import profile
 from ...reports.pages import picture, table
-from ...reports.section_plots import section_figure
+from ...reports.section_plots import MAX_EXTENT, largest_stress, section_figure, shown_triangles
 from ...reports.style import bytes_by_units, line_of
 from ..long_view import LongView, long_body
-from ..pictures import svg
 from ..pictures.chart import legend
 from ..pictures.section import extent_of, section
-from ..pressing import pressure_chart, profile
+from ..pressing import pressure_chart
 from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import Screen
@@ -49,14 +50,6 @@ _TO_COME = (
 )
 _WIDTH, _MIDDLE, _REACH = 480.0, 240.0, 225.0
 _TOP = 34.0
-_MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
-
-_BALL_DEPTH = 0.3
-"""Depth over the radius to which the stress of the ball is drawn: deeper it depends on how the ball is pushed."""
-
-_MAX_SHARE = 99.5
-"""Percentile of the stresses in ball or backing at the end of the colours, which leaves out sharp corners."""
-
 _MOVE, _CLOSE = 1, 79  # codes of a path in matplotlib
 _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
@@ -169,7 +162,7 @@ def section_drawing(contact: MeshedContact) -> SectionDrawing:
     """Draw mesh and stresses of a contact as paths."""
     section = contact.section
     parts = section.parts
-    extent = min(max(float(part.position[0].max()) for part in parts), section.socket_radius + _MAX_EXTENT)
+    extent = min(max(float(part.position[0].max()) for part in parts), section.socket_radius + MAX_EXTENT)
     scale, highest = _REACH / extent, max(float(part.position[1].max()) for part in parts)
     lowest = max(min(float(part.position[1].min()) for part in parts), -extent)
 
@@ -181,22 +174,11 @@ def section_drawing(contact: MeshedContact) -> SectionDrawing:
     for kind in ("liner", "ball", "backing"):
         drawn = [part for part in parts if part.name.startswith(kind)]
         if drawn:
-            peak = (
-                section.peak_stress.von_mises
-                if kind == "liner"
-                else max(float(numpy.percentile(part.stress.von_mises[_is_shown(part)], _MAX_SHARE)) for part in drawn)
-            )
-            levels = svg.levels_between(0.0, peak, 6)
+            levels = svg.levels_between(0.0, largest_stress(section, kind), 6)
             paths = zip(*(_bands(part, levels, project) for part in drawn), strict=True)
             bands[kind] = StressBands(levels=tuple(levels), paths=tuple("".join(parts) for parts in paths))
     mesh = "".join(_edges(part, project(part.position, -1.0)) for part in parts)
     return SectionDrawing(height=_TOP + scale * (highest - lowest) + 8, mesh=mesh, bands=bands)
-
-
-def _is_shown(part: Part) -> numpy.ndarray:
-    """Return True at the nodes whose stress is drawn: those near the surface of the ball, and all of other parts."""
-    radius = numpy.hypot(*part.position)
-    return numpy.asarray(radius >= (1 - _BALL_DEPTH) * radius.max() * part.name.startswith("ball"))
 
 
 def _edges(part: Part, points: numpy.ndarray) -> str:
@@ -214,10 +196,7 @@ def _bands(part: Part, levels: list[float], project: Any) -> list[str]:
     from matplotlib.figure import Figure
     from matplotlib.tri import Triangulation
 
-    a, b, c, d = part.elements[:4]
-    triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
-    triangles = triangles[_is_shown(part)[triangles].all(axis=-1)]
-    triangulation = Triangulation(part.position[0], part.position[1], triangles)
+    triangulation = Triangulation(part.position[0], part.position[1], shown_triangles(part))
     ends = [*levels[:-1], max(levels[-1], float(part.stress.von_mises.max()) * (1 + 1e-9))]
     filled = Figure().subplots().tricontourf(triangulation, part.stress.von_mises, levels=ends)
     bands, outlines = [], cast("Any", filled.get_paths())

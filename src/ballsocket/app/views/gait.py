@@ -22,10 +22,10 @@ from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
 from ...reports.pages import picture, table
 from ...reports.style import BLUE, INK, LineStyle
+from ...reports.svg import attribute, levels_between
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
 from ..pictures.chart import Curve, chart, legend, plain_numbers
-from ..pictures.svg import attribute, levels_between
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
