@@ -59,7 +59,7 @@ def waited_for(page):
 def nothing_is_left_running():
     solving._solved.clear()
     yield
-    assert len(running.QUEUE) == 0
+    assert not running.QUEUE
 
 
 def presses_of(monkeypatch):
@@ -253,7 +253,7 @@ def test_a_process_that_dies_or_cannot_be_started_is_said_and_one_that_is_stoppe
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(running, "QUEUE", running.RunQueue(1))
+    monkeypatch.setattr(running, "MAX_AT_WORK", 1)
     first, second, third = (Run(callable) for _ in range(3))
     first.news()
     for run in (second, third):

@@ -112,7 +112,10 @@ class LongWork:
 
     def _hear(self, question: Hashable, news: Any) -> None:
         if isinstance(news, Reached):
-            self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
+            elapsed = time.monotonic() - self._start
+            left = elapsed * (1.0 - news.share) / news.share if news.share > 0.05 else 0.0
+            known = elapsed >= 1.0 and left >= 1.0
+            self.put_button(news.share, f"{news.words}, about {left:.0f} s left" if known else news.words)
         elif isinstance(news, RunRefused):
             self._cancelled, self._refusal = question, alert(news.why)
             self._put("trouble", self._refusal)
@@ -125,13 +128,6 @@ class LongWork:
 
     def leave(self) -> None:
         self._job.stop()
-
-
-def _with_time_left(news: Reached, elapsed: float) -> str:
-    if elapsed < 1.0 or not 0.05 < news.share < 1.0:
-        return news.words
-    left = elapsed * (1.0 - news.share) / news.share
-    return f"{news.words}, about {left:.0f} s left" if left >= 1.0 else news.words
 
 
 class LongView(View):

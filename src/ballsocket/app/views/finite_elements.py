@@ -91,12 +91,11 @@ class ElementCheck(LongView):
             for entry in CONTACT.values()
             if isinstance(result.numbers[entry.key], float)
         ]
-        body = table(heads, [[str(cell) for cell in row] for row in rows])
         figure = picture(result.figures["png"][units], "mesh, von Mises stress, and pressure beside the exact one")
         return Document(
             picture=lambda form: result.figures[form][units],
             rows=lambda: [heads, *rows],
-            sections=lambda: {"judge": ("Finite elements", body + figure)},
+            sections=lambda: {"judge": ("Finite elements", _numbers(result, screen) + figure)},
         )
 
 
