@@ -29,7 +29,7 @@ from ..running import Work
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
-from ..widgets.controls import Control, chosen, fields_of, segments, several
+from ..widgets.controls import MODEL_LABELS, Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
 from .real_cup import bore_of, cup_document, is_prepared, pressed_in_cup, set_up
 
@@ -82,7 +82,7 @@ class Press(LongView):
         pieces = {name: swatch(line_of(name)) for name in _EVERY}
         one_model = bool(self._needs_cup(screen, pressed(screen.file, (screen.answered_by, reference.name))))
         return [
-            chosen(screen, "answered_by", "Model", _EVERY).but(hidden=one_model),
+            chosen(screen, "answered_by", "Model", MODEL_LABELS).but(hidden=one_model),
             chosen(screen, "painted", "Colours show", _PAINTED.items(), segments),
             Control(
                 several("shown", "Curves of the models", _EVERY, screen.shown, pieces),

@@ -18,6 +18,7 @@ from ...files.joint_file import JointFileTable
 from ...files.units import parse, split_quantity
 from ...hip.cycle_registry import CYCLES
 from ...hip.schema import HipTable
+from ...model_catalogue import catalogue
 from ...problem.dimensions import DIAMETERS
 from ..state.screen import Screen
 from ..state.use import CHOICES
@@ -35,9 +36,17 @@ _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
 
 
+MODEL_LABELS = [(name, f"{name}: {model.title}") for name, model in catalogue.items()]
+
+
 def capital(title: str) -> str:
     """Write a title with a capital letter."""
     return f"{title[:1].upper()}{title[1:]}"
+
+
+def named(name: str, plain: str) -> str:
+    """Return a plain name, with the word for it in files and links behind."""
+    return plain if plain.casefold().replace(" ", "-") == name else f"{plain} ({name})"
 
 
 def choice(name: str, label: str, options: Options, value: str) -> Field:

@@ -20,11 +20,12 @@ from ...problem.presets import joints, materials
 from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
-from .controls import Control, Number, choice, file_choice, number_of, segments, tick, words
+from .controls import Control, Number, choice, file_choice, named, number_of, segments, tick, words
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
-_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
+_NAMED = [(name, named(name, material.name)) for name, material in materials.items()]
+_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *_NAMED)
 _CHANGED = " (changed)"
 _DIAMETERS = {single: double for double, single in DIAMETERS.items()}
 _MAX_NAME = 80  # characters of a design's name
@@ -69,7 +70,7 @@ def joint_controls(screen: Screen) -> list[Control]:
         *_moduli(screen, "liner"),
         Control(allowable.field, lambda value: {"file": limit(None)} if value == "" else allowable.read(value)),
         *_thicknesses(screen),
-        _control(choice("ball", "Ball", (_RIGID, *_MATERIALS), ball), partial(_with_material, file, "ball")),
+        _control(choice("ball", "Ball", ((_RIGID, "rigid"), *_MATERIALS), ball), partial(_with_material, file, "ball")),
         *_moduli(screen, "ball"),
     ]
 
@@ -194,10 +195,10 @@ def layer_controls(screen: Screen) -> list[Control]:
     for index, layer in enumerate(file.joint.backing):
         named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
         custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
-        options = [*custom, *materials, (_REMOVE, "– remove –")]
+        options = [*custom, *_NAMED, (_REMOVE, "– remove –")]
         field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named)
         listed.append(_control(field, partial(_with_layer, file, index)))
-    additions = [(_NO_CHOICE, "– choose –"), *materials]
+    additions = [(_NO_CHOICE, "– choose –"), *_NAMED]
     added = choice("behind.add", "Add a layer behind the liner", additions, _NO_CHOICE)
     listed.append(_control(added, partial(_with_new_layer, file)))
     if file.joint.backing:
