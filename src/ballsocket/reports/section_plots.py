@@ -9,10 +9,11 @@ import numpy
 from ..contact import Contact
 from ..core.kinds import NEWTONS
 from ..core.quantities import FIELD
-from ..core.unit_systems import Amount, Sentence
+from ..core.unit_systems import Amount, Sentence, Units
 from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import JUDGE, reference
-from .style import BLUE, INK, LEGEND, finish, in_matplotlib, line_of, new_figure
+from . import svg
+from .style import BLUE, INK, LEGEND, bytes_by_units, finish, in_matplotlib, line_of, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 _PLASTIC_EDGE = 1e-4  # plastic strain at the drawn edge of the plastic zone
 
-MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
+_MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
 
 _BALL_DEPTH = 0.3
 """Depth over the radius to which the stress of the ball is drawn: deeper it depends on how the ball is pushed."""
@@ -61,17 +62,25 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     return figure
 
 
+def section_picture(contact: MeshedContact) -> dict[Units, str]:
+    """Draw mesh and von Mises stress in section as SVG of a page with a theme, in each system of units."""
+    figure = new_figure(5.2, 4.0)
+    _draw_section(figure, figure.subplots(), contact)
+    label = "mesh and von Mises stress in section"
+    return {units: svg.themed(drawing, label) for units, drawing in bytes_by_units(figure, "svg").items()}
+
+
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     """Draw the mesh at the left and the stress at the right, with a colour bar for each kind of part."""
     section = contact.section
     outermost = max(float(part.position[0].max()) for part in section.parts)
-    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + MAX_EXTENT)
+    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + _MAX_EXTENT)
     for part in section.parts:
         _draw_mesh(axes, part)
     for kind, colours in _SCALES.items():
         parts = [part for part in section.parts if part.name.startswith(kind)]
         if parts:
-            highest = largest_stress(section, kind)
+            highest = _largest_stress(section, kind)
             filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
             bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
             bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
@@ -86,22 +95,21 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
 
 
 def _draw_mesh(axes: Axes, part: Part) -> None:
-    from matplotlib.collections import PolyCollection
+    rim = _RIM[len(part.elements)]
+    x, y = part.position[:, part.elements[[*rim, rim[0]]]]
+    gaps = numpy.full((1, x.shape[1]), numpy.nan)  # between the outlines of elements
+    points = [numpy.concatenate([values, gaps]).T.ravel() for values in (-x, y)]
+    axes.plot(*points, color="0.45" if part.name == "ball" else BLUE, linewidth=0.25)
 
-    corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]
-    outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
-    colour = "0.45" if part.name == "ball" else BLUE
-    axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
 
-
-def shown_triangles(part: Part) -> numpy.ndarray:
+def _shown_triangles(part: Part) -> numpy.ndarray:
     """Return triangles (triangles, 3) of nodes in which the stress of a part is drawn: in the ball near its surface."""
     a, b, c, d = part.elements[:4]
     triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
     return triangles[_is_shown(part)[triangles].all(axis=-1)]
 
 
-def largest_stress(section: Section, kind: str) -> float:
+def _largest_stress(section: Section, kind: str) -> float:
     """Return the von Mises stress (MPa) at the end of the colours of the parts of a kind: liner, ball or backing."""
     if kind == "liner":
         return float(section.peak_stress.von_mises)
@@ -143,7 +151,7 @@ def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
     from matplotlib.tri import Triangulation
 
     levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
-    mesh = Triangulation(part.position[0], part.position[1], shown_triangles(part))
+    mesh = Triangulation(part.position[0], part.position[1], _shown_triangles(part))
     if part.plastic_strain.any():
         axes.tricontour(mesh, part.plastic_strain, levels=[_PLASTIC_EDGE], colors=INK, linewidths=1.2)
     return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import pairwise
@@ -74,6 +75,20 @@ def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: s
     """Return a picture of full width with a label for screen readers, which can enter one of the role "group"."""
     marks = f'role="{role}" aria-label="{escape(label)}"{more}'
     return f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" {marks}>{"".join(parts)}</svg>'
+
+
+_THEMED = {"#000000": "var(--text)", "#333333": "var(--quiet)", "#ffffff": "var(--paper)"}
+_DIGITS = re.compile(r"(\d\.\d\d)\d+")  # a hundredth of a point is enough
+_OUTSIDE = re.compile(r"^.*?(?=<svg )|<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", re.DOTALL)
+
+
+def themed(document: bytes, label: str) -> str:
+    """Return an SVG document of matplotlib as a picture of a page whose ink and paper follow the theme."""
+    text = _DIGITS.sub(r"\1", _OUTSIDE.sub("", document.decode("utf-8")))
+    for colour, variable in _THEMED.items():
+        text = text.replace(colour, variable)
+    marks = f'class="picture" role="img" aria-label="{escape(label)}" style="fill: var(--text)"'
+    return text.replace("<svg ", f"<svg {marks} ", 1)
 
 
 def _colours(*stops: tuple[int, int, int]) -> list[str]:
