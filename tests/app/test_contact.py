@@ -15,7 +15,6 @@ import ballsocket as bs
 from ballsocket.app import jobs, long_view, results
 from ballsocket.app.jobs import Job
 from ballsocket.app.pictures.bore import pressed_bore
-from ballsocket.app.pictures.section import petals
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.session import Page
@@ -29,6 +28,7 @@ from ballsocket.core.unit_systems import Units
 from ballsocket.design_checks import checks_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
+from ballsocket.reports.joint_drawing import petals
 from ballsocket.reports.pages import checks_html
 
 from ..extent import either
@@ -96,7 +96,8 @@ def test_an_axial_load_is_answered_by_the_chosen_model_unless_the_rim_is_near_an
 
 def test_no_number_is_shown_while_the_real_cup_is_prepared(monkeypatch, asked):
     monkeypatch.setattr(results, "RESULTS", ResultStore())
-    monkeypatch.setattr(contact_view, "is_prepared", lambda file: False)
+    for module in (contact_view, real_cup):
+        monkeypatch.setattr(module, "is_prepared", lambda file: False)
     page = opened(f"{JOINT}&load.tilt=20 deg")
     button = page.channel.shown_value("=press.run")
     assert (button["label"], button["hidden"]) == ("Compute the real cup", False)
@@ -228,7 +229,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     report = saved(page, "HTML").decode()
     assert f"<td>{float(contact.max_pressure):.4g} MPa</td>" in report
     assert checks_html(checks_of(contact, page.screen.file.cup), page.screen.reading.with_unit) in report
-    listed = re.sub("<[^>]*>", "", report.split(">Contact in the cup<")[1].split("</table>")[0])
+    listed = re.sub("<[^>]*>", "", report.split(">Position of the contact in the cup<")[1].split("</table>")[0])
     assert "_" not in listed
     assert at_once.asked[-1][0] == "cup-stood"  # the orientations follow
 
@@ -246,7 +247,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     edits(page, "cup.inwards", 0)
     edits(page, "cup.pick", [75.0, 12.34])
     assert degrees(page.screen.file.cup.anteversion) == pytest.approx(12.3)
-    assert "✗ Rim contact (edge loading)" in told(page, "cup-numbers")
+    assert "✗ Edge loading: the contact reaches the rim" in told(page, "cup-numbers")
     table = told(page, "cup-numbers")
     assert table.index("reach of the contact</th>") < table.index("✗ exceeded") < table.index(": limit not known")
     edits(page, "cup.inclination", 90)

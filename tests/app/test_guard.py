@@ -481,6 +481,13 @@ async def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
 
 
 @in_loop
+async def test_one_address_does_not_hold_all_pages(served, monkeypatch):
+    monkeypatch.setattr(serve, "MAX_PER_ADDRESS", 1)
+    assert "#press-numbers" in await Someone(served).open()
+    assert "1 pages are open here already" in (await Someone(served).open())["#trouble"]
+
+
+@in_loop
 async def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch):
     """While 2000 requests of one browser and many silent sockets wait, another user's request is among the next."""
     handled, before = [], []

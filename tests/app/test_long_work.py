@@ -59,7 +59,7 @@ def waited_for(page):
 def nothing_is_left_running():
     solving._solved.clear()
     yield
-    assert len(running.QUEUE) == 0
+    assert not running.QUEUE
 
 
 def presses_of(monkeypatch):
@@ -228,6 +228,9 @@ def test_a_run_answers_what_a_press_answers():
     assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
     assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures["png"].values())
     assert all(b"<svg" in drawn for drawn in found.figures["svg"].values())
+    for drawing in found.drawing.values():  # on the page: no style of its own, and ink of its theme
+        assert "<style" not in drawing
+        assert "var(--text)" in drawing
     wide = until_the_end(judging(3e4, arc_of_cover=0.75))[-1].value
     assert any("rim" in note for note in wide.notes)
     refused = until_the_end(judging(3000.0, arc_of_cover=0.75, chamfer=9.0))[-1]  # cannot be meshed
@@ -245,15 +248,15 @@ def test_a_process_that_dies_or_cannot_be_started_is_said_and_one_that_is_stoppe
     stopped.stop()
     assert not stopped._process.is_alive()
 
-    def begin(self):
+    def take():
         raise OSError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr(Run, "_begin", begin)
+    monkeypatch.setattr(running.WORKERS, "take", take)
     assert Run(callable).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(running, "QUEUE", running.RunQueue(1))
+    monkeypatch.setattr(running, "MAX_AT_WORK", 1)
     first, second, third = (Run(callable) for _ in range(3))
     first.news()
     for run in (second, third):

@@ -13,7 +13,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.app import server as serve
 from ballsocket.app.long_view import LongView
-from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.server import page_files
 from ballsocket.app.session import Page
@@ -29,6 +28,7 @@ from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Cup
+from ballsocket.reports import svg
 
 from ..extent import either, some
 from .asking import does, edits, saved, trouble
@@ -346,7 +346,7 @@ def test_no_range_ends_where_no_joint_is(name):
     """A map to 1e9 mm offered a ball of 1e9 mm as the best design."""
     up = START.across if name == START.up.name else START.up
     screen = replace(START, across=MapAxis(name=name, low=0.0, high=0.2), up=up)
-    high = map_view._end_control(screen, "across", "high")
+    high = map_view.end_control(screen, "across", "high")
     for value in ("1e12", "-1e12"):
         with pytest.raises(ValueError, match="^x to must be "):
             high.read(value)

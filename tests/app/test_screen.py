@@ -317,6 +317,8 @@ def test_no_box_takes_what_no_joint_or_cup_has(name):
     [
         (START, "ball_radius", "-5", "Head diameter must be positive, got -5 mm"),
         (screen_with(size="radius"), "ball_radius", "-5", "Ball radius must be positive, got -5 mm"),
+        (START, "ball_radius", "1e-300", "Head diameter must be 0.002 to 20000 mm .*, got 1e-300 mm"),
+        (START, "load", "1e9", "Normal force must be 0 to 624580 N .*mean pressure of Young's modulus.*, got .*"),
         (INCHES, "ball_radius", "4000", "Head diameter must be 7.874e-05 to 787.4 in .*, got 4000 in"),
         (INCHES, "ball_radius", "wide", "Head diameter must be a number in inches, or a length such as '16 mm', .*"),
         (INCHES, "ball_radius", "1,125", "Head diameter '1,125' could be two numbers: write 1125 or 1.125"),

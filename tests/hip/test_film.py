@@ -157,7 +157,8 @@ def test_contact_at_the_rim_is_noted_with_its_instant():
     assert 0 < edge["pressure_at_rim_MPa"] < history.last.max_pressure
     assert edge["instants_edge_loaded"] > 0
     first = history.summary()["cycle"]["edge"]["pressure_at_rim_MPa"]
-    assert f"the pressure in the outermost ring is at most {first:.3g} MPa" in note
+    highest = max(first, edge["pressure_at_rim_MPa"])
+    assert f"the pressure in the outermost ring is at most {highest:.3g} MPa" in note
 
 
 @pytest.mark.parametrize("surface", [bs.Springs(), bs.ClosedShell()], ids=["springs", "shell"])

@@ -48,13 +48,19 @@ class LongWork:
     _cancelled: Hashable = field(default=None, init=False)
     _refusal: str = field(default="", init=False)
     _start: float = field(default=0.0, init=False)
+    unseen: bool = field(default=False, init=False)  # True for a result since the view was shown
 
     def __post_init__(self) -> None:
         call_later(PREPARE_AFTER, WORKERS.prepare)
         self._job = Job(lambda key, news: self.page.attempt(partial(self._hear, key, news)), self.longest)
 
+    @property
+    def runs(self) -> bool:
+        return self._job.works
+
     def show(self, screen: Screen) -> None:
         """Show the stored result for a screen, or that of an earlier screen with a mark."""
+        self.unseen = False
         question, result = self._key(screen), self.result(screen)
         self._put("trouble", self._refusal if question == self._cancelled else "")
         if result is not None:
@@ -112,7 +118,10 @@ class LongWork:
 
     def _hear(self, question: Hashable, news: Any) -> None:
         if isinstance(news, Reached):
-            self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
+            elapsed = time.monotonic() - self._start
+            left = elapsed * (1.0 - news.share) / news.share if news.share > 0.05 else 0.0
+            known = elapsed >= 1.0 and left >= 1.0
+            self.put_button(news.share, f"{news.words}, about {left:.0f} s left" if known else news.words)
         elif isinstance(news, RunRefused):
             self._cancelled, self._refusal = question, alert(news.why)
             self._put("trouble", self._refusal)
@@ -122,16 +131,10 @@ class LongWork:
             call_later(PREPARE_AFTER, WORKERS.prepare)
             self._shown = news.value
             self.show(self.page.screen)
+            self.unseen = True
 
     def leave(self) -> None:
         self._job.stop()
-
-
-def _with_time_left(news: Reached, elapsed: float) -> str:
-    if elapsed < 1.0 or not 0.05 < news.share < 1.0:
-        return news.words
-    left = elapsed * (1.0 - news.share) / news.share
-    return f"{news.words}, about {left:.0f} s left" if left >= 1.0 else news.words
 
 
 class LongView(View):
@@ -180,6 +183,10 @@ class LongView(View):
 
     def show(self, screen: Screen) -> None:
         self.long.show(screen)
+
+    @property
+    def mark(self) -> str:
+        return "runs" if any(work.runs for work in self.works) else "done" * any(work.unseen for work in self.works)
 
     def result(self, screen: Screen) -> Any:
         """Return the result for a file; raise ValueError without one."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from math import cbrt, ceil, pi
+from math import cbrt, ceil
 from typing import Any
 
 import numpy
@@ -19,16 +19,16 @@ from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..question import complete
+from ..reports.joint_drawing import profile
 from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
+from ..reports.svg import rounded_up
 from .pictures.chart import Curve, chart, legend
-from .pictures.svg import rounded_up
 from .solving import heavy, solved, solved_curve
 from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _LOADS = numpy.linspace(0.0, 1.0, 40) ** 2
-_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
 _WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
 _AXIS_ENDS = 1, 1.5, 2, 3, 5, 7, 10  # times a power of ten
@@ -113,13 +113,6 @@ def fine_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) ->
     ready = {name: curve for name, curve in known.items() if curve is not None}
     unsolved = {name: contact for name, contact in contacts.items() if name not in ready}
     return {**ready, **(force_curves(unsolved, models) if unsolved else {})}
-
-
-@lru_cache(maxsize=256)
-def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Sample angles (rad) from the pole to the edge of a contact, dense near the edge, and pressures."""
-    angle = min(float(contact.half_angle), pi / 2) * _ANGLES
-    return angle, numpy.asarray(contact.pressure(angle))
 
 
 def axis_end(value: float) -> float:

@@ -21,29 +21,8 @@ Report = Callable[[Any], None]  # callback for intermediate results, as plain va
 Work = Callable[[Report], Any]  # function that a process runs; it, its result and its reports must be picklable
 
 
-class RunQueue:
-    """Queue of runs, of which the first few are at work."""
-
-    def __init__(self, capacity: int) -> None:
-        self._capacity = capacity
-        self._runs: list[Run] = []
-
-    def __len__(self) -> int:
-        return len(self._runs)
-
-    def admit(self, run: Run) -> bool:
-        """Return True if a run may work; add it to the queue if it is new."""
-        if run not in self._runs:
-            self._runs.append(run)
-        return self._runs.index(run) < self._capacity
-
-    def leave(self, run: Run) -> None:
-        """Free the place of a run."""
-        if run in self._runs:
-            self._runs.remove(run)
-
-
-QUEUE = RunQueue(max(1, available_cores()))  # queue of all pages: as many runs at once as there are cores
+QUEUE: list[Run] = []  # runs of all pages, of which the first `MAX_AT_WORK` are at work
+MAX_AT_WORK = max(1, available_cores())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,13 +98,18 @@ class Run:
     def news(self) -> Any:
         """Return the news since the last call, or None; the last news is `RunFinished` or `RunRefused`."""
         if self._process is None:
-            if not QUEUE.admit(self):
+            if self not in QUEUE:
+                QUEUE.append(self)
+            if QUEUE.index(self) >= MAX_AT_WORK:
                 return Reached(share=0.0, words="waiting: other computations are running")
             try:
-                self._begin()
+                self._process, self._pipe = WORKERS.take()
             except OSError as error:
                 self.stop()
                 return RunRefused(why=f"no process could be started: {error.strerror or error}")
+            self._start, self._before = time.monotonic(), processor_seconds(self._process.pid)  # of its start
+            with suppress(ConnectionError):  # of a worker that has ended: its pipe says so below
+                self._pipe.send(self.work)
         assert self._pipe is not None
         if self._pipe.poll():
             try:
@@ -144,16 +128,10 @@ class Run:
             return RunRefused(why=f"stopped after {taken:.0f} s without a result")
         return None
 
-    def _begin(self) -> None:
-        process, pipe = WORKERS.take()
-        self._process, self._pipe, self._start = process, pipe, time.monotonic()
-        self._before = processor_seconds(process.pid)  # of its start
-        with suppress(ConnectionError):  # of a worker that has ended: `news` finds the end of its pipe
-            pipe.send(self.work)
-
     def stop(self) -> None:
         """End the run, and free its place for the next."""
-        QUEUE.leave(self)
+        if self in QUEUE:
+            QUEUE.remove(self)
         if self._process is not None:
             self._process.kill()
             self._process.join()

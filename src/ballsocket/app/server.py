@@ -52,6 +52,7 @@ _SENTENCES = {
 }
 
 MAX_SESSIONS = 400  # largest number of open pages. The same number of sockets may be connected without a page.
+MAX_PER_ADDRESS = 200  # pages of one network address: no client, and no proxy, holds all of them
 _MAX_MESSAGE = 400_000  # bytes; an upload is smaller
 _RATE, _BURST = 60.0, 120.0  # requests a second, and at once, that are read from one browser
 _SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
@@ -117,8 +118,9 @@ _KINDS = {".html": "text/html; charset=UTF-8", ".js": "text/javascript; charset=
 
 def page_files() -> dict[str, tuple[str, str]]:
     """Read the files of the page: kind and content by name."""
-    folder = files("ballsocket") / "app" / "assets"
-    contents = {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
+    room = files("ballsocket")
+    drawing = room / "reports" / "templates" / "drawing.css"  # of the section, which reports have, too
+    contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
     kinds = {name: view_class(name) for name in VIEW_CLASSES}
     modules = sorted(name for name in contents if name.endswith(".js"))
     parts = {
@@ -173,8 +175,10 @@ class PageSockets:
             oldest.close()
 
     def admit(self, connection: PageSocket) -> bool:
-        """Count the page of a socket; return False if too many are open."""
-        if len(self.pages) >= MAX_SESSIONS:
+        """Count the page of a socket; return False if too many are open, of all or of its network address."""
+        address = connection.request.remote_ip
+        same = sum(page.request.remote_ip == address for page in self.pages)
+        if len(self.pages) >= MAX_SESSIONS or same >= MAX_PER_ADDRESS:
             return False
         self._waiting.pop(connection, None)
         self.pages.add(connection)
@@ -223,7 +227,7 @@ class PageSocket(_Guarded, WebSocketHandler):
 
     def _open_page(self, request: dict[str, Any]) -> None:
         if not self.settings["sockets"].admit(self):
-            words = f"{MAX_SESSIONS} pages are open here already: try again later"
+            words = f"{len(self.settings['sockets'].pages)} pages are open here already: try again later"
             self._write(json.dumps({"n": request["n"], "question": 0, "#trouble": alert(words)}))
             return
         origin = self.request.headers.get("Origin", "")  # `check_origin` knows this name

@@ -223,6 +223,8 @@ class Page:
             _LOG.exception("a view failed")
             self.channel.forget_expected()
             self.refuse(f"This cannot be shown: {error}")
+        marks = {name: view.mark for name, view in self._views.items() if view.mark and name != self.screen.view}
+        self.channel.put("works", marks or None)
         self.channel.send()
 
     def _refresh(self) -> None:

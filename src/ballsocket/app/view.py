@@ -135,6 +135,11 @@ class View(ABC):
         """List the joints and models to press, in the order in which they are needed."""
         return [], ()
 
+    @property
+    def mark(self) -> str:
+        """State of the work of the view for its button: "runs", "done" since it was last shown, or empty."""
+        return ""
+
     def leave(self) -> None:  # noqa: B027  most views have no work of their own
         """Stop all work of a closed page."""
 

@@ -256,13 +256,15 @@ class History(OneLine):
                 break
         approaches = [self.worst, *(report.edge.closest_approach(use.frame) for report in self.reports)]
         first_stages: dict[str, tuple[str, ClosestApproach]] = {}  # by the kind of contact at the rim
+        highest: dict[str, float] = {}  # pressure at the rim in any stage
         for stage, nearest in zip([_FIRST_CYCLE, *later], approaches, strict=True):
             if nearest is not None and nearest.steps_at_rim:
                 first_stages.setdefault(nearest.kind, (stage, nearest))
+                highest[nearest.kind] = max(highest.get(nearest.kind, 0.0), nearest.pressure)
         count = counted(len(use.frame.loaded), "instant")
         unworn_distance = Amount(0.0 if self.worst is None else self.worst.distance, MILLIMETRES, 3)
-        for _, (stage, nearest) in sorted(first_stages.items()):
-            pressure = Amount(nearest.pressure, MEGAPASCALS, 3)
+        for kind, (stage, nearest) in sorted(first_stages.items()):
+            pressure = Amount(highest[kind], MEGAPASCALS, 3)
             if nearest.steps_edge_loaded:
                 steps = str(nearest.steps_edge_loaded)
                 yield Sentence(_EDGE_LOADING, stage, steps, count, nearest.location, pressure)

@@ -351,10 +351,19 @@ class Joint(OneLine, ByValue):
     def dimensions(self) -> Sentence:
         """Text of ball radius, clearance or interference, and liner thickness, with units."""
         name, fit = self.fit
+        return self._lengths_text(f"R1 {{}}, {name} {{}}", self.ball_radius, fit)
+
+    @property
+    def diameters(self) -> Sentence:
+        """Text of head diameter, diametral clearance or interference, and liner thickness, with units."""
+        name, fit = self.fit
+        return self._lengths_text(f"head ⌀ {{}}, {name} ⌀ {{}}", self.head_diameter, 2 * fit)
+
+    def _lengths_text(self, form: str, *lengths: Array) -> Sentence:
         massive = short_text(self.liner_thickness) == "inf"
-        lengths = [self.ball_radius, fit, *([] if massive else [self.liner_thickness])]
+        lengths = lengths if massive else (*lengths, self.liner_thickness)
         liner = "massive socket" if massive else "liner {}"
-        return Sentence(f"R1 {{}}, {name} {{}}, {liner}", *(number_with_unit(size, MILLIMETRES) for size in lengths))
+        return Sentence(f"{form}, {liner}", *(number_with_unit(size, MILLIMETRES) for size in lengths))
 
     def _repr_html_(self) -> str:
         lengths = ("ball_radius", "socket_radius", self.fit[0], "liner_thickness")

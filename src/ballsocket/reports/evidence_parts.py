@@ -15,11 +15,12 @@ from ..core.kinds import Unit
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.unit_systems import Amount, Sentence, Units
 from ..evidence.matrix import KEYS, LIMITED, NAMES, amount_text, number, title_of
+from ..files.joint_file import JointFile
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup
 from ..problem.hardening import Hardening
 from ..studies.parameters import LOADS, PARAMETERS
-from .section_plots import joint_section
+from .joint_drawing import DrawnLoad, joint_svg
 from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, new_figure, numbered, single_axes
 
 if TYPE_CHECKING:
@@ -103,21 +104,14 @@ _KEYS: Mapping[str, Quantity] = {
 _MAX_WRITTEN_CELLS = 150  # cells of a map up to which each contains its number
 
 
-def joint_figure(record: Record) -> Figure:
-    """Draw the section of the joint with the largest pressure, and the arc of an axial contact."""
+def joint_drawing(record: Record, units: Units) -> bytes:
+    """Draw the section of the joint with the largest pressure, and the edge of an axial contact, as SVG."""
     drawn = record["drawn"]
-    joint = _joint(drawn["joint"])
-    figure = joint_section(joint, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
+    file = JointFile(_joint(drawn["joint"]), {}, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
     if drawn["half_angle_deg"] is None:
-        return figure
-    edge = radians(drawn["half_angle_deg"])
-    angle, radius = numpy.linspace(-edge, edge, 121), float(joint.socket_radius)
-    axes = figure.axes[0]
-    axes.plot(radius * numpy.sin(angle), -radius * numpy.cos(angle), color=VERMILLION, linewidth=3.5)
-    axes.text(
-        0.0, -0.75 * radius, f"contact to {drawn['half_angle_deg']:.3g}°", color=VERMILLION, ha="center", fontsize=9
-    )
-    return figure
+        return joint_svg(file, units=units)
+    edge = DrawnLoad(text=f"contact to {drawn['half_angle_deg']:.3g}°")
+    return joint_svg(file, None, radians(drawn["half_angle_deg"]), edge, units)
 
 
 def _joint(summary: Record) -> Joint:

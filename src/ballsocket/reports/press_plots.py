@@ -11,8 +11,7 @@ from ..comparison import force_curves, successful_contacts
 from ..contact import Contact
 from ..contact.describe import values_of
 from ..core import arrays
-from ..core.display import plain_number
-from ..core.kinds import Unit
+from ..core.kinds import NEWTONS, Unit
 from ..core.quantities import CONTACT, FIELD
 from ..core.unit_systems import Amount, Sentence, Units
 from ..dynamics.motion import Motion
@@ -94,7 +93,7 @@ def press_figure(
     legend = figure.legend(loc="outside lower center", ncols=columns, title=note, title_fontsize=8, **LEGEND)
     for text in (*legend.get_texts(), legend.get_title()):
         text.set_parse_math(False)
-    figure.suptitle(title or _title(next(iter(contacts.values())), units), fontsize=10, parse_math=False)
+    figure.suptitle(title or _title(next(iter(contacts.values())), units), fontsize=9, parse_math=False)
     return figure
 
 
@@ -105,16 +104,9 @@ def _angles(contact: Contact) -> numpy.ndarray:
 
 
 def _title(contact: Contact, units: Units) -> str:
-    joint = contact.joint
-    if units is Units.IMPERIAL:
-        lengths = {"head": joint.head_diameter, joint.fit[0]: 2 * joint.fit[1]}
-        text = ", ".join(f"{name} ⌀ {units.length(float(length))}" for name, length in lengths.items())
-        return f"{text}; ● at {units.text_of(CONTACT['force'], float(contact.force))}"
-    ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
-    return (
-        f"{joint.dimensions} of {float(joint.liner.young) / 1e3:g} GPa, "
-        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {plain_number(contact.force)} N"
-    )
+    joint, force = contact.joint, Amount(float(contact.force), NEWTONS)
+    ball = "rigid" if joint.ball is None else str(joint.ball)
+    return units.sentence(Sentence("{} of {}; ball {}; ● at {}", joint.diameters, str(joint.liner), ball, force))
 
 
 MAX_CURVES = 7

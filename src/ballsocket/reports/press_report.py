@@ -15,6 +15,7 @@ from ..contact.verdict import Verdict, error_bar, range_text, rim_verdict
 from ..core.answers import Check, grid
 from ..core.quantities import CONTACT, CUP, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.unit_systems import Units
+from ..core.validity import Status
 from ..design_checks import checks_of, unchecked_text, verdict_of
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
@@ -29,10 +30,12 @@ from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
+from .joint_drawing import DrawnLoad, joint_svg
 from .pages import (
     HEAD_TEXTS,
     answer_table,
     checks_html,
+    data_address,
     letterhead,
     logo_address,
     render_page,
@@ -40,7 +43,6 @@ from .pages import (
     svg_address,
     trusted_html,
 )
-from .section_plots import joint_section
 
 _TEMPLATE = "press.html"
 _ROUNDING = 1e-7  # relative size of a component of a force that is the rounding error of zero
@@ -160,28 +162,32 @@ def _joint_sections(
     file: JointFile, sections: TitledHtml, units: Units, contact: Contact | None = None, command: str = ""
 ) -> TitledHtml:
     """Return the sections of a joint: checks, drawing, inputs, the given sections, and the joint file."""
-    drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
-    drawing = svg_address(joint_section(file.joint, file.cup, drawn_contact, units))
+    drawing = data_address(_drawing(file, contact, units), "svg+xml")
     text = toml_of(file)
     checksum = sha256(text.encode()).hexdigest()
     checked = () if contact is None else _checks(contact, file.cup)
     return {
         **({"checks": ("Checks", checks_html(checked, units.text_of))} if checked else {}),
-        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(str(file.joint)))),
+        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.sentence(file.joint.diameters))),
         "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
         "origin": ("Joint file", render_part(_TEMPLATE, "origin", text, checksum, command)),
     }
 
 
+def _drawing(file: JointFile, contact: Contact | None, units: Units) -> bytes:
+    """Draw the joint with its load, and with the pressure of a contact that has one."""
+    if contact is None or contact.status.failed:
+        return joint_svg(file, units=units)
+    load = DrawnLoad(text=units.text_of(CONTACT["force"], float(contact.force)), tilt=file.tilt)
+    return joint_svg(file, contact, 0.0 if file.tilt else float(contact.half_angle), load, units)
+
+
 def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
     contact = design.contact
     answers, *more = press_sections(design.comparison, units, design.uncertainty, design.remarks).items()
-    drawn: TitledHtml = {"figures": ("Pressure and force", _figures(design.comparison, contact, units))}
-    if isinstance(contact, OffAxisContact) and not contact.status.failed:
-        rows = list(_position(contact, units))
-        drawn["position"] = ("Position of the contact in the cup", render_part(_TEMPLATE, "position", rows))
-    return _joint_sections(design.file, dict([answers, *drawn.items(), *more]), units, contact, design.command)
+    figures = "figures", ("Pressure and force", _figures(design.comparison, contact, units))
+    return _joint_sections(design.file, dict([answers, figures, *more]), units, contact, design.command)
 
 
 def _inputs(file: JointFile, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -262,19 +268,29 @@ def _rim_words(contact: Contact, units: Units, uncertainty: LocalUncertainty | N
     """Describe the place of a contact at the rim of its cup; empty for a contact along the axis."""
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
+    verdict, sentence = rim_sentence(contact, units)
+    least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
+    possible = verdict is Verdict.KEPT and least <= 0
+    return [sentence, *(["edge loading is possible within the tolerances"] if possible else [])]
+
+
+def rim_sentence(contact: OffAxisContact, units: Units) -> tuple[Verdict, str]:
+    """Judge the place of a contact at the rim of its cup, in one sentence."""
+    verdict = rim_verdict(contact)
+    if contact.status.failed:
+        dislocated = contact.status is Status.DISLOCATED
+        return Verdict.EXCEEDED if dislocated else Verdict.UNDECIDED, f"no contact: {contact.status.sentence}"
     if not contact.half_angle > 0:
-        return ["no contact: the ball is not loaded"]
+        return Verdict.UNDECIDED, "no contact: the ball is not loaded"
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded and contact.joint.clearance < 0:
-        return ["the contact reaches the rim, as is normal in a preloaded joint"]
-    verdict = rim_verdict(contact)
+        return Verdict.UNDECIDED, "the contact reaches the rim, as is normal in a preloaded joint"
     if verdict is Verdict.EXCEEDED:
-        return [f"edge loading: the contact reaches the rim (CPER -{distance})"]
+        return verdict, f"edge loading: the contact reaches the rim (CPER -{distance})"
     if verdict is Verdict.UNDECIDED:
-        return [f"edge loading is undecided: the contact ends {distance} from the rim (CPER), less than its error bar"]
-    least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
-    possible = [] if least > 0 else ["edge loading is possible within the tolerances"]
-    return [f"no edge loading: the contact ends {distance} from the rim (CPER)", *possible]
+        ends = f"the contact ends {distance} from the rim (CPER), less than its error bar"
+        return verdict, f"edge loading is undecided: {ends}"
+    return verdict, f"no edge loading: the contact ends {distance} from the rim (CPER)"
 
 
 def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -339,8 +355,14 @@ def press_sections(
 ) -> TitledHtml:
     """Return the sections of a press without its figures: title and HTML by id."""
     sources = [f"{source}, doi {source.doi}" if source.doi else str(source) for source in comparison.sources]
+    position: TitledHtml = {}
+    for contact in successful_contacts(comparison).values():
+        if isinstance(contact, OffAxisContact):
+            rows = list(_position(contact, units))
+            position["position"] = "Position of the contact in the cup", render_part(_TEMPLATE, "position", rows)
     return {
         "answers": ("Results", _results(comparison, units, remarks)),
+        **position,
         "tolerances": ("Sensitivity and tolerances", _tolerances(surroundings, units)),
         "sources": ("Sources", render_part(_TEMPLATE, "sources", sources)),
     }

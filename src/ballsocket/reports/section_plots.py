@@ -1,163 +1,35 @@
-"""Sections: a joint to scale with its dimensions, and the mesh and stresses of a finite-element solution."""
+"""Mesh and stresses of a finite-element solution in section."""
 
 from __future__ import annotations
 
-from itertools import accumulate, pairwise
-from math import isinf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from ..contact import Contact
 from ..core.kinds import NEWTONS
-from ..core.quantities import CONTACT, FIELD
+from ..core.quantities import FIELD
 from ..core.unit_systems import Amount, Sentence, Units
 from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import JUDGE, reference
-from ..problem import Joint
-from ..problem.cup import Cup
-from .style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    LEGEND,
-    ORANGE,
-    PINK,
-    SKY,
-    VERMILLION,
-    finish,
-    in_matplotlib,
-    line_of,
-    new_figure,
-)
+from . import svg
+from .style import BLUE, INK, LEGEND, bytes_by_units, finish, in_matplotlib, line_of, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    Points = tuple[numpy.ndarray, numpy.ndarray]
-    from ..elasticity.finite_elements.section import Part
-
-_UNBOUNDED_THICKNESS = 0.8  # drawn thickness of an unbounded layer, relative to the socket radius
-
-_FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-
-_MAX_GAP = 0.09  # largest drawn gap beside the ball, relative to the socket radius
-
+    from ..elasticity.finite_elements.section import Part, Section
 
 _PLASTIC_EDGE = 1e-4  # plastic strain at the drawn edge of the plastic zone
 
+_MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
 
-def radii_of(joint: Joint) -> list[float]:
-    """Return the radii (mm) of the bore, and outwards behind the liner and each layer."""
-    bore = float(joint.socket_radius)
-    thicknesses = (
-        float(thickness) for thickness in (joint.liner_thickness, *(layer.thickness for layer in joint.backing))
-    )
-    return list(
-        accumulate(
-            (_UNBOUNDED_THICKNESS * bore if isinf(thickness) else thickness for thickness in thicknesses), initial=bore
-        )
-    )
+_BALL_DEPTH = 0.3
+"""Depth over the radius to which the stress of the ball is drawn: deeper it depends on how the ball is pushed."""
 
-
-def gap_factor(joint: Joint) -> int:
-    """Return the magnification of the drawn gap between ball and socket: a round number that makes it visible."""
-    gap = abs(float(joint.clearance))
-    allowed = [factor for factor in _FACTORS if factor * gap <= _MAX_GAP * float(joint.socket_radius)]
-    return allowed[-1] if allowed and gap > 0 else 1
-
-
-_LAYERS = (SKY, GREY, ORANGE, GREEN, PINK, BLUE)
-_LINE = {"color": INK, "linewidth": 0.8}
-
-
-def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units: Units = Units.SI) -> Figure:
-    """Draw ball, liner and backing in section, with diameters, magnified clearance, and pressure and load of a contact.
-
-    The joint has no axes, and the cup the arc of cover.
-    """
-    figure = new_figure(6.6, 5.4)
-    axes = figure.add_subplot()
-    axes.set_aspect("equal")
-    axes.axis("off")
-    radii, times = radii_of(joint), gap_factor(joint)
-    _draw_bodies(axes, joint, cup, contact, radii, times)
-    _draw_diameters(axes, joint, radii, units)
-    _label_layers(axes, joint, cup, radii, units)
-    if contact is not None:
-        _draw_load(axes, joint, contact, units)
-    name, fit = joint.fit
-    text = f"diametral {name} {units.length(2 * fit)}, drawn {times:g} times as wide"
-    axes.text(0.0, -1.1 * radii[-1], text, ha="center", va="top", fontsize=9)
-    return figure
-
-
-def _polar(radius: float | numpy.ndarray, angle: float | numpy.ndarray) -> Points:
-    """Return x and y (mm) of a radius (mm) and an angle (rad) from the pole, which is at the bottom."""
-    return radius * numpy.sin(angle), -radius * numpy.cos(angle)
-
-
-def _outline(inner: Points, outer: Points) -> Points:
-    return numpy.append(inner[0], outer[0][::-1]), numpy.append(inner[1], outer[1][::-1])
-
-
-def _draw_bodies(axes: Axes, joint: Joint, cup: Cup, contact: Contact | None, radii: list[float], times: float) -> None:
-    angle = numpy.linspace(-cup.rim, cup.rim, 200)
-    for number, (inner, outer) in enumerate(pairwise(radii)):
-        colour = _LAYERS[number % len(_LAYERS)]
-        axes.fill(*_outline(_polar(inner, angle), _polar(outer, angle)), facecolor=colour, edgecolor=INK, alpha=0.55)
-    indentation = 0.0 if contact is None else float(contact.indentation)
-    circle = numpy.linspace(0.0, 2 * pi, 200)
-    radius, drop = radii[0] - times * float(joint.clearance), times * (float(joint.clearance) + indentation)
-    x, y = _polar(radius, circle)
-    axes.fill(x, y - drop, facecolor="white", edgecolor=INK, linewidth=1.2)
-
-
-def _draw_diameters(axes: Axes, joint: Joint, radii: list[float], units: Units) -> None:
-    listed = [("head", float(joint.ball_radius)), ("bore", radii[0]), ("outside", float(joint.outer_radius))]
-    step = 0.13 * radii[-1]
-    for number, (name, radius) in enumerate(item for item in listed if not isinf(item[1])):
-        level = radii[0] + (number + 0.8) * step
-        axes.annotate("", (-radius, level), (radius, level), arrowprops={"arrowstyle": "<|-|>", **_LINE})
-        for side in (-radius, radius):
-            axes.plot([side, side], [0.0, level + 0.2 * step], color=GREY, linewidth=0.6)
-        axes.text(0.0, level, f"{name} ⌀ {units.length(2 * radius)}", ha="center", va="bottom", fontsize=9)
-
-
-def _label_layers(axes: Axes, joint: Joint, cup: Cup, radii: list[float], units: Units) -> None:
-    parts = [(joint.liner.name or "liner", joint.liner_thickness)]
-    parts += [(layer.material.name or "backing", layer.thickness) for layer in joint.backing]
-    across, angle = 1.25 * radii[-1], min(0.8 * cup.rim, 1.15)
-    for number, (name, thickness) in enumerate(parts):
-        x, y = _polar((radii[number] + radii[number + 1]) / 2, angle - 0.14 * number)
-        level = float(y) - 0.04 * radii[-1] * number
-        axes.plot([float(x), across], [float(y), level], color=INK, linewidth=0.7)
-        axes.plot(float(x), float(y), "o", color=INK, markersize=2.5)
-        axes.text(1.02 * across, level, f"{name}, {units.length(float(thickness))}", ha="left", va="center", fontsize=9)
-    axes.set_xlim(-1.1 * radii[-1], 2.4 * radii[-1])
-
-
-def _draw_load(axes: Axes, joint: Joint, contact: Contact, units: Units) -> None:
-    """Draw the pressure within the arc of the contact, and the load's arrow."""
-    radius, edge = float(joint.socket_radius), float(contact.half_angle)
-    if not edge > 0:
-        return
-    angle = edge * numpy.sin(numpy.linspace(-pi / 2, pi / 2, 81))
-    pressure = numpy.asarray(contact.pressure(numpy.abs(angle)))
-    high = 0.5 * min(float(joint.liner_thickness), 0.5 * radius) * pressure / float(contact.max_pressure)
-    axes.fill(*_outline(_polar(radius, angle), _polar(radius + high, angle)), color=VERMILLION, alpha=0.85)
-    arrow = {"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 2.0}
-    axes.annotate("", (0.0, -0.15 * radius), (0.0, 0.55 * radius), arrowprops=arrow)
-    axes.text(
-        0.06 * radius,
-        0.4 * radius,
-        units.text_of(CONTACT["force"], float(contact.force)),
-        color=VERMILLION,
-        fontsize=10,
-    )
-
+_MAX_SHARE = 99.5
+"""Percentile of the stresses in ball or backing at the end of the colours, which leaves out sharp corners."""
 
 _RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}  # nodes around an element in order, by its number of nodes
 
@@ -186,25 +58,29 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     _draw_section(figure, section_axes, contact)
     _draw_pressure(pressure_axes, contact, exact)
     force, elements = Amount(float(contact.force), NEWTONS), str(contact.mesh.elements)
-    figure.suptitle(Sentence("{}; {}, {} elements", contact.joint.dimensions, force, elements), fontsize=10)
+    figure.suptitle(Sentence("{}; {}, {} elements", contact.joint.diameters, force, elements), fontsize=10)
     return figure
+
+
+def section_picture(contact: MeshedContact) -> dict[Units, str]:
+    """Draw mesh and von Mises stress in section as SVG of a page with a theme, in each system of units."""
+    figure = new_figure(5.2, 4.0)
+    _draw_section(figure, figure.subplots(), contact)
+    label = "mesh and von Mises stress in section"
+    return {units: svg.themed(drawing, label) for units, drawing in bytes_by_units(figure, "svg").items()}
 
 
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     """Draw the mesh at the left and the stress at the right, with a colour bar for each kind of part."""
     section = contact.section
     outermost = max(float(part.position[0].max()) for part in section.parts)
-    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + 40.0)
+    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + _MAX_EXTENT)
     for part in section.parts:
         _draw_mesh(axes, part)
     for kind, colours in _SCALES.items():
         parts = [part for part in section.parts if part.name.startswith(kind)]
         if parts:
-            highest = (
-                section.peak_stress.von_mises
-                if kind == "liner"
-                else max(float(numpy.percentile(part.stress.von_mises, 99.5)) for part in parts)
-            )
+            highest = _largest_stress(section, kind)
             filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
             bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
             bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
@@ -219,12 +95,32 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
 
 
 def _draw_mesh(axes: Axes, part: Part) -> None:
-    from matplotlib.collections import PolyCollection
+    rim = _RIM[len(part.elements)]
+    x, y = part.position[:, part.elements[[*rim, rim[0]]]]
+    gaps = numpy.full((1, x.shape[1]), numpy.nan)  # between the outlines of elements
+    points = [numpy.concatenate([values, gaps]).T.ravel() for values in (-x, y)]
+    axes.plot(*points, color="0.45" if part.name == "ball" else BLUE, linewidth=0.25)
 
-    corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]
-    outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
-    colour = "0.45" if part.name == "ball" else BLUE
-    axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
+
+def _shown_triangles(part: Part) -> numpy.ndarray:
+    """Return triangles (triangles, 3) of nodes in which the stress of a part is drawn: in the ball near its surface."""
+    a, b, c, d = part.elements[:4]
+    triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
+    return triangles[_is_shown(part)[triangles].all(axis=-1)]
+
+
+def _largest_stress(section: Section, kind: str) -> float:
+    """Return the von Mises stress (MPa) at the end of the colours of the parts of a kind: liner, ball or backing."""
+    if kind == "liner":
+        return float(section.peak_stress.von_mises)
+    drawn = [part for part in section.parts if part.name.startswith(kind)]
+    return max(float(numpy.percentile(part.stress.von_mises[_is_shown(part)], _MAX_SHARE)) for part in drawn)
+
+
+def _is_shown(part: Part) -> numpy.ndarray:
+    """Return True at the nodes whose stress is drawn."""
+    radius = numpy.hypot(*part.position)
+    return numpy.asarray(radius >= (1 - _BALL_DEPTH) * radius.max() * part.name.startswith("ball"))
 
 
 def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
@@ -254,10 +150,8 @@ def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
     from matplotlib.ticker import MaxNLocator
     from matplotlib.tri import Triangulation
 
-    a, b, c, d = part.elements[:4]
-    triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
     levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
-    mesh = Triangulation(part.position[0], part.position[1], triangles)
+    mesh = Triangulation(part.position[0], part.position[1], _shown_triangles(part))
     if part.plastic_strain.any():
         axes.tricontour(mesh, part.plastic_strain, levels=[_PLASTIC_EDGE], colors=INK, linewidths=1.2)
     return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")

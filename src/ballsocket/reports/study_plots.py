@@ -22,7 +22,7 @@ from ..studies.limits import (
     verdicts,
 )
 from ..studies.study_answer import amount_of
-from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish, in_units, new_figure, single_axes
+from .style import BLUE, INK, LEGEND, ORANGE, THICK, THIN, VERMILLION, finish, in_units, new_figure, single_axes
 
 if TYPE_CHECKING:
     import xarray
@@ -98,6 +98,21 @@ def design_map(
         "hatched: the model is not valid": not trusted.all(),
     }
     figure.supxlabel("; ".join(words for words, present in texts.items() if present), fontsize=8, color="0.3")
+    return in_units(figure, units)
+
+
+def result_figure(study: xarray.Dataset, name: str, limits: Iterable[Limit] = (), units: Units = Units.SI) -> Figure:
+    """Draw a result over the one axis of a study, with its limits as dotted lines; thin where it is not valid."""
+    figure, axes = single_axes()
+    (across,) = (str(dim) for dim, size in study.sizes.items() if size > 1)
+    x, y, factor = read(study, across).values, read(study, name).values, QUANTITIES[name].shown.factor
+    axes.plot(x, y, color=INK, linewidth=THIN)
+    axes.plot(x, numpy.where(study.valid.values, y, numpy.nan), color=INK, linewidth=THICK)
+    for end in (end for limit in limits for end in (limit.low, limit.high) if numpy.isfinite(end)):
+        axes.axhline(end * factor, color=VERMILLION, linestyle=":")
+    finish(axes, QUANTITIES[across].label(), QUANTITIES[name].label())
+    axes.set_ylim(bottom=min(0.0, float(numpy.nanmin(y))))
+    figure.suptitle(_title(study), fontsize=9)
     return in_units(figure, units)
 
 

@@ -6,15 +6,16 @@ const LEFT = 58, RIGHT = 12, TOP = 10, FOOT = 44, THICK = 2, THIN = 1, NEAR = 18
 /**
  * @typedef {{name: string, colour: string, dash: string, x: (number | null)[], y: (number | null)[],
  *   trusted: number | number[], mark: number[] | null, band: number[][] | null}} Curve
- * @typedef {{label: string, x: string, y: string, ends: number[], size: number[], flagged: number[][],
+ * @typedef {{label: string, x: string, y: string, start: number, ends: number[], size: number[], flagged: number[][],
  *   curves: Curve[]}} Chart
  */
 
-/** Return the multiples of a round step from zero to an end. @param {number} end  @param {number} most */
-function ticks(end, most) {
-  const scale = 10 ** Math.floor(Math.log10(end / most));
-  const step = scale * [1, 2, 2.5, 5, 10].find((factor) => factor * scale * most >= end * (1 - 1e-9));
-  return Array.from({ length: Math.floor((end / step) * (1 + 1e-9)) + 1 }, (_, index) => index * step);
+/** Return the multiples of a round step between two ends. @type {(start: number, end: number, most: number) => number[]} */
+function ticks(start, end, most) {
+  const wide = end - start, scale = 10 ** Math.floor(Math.log10(wide / most));
+  const step = scale * [1, 2, 2.5, 5, 10].find((factor) => factor * scale * most >= wide * (1 - 1e-9));
+  const first = Math.ceil(start / step - 1e-9), last = Math.floor((end / step) * (1 + 1e-9));
+  return Array.from({ length: last - first + 1 }, (_, index) => (first + index) * step);
 }
 /** Join points by lines, with gaps where a number is missing. @param {[number, number][]} points */
 function pathOf(points) {
@@ -26,9 +27,9 @@ function pathOf(points) {
   }).join("");
 }
 /** @param {Chart} data */
-function draw({ label, x, y, ends, size: [wide, high], flagged, curves }) {
+function draw({ label, x, y, start, ends, size: [wide, high], flagged, curves }) {
   const right = wide - RIGHT, foot = high - FOOT, middle = (TOP + foot) / 2;
-  const across = (value) => (value === null ? NaN : LEFT + ((right - LEFT) * value) / ends[0]);
+  const across = (value) => (value === null ? NaN : LEFT + ((right - LEFT) * (value - start)) / (ends[0] - start));
   const up = (value) => (value === null ? NaN : foot - ((foot - TOP) * value) / ends[1]);
   const svg = part("svg", { class: "picture", viewBox: `0 0 ${wide} ${high}`, role: "img", "aria-label": label });
   const box = `${LEFT} ${TOP} ${right} ${foot}`;
@@ -39,13 +40,13 @@ function draw({ label, x, y, ends, size: [wide, high], flagged, curves }) {
   const text = (words, x, y, anchor, more) => svg.append(part("text", { x, y, "text-anchor": anchor, ...more }, words));
   for (const [low, top] of flagged) {
     const width = Math.max(across(top) - across(low), 1);
-    svg.append(part("rect", { class: "flagged", x: across(low), y: TOP, width, height: foot - TOP }));
+    area.append(part("rect", { class: "flagged", x: across(low), y: TOP, width, height: foot - TOP }));
   }
-  for (const value of ticks(ends[0], 6)) {
+  for (const value of ticks(start, ends[0], 6)) {
     line(across(value), TOP, across(value), foot, "grid");
     text(digits(value), across(value), foot + 16, "middle", { class: "tick" });
   }
-  for (const value of ticks(ends[1], Math.max(2, Math.round((foot - TOP) / 40)))) {
+  for (const value of ticks(0, ends[1], Math.max(2, Math.round((foot - TOP) / 40)))) {
     line(LEFT, up(value), right, up(value), "grid");
     text(digits(value), LEFT - 6, up(value) + 4, "end", { class: "tick" });
   }
@@ -57,7 +58,8 @@ function draw({ label, x, y, ends, size: [wide, high], flagged, curves }) {
     const trusted = (index) => (Array.isArray(curve.trusted) ? curve.trusted[index] : curve.trusted);
     /** @type {(ys: (number | null)[]) => [number, number][]} */
     const points = (ys) => ys.map((value, index) => [across(curve.x[index]), up(value)]);
-    const stroke = { fill: "none", stroke: curve.colour, "stroke-dasharray": curve.dash, "data-name": curve.name };
+    const stroke = { fill: "none", stroke: curve.colour, "stroke-dasharray": curve.dash, "data-name": curve.name,
+      class: curve.dash && "other" };
     if (curve.band) {
       const outline = `${pathOf([...points(curve.band[0]), ...points(curve.band[1]).reverse()])}Z`;
       area.append(part("path", { d: outline, fill: curve.colour, opacity: 0.2 }));
@@ -67,7 +69,8 @@ function draw({ label, x, y, ends, size: [wide, high], flagged, curves }) {
     for (const [d, width] of [[thick, THICK], [thin, THIN]])
       if (d) area.append(part("path", { d, "stroke-width": width, ...stroke }));
     if (curve.mark)
-      area.append(part("circle", { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: curve.colour }));
+      area.append(part("circle", { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: curve.colour,
+        class: curve.dash && "other" }));
   }
   svg.append(area);
   return svg;
@@ -80,12 +83,12 @@ export function drawCharts(element) {
 
 /** @param {SVGElement} chart  @param {DOMPoint} place */
 function nearest(chart, place) {
-  const { ends, curves } = JSON.parse(chart.parentElement.dataset.chart);
+  const { start, ends, curves } = JSON.parse(chart.parentElement.dataset.chart);
   const [left, top, right, foot] = chart.dataset.box.split(" ").map(Number);
   let best = null;
   for (const { name, x: xs, y: ys } of curves)
     xs.forEach((value, index) => {
-      const x = left + ((right - left) * value) / ends[0], y = foot - ((foot - top) * ys[index]) / ends[1];
+      const x = left + ((right - left) * (value - start)) / (ends[0] - start), y = foot - ((foot - top) * ys[index]) / ends[1];
       const far = ys[index] === null ? NEAR : Math.hypot(x - place.x, y - place.y);
       if (far < (best?.far ?? NEAR)) best = { far, x, y, name, numbers: [value, ys[index]] };
     });

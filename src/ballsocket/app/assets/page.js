@@ -12,6 +12,7 @@ const LOST = "Connection lost. These numbers may not belong to the inputs; recon
 const page = document.body;
 /** @param {string} id  @returns {any} */
 const at = (id) => document.getElementById(id);
+const CLIENT = "ballsocket.client"; // key of the plain form for clients in the storage of the browser
 const filled = new Set(); // elements that the server has filled
 let news = 0;
 const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
@@ -32,6 +33,7 @@ listen((message, request) => {
   }
   if (message.order) arrange(message.order);
   if (message.view) showView(message.view);
+  if ("works" in message) markViews(message.works ?? {});
   if ("link" in message) page.toggleAttribute("data-unread", !message.link); // the address stays as it is
   if (message.file) save(message.file);
   const expected = message.expected || [];
@@ -48,9 +50,11 @@ function fill(name, html) {
   const element = at(name.slice(1));
   if (!element) return;
   filled.add(name);
+  const open = [...element.querySelectorAll("details[data-why][open]")].map((one) => one.getAttribute("data-why"));
   const handle = element.contains(document.activeElement) ? document.activeElement.getAttribute("data-drag") : null;
   element.innerHTML = html;
   drawCharts(element);
+  for (const name of open) element.querySelector(`details[data-why="${name}"]`)?.setAttribute("open", "");
   const again = handle && element.querySelector(`[tabindex][data-drag="${handle}"]`);
   if (again) again.focus(); // a handle that is moved by keys is a new one after each answer
 }
@@ -63,6 +67,14 @@ function showView(name) {
       button.setAttribute("aria-current", "page");
       button.scrollIntoView({ inline: "center", block: "nearest" }); // the views scroll sideways on a telephone
     } else button.removeAttribute("aria-current");
+}
+/** Mark the buttons of views whose work goes on or is done. @param {Record<string, string>} works */
+function markViews(works) {
+  for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("button[data-view]"))) {
+    const mark = works[button.dataset.view] ?? "";
+    button.dataset.work = mark;
+    button.setAttribute("aria-description", { runs: "is being computed", done: "has a new result" }[mark] ?? "");
+  }
 }
 function save(file) {
   const bytes = Uint8Array.from(atob(file.content), (letter) => letter.charCodeAt(0));
@@ -119,6 +131,15 @@ setTheme(new URLSearchParams(location.search).get("theme")
 at("theme").addEventListener("click", () => {
   setTheme(theme() === "dark" ? "light" : "dark");
   record(location.search.slice(1), null);
+});
+function showClient(on) {
+  page.toggleAttribute("data-client", on);
+  at("client").setAttribute("aria-pressed", String(on));
+}
+showClient(localStorage.getItem(CLIENT) === "yes");
+at("client").addEventListener("click", () => {
+  showClient(!page.hasAttribute("data-client"));
+  localStorage.setItem(CLIENT, page.hasAttribute("data-client") ? "yes" : "no");
 });
 at("undo").addEventListener("click", undo);
 at("redo").addEventListener("click", redo);

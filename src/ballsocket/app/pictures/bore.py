@@ -19,10 +19,10 @@ from ...elasticity.off_axis.grid import Grid
 from ...hip.ball_wear import interpolation_at
 from ...problem import Joint
 from ...problem.cup import Cup, Side
+from ...reports import svg
 from ...reports.cup_map import from_page, on_page, shown_maximum, shown_pressure
+from ...reports.svg import Contours, heat, levels_between, scale
 from ..widgets.reading import Reading
-from . import svg
-from .svg import Contours, heat, levels_between, scale
 
 METRIC = Reading()  # mm, N, MPa and degrees
 CELLS_EDGE = 0.03  # share of the highest value from which values on cells are drawn: their edge is no sharper

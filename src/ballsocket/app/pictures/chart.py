@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ...reports.style import INK, THICK, LineStyle
-from .svg import attribute
+from ...reports.svg import attribute
 
 _SIZE = (440.0, 300.0)
 _DIGITS = 4  # digits of the numbers of a curve: a pixel is more
@@ -64,15 +64,25 @@ def chart(
     ends: tuple[float, float],
     size: tuple[float, float] = _SIZE,
     flagged: Sequence[tuple[float, float]] = (),
+    start: float = 0.0,
 ) -> str:
-    """Return the element in which a script draws curves over axes from zero to `ends`; `x` and `y` label them.
+    """Return the element in which a script draws curves over axes to `ends`, x from `start`; `x` and `y` label them.
 
     Curves are thick where they can be trusted, and thin all the way where not; one without gaps lies below the others.
     Flagged ranges of x are red.
     """
     ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
-    data = {"label": label, "x": x, "y": y, "ends": ends, "size": size, "flagged": [list(ends) for ends in flagged]}
+    red = [list(ends) for ends in flagged]
+    data = {"label": label, "x": x, "y": y, "start": start, "ends": ends, "size": size, "flagged": red}
     return f"<div {attribute('chart', {**data, 'curves': [curve.plain(name) for name, curve in ordered]})}></div>"
+
+
+def spans(x: numpy.ndarray, marked: numpy.ndarray) -> list[tuple[float, float]]:
+    """List the ranges of increasing values in which points are marked, each half a step wider."""
+    steps = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], marked, [0]])))
+    half = 0.5 * float(x[-1] - x[0]) / max(len(x) - 1, 1)
+    ends = zip(steps[::2], steps[1::2], strict=True)
+    return [(float(x[first]) - half, float(x[last - 1]) + half) for first, last in ends]
 
 
 def swatch(line: LineStyle) -> str:

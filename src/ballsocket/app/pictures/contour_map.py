@@ -11,8 +11,8 @@ from typing import Any
 import numpy
 
 from ...core.checks import check_number, shown
-from . import svg
-from .svg import Contours
+from ...reports import svg
+from ...reports.svg import Contours
 
 _WIDTH, _HEIGHT = 440.0, 400.0
 _LEFT, _RIGHT, _TOP, _FOOT = 58.0, 14.0, 12.0, 92.0

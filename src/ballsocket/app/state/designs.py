@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 from urllib.parse import parse_qsl
@@ -14,7 +14,7 @@ from ...core.checks import check_names, shown
 from ...files.joint_file import NO_DETAILS, JointFileTable, joint_of
 from ...files.joint_toml import written_tables
 from ...files.toml import MAX_FILE_SIZE, parse_toml, toml_text
-from .screen import START, Screen, link_of, read_link, read_query, with_load
+from .screen import START, Screen, flat, link_of, read_link, read_query, with_load
 
 MAX_DESIGNS = 50  # largest number of designs in a browser and in a session file
 _DESIGN, _PAGE = "design", "page"
@@ -107,7 +107,7 @@ def _design(number: int, table: Mapping[str, Any]) -> Screen:
         if set(page) & set(_NOT_SAVED):
             raise ValueError(f"{shown(next(iter(set(page) & set(_NOT_SAVED))))} in [{_PAGE}] belongs to the design")
         pairs: dict[str, list[str]] = {}
-        for name, value in _pairs(page, ""):
+        for name, value in flat(page):
             pairs.setdefault(name, []).append(value)
         joint = {key: value for key, value in table.items() if key != _PAGE}
         return _with_joint(read_link(pairs), joint, START.file.load)
@@ -120,12 +120,3 @@ def _design(number: int, table: Mapping[str, Any]) -> Screen:
 def _with_joint(screen: Screen, tables: Mapping[str, Any], load: dict[str, float]) -> Screen:
     """Return a screen with the joint of the tables of a joint file, under this load if they state none."""
     return replace(screen, file=replace(with_load(joint_of(tables), load), report=NO_DETAILS))
-
-
-def _pairs(table: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, str]]:
-    """Yield the settings of a page as pairs of a link."""
-    for name, value in table.items():
-        if isinstance(value, dict):
-            yield from _pairs(value, f"{prefix}{name}.")
-        else:
-            yield from ((f"{prefix}{name}", str(item)) for item in (value if isinstance(value, list) else [value]))

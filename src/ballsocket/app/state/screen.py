@@ -197,9 +197,9 @@ def link_of(screen: Screen) -> str:
         pairs.append(("picked", ",".join(map(repr, screen.picked))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
     pairs += [*in_use.use_pairs(screen.use), *question_pairs(screen.asked)]
-    pairs += _flat(_tables(screen.file), "")
+    pairs += flat(_tables(screen.file))
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
-        pairs += _flat(_tables(file), f"{prefix}.")
+        pairs += flat(_tables(file), f"{prefix}.")
     return urlencode([*pairs, ("theme", screen.theme)])
 
 
@@ -272,14 +272,16 @@ def _tables(file: JointFile) -> Tables:
     return tables
 
 
-def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
-    """Flatten tables to dotted names, with layers by number."""
+def flat(part: Any, prefix: str = "") -> list[tuple[str, str]]:
+    """Flatten tables to pairs of dotted names: layers by number, and a list of words as one pair for each."""
     pairs = []
     for name, value in enumerate(part) if isinstance(part, list) else part.items():
-        if isinstance(value, dict | list):
-            pairs += _flat(value, f"{prefix}{name}.")
-        else:
-            pairs.append((f"{prefix}{name}", str(value)))
+        words = isinstance(value, list) and not any(isinstance(item, dict) for item in value)
+        for item in value if words else [value]:
+            if isinstance(item, dict | list):
+                pairs += flat(item, f"{prefix}{name}.")
+            else:
+                pairs.append((f"{prefix}{name}", str(item)))
     return pairs
 
 

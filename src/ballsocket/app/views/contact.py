@@ -16,7 +16,6 @@ from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
 from ...model_catalogue import catalogue, reference
 from ...question import complete, real_cup_reason
-from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
@@ -24,16 +23,15 @@ from ...reports.style import line_of
 from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..long_view import LongView
 from ..pictures.chart import plain_numbers, swatch
-from ..pictures.section import LinerStresses, liner_stresses, painted_stresses
+from ..pictures.section import LinerStresses, first_view, key, liner_stresses, painted_stresses
 from ..pressing import fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..running import Work
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
-from ..widgets.controls import Control, chosen, fields_of, segments, several
+from ..widgets.controls import MODEL_LABELS, Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
-from .contact_drawing import first_view, frame_of, key
-from .real_cup import bore_of, is_prepared, pressed_in_cup, set_up
+from .real_cup import bore_of, cup_document, is_prepared, pressed_in_cup, set_up
 
 _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 """Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
@@ -84,7 +82,7 @@ class Press(LongView):
         pieces = {name: swatch(line_of(name)) for name in _EVERY}
         one_model = bool(self._needs_cup(screen, pressed(screen.file, (screen.answered_by, reference.name))))
         return [
-            chosen(screen, "answered_by", "Model", _EVERY).but(hidden=one_model),
+            chosen(screen, "answered_by", "Model", MODEL_LABELS).but(hidden=one_model),
             chosen(screen, "painted", "Colours show", _PAINTED.items(), segments),
             Control(
                 several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
@@ -180,9 +178,9 @@ class Press(LongView):
             self.compute(partial(liner_stresses, contact), partial(self._put_drawing, screen, contact))
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
-        file, tilt = complete(screen.file)[0], screen.file.tilt
-        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
-        drawing = first_view(file, contact, fields_of(self.page.controls), (tilt, screen.reading.length), painted)
+        file = complete(screen.file)[0]
+        painted = None if inside is None else painted_stresses(file, inside)
+        drawing = first_view(file, contact, fields_of(self.page.controls), screen.reading.units, painted)
         if contact is None:
             legend = ""
         elif inside is None:
@@ -235,7 +233,7 @@ class Press(LongView):
     def document(self, screen: Screen) -> Document:
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units
         if self._needs_cup(screen, comparison):
-            return self._real_document(screen, comparison)
+            return cup_document(screen, lambda contact: _rows(_with_real(contact, comparison), screen))
         by, file = comparison.contacts.get(screen.answered_by), screen.file
         drawn = _drawn(comparison, screen)
 
@@ -252,19 +250,6 @@ class Press(LongView):
             sections=lambda: press_sections(comparison, units, surroundings=effects()),
             lede=lambda: "" if by is None else press_lede(by, file.cup, units),
             contact=by,
-        )
-
-    def _real_document(self, screen: Screen, comparison: Comparison) -> Document:
-        if not is_prepared(screen.file):
-            raise ValueError("the real cup is still being prepared: wait until its pressure is there")
-        contact, units = pressed_in_cup(screen.file), screen.reading.units
-        real = Comparison(screen.file.joint, {contact.model.name: contact}, {})
-        return Document(
-            picture=lambda form: figure_bytes(cup_figure(contact, units), form),
-            rows=lambda: _rows(_with_real(contact, comparison), screen),
-            sections=lambda: press_sections(real, units),
-            lede=lambda: press_lede(contact, screen.file.cup, units),
-            contact=contact,
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:

@@ -12,31 +12,29 @@ from typing import Any
 import numpy
 from scipy.interpolate import RectBivariateSpline
 
-from ...contact.verdict import EDGE_DISTANCE, Verdict, error_bar, rim_verdict
+from ...contact.verdict import EDGE_DISTANCE
 from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES
-from ...core.validity import Status
 from ...design_checks import checks_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...problem.cup import Cup
-from ...reports.cup_plots import cup_figure
-from ...reports.figure_files import figure_bytes
-from ...reports.pages import picture, table
-from ...reports.press_report import press_lede
+from ...reports import svg
+from ...reports.pages import picture
+from ...reports.press_report import rim_sentence
 from ..long_view import LongView, LongWork, long_body
-from ..pictures import svg
 from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..running import Work
 from ..state.screen import STANDINGS, Screen
 from ..view import Document, field_places
-from ..widgets.controls import Changes, Control, by_name, chosen, segments
+from ..widgets.controls import Changes, Control, by_name, capital, chosen, segments
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading
-from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust, value_text
+from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, trust
 from .real_cup import (
     LEWINNEK,
     OrientationMap,
     bore_of,
+    cup_document,
     is_prepared,
     map_orientations,
     orientation_key,
@@ -51,7 +49,6 @@ _SHOWN = """<div id="cup-numbers"></div><div class="beside">
 <figure><figcaption>In three dimensions</figcaption><div id="cup-viewer"></div></figure></div>"""
 
 _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
-_TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 _MIN_POINTS, _FINE_POINTS = 4, 61  # values an axis: least for a cubic spline, and of a smooth contour
 
 
@@ -126,24 +123,13 @@ class CupView(LongView):
             self.put(stood=angle_map(orientations, screen.file.cup, screen.standing, screen.reading) + _KEY)
 
     def document(self, screen: Screen) -> Document:
-        if not is_prepared(screen.file):
-            raise ValueError("this bore is still being prepared: wait until its pressure is there")
-        contact, units = pressed_in_cup(screen.file), screen.reading.units
         orientations: OrientationMap | None = self.orientations.result(screen)
-        checks = checked(checks_of(contact, contact.model.cup), screen.reading)
-        sections = {
-            "checks": ("Checks", checks),
-            "cup": ("Contact in the cup", table(["quantity", "value"], list(_report_rows(contact, screen.reading)))),
-        }
+        maps = {}
         if orientations is not None:
-            sections["orientations"] = ("Cup orientation map", picture(orientations.figures[units], "map"))
-        return Document(
-            picture=lambda form: figure_bytes(cup_figure(contact, units), form),
-            rows=lambda: [["quantity", "value"], *_file_rows(contact, screen.reading)],
-            sections=lambda: sections,
-            lede=lambda: press_lede(contact, contact.model.cup, units),
-            contact=contact,
-        )
+            figure = picture(orientations.figures[screen.reading.units], "map")
+            maps = {"orientations": ("Cup orientation map", figure)}
+        heads = ["quantity", "value"]
+        return cup_document(screen, lambda contact: [heads, *_file_rows(contact, screen.reading)], maps)
 
 
 _NO_MAP = (
@@ -178,15 +164,6 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
             yield [name, value]
 
 
-def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
-    for name, value in contact.summary().items():
-        quantity = _NAMED.get(name.removesuffix("_deg"))
-        if quantity is not None and isinstance(value, float | int):
-            internal = value / quantity.written.factor
-            yield [_TITLES.get(name, quantity.title), reading.with_unit(quantity, internal)]
-    yield ["contact at the rim", value_text(bool(contact.edge_loaded))]
-
-
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     margin = f"{_edge_margin_text(contact, reading)} of arc"
@@ -203,23 +180,8 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
 
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
-    bar, verdict = error_bar(contact, EDGE_DISTANCE), rim_verdict(contact)
-    apart = reading.with_unit(DERIVED[EDGE_DISTANCE], float(bar.value), float(bar.high - bar.value))
-    apart += f" ({_edge_margin_text(contact, reading)})"
-    if contact.status.failed:
-        verdict = Verdict.EXCEEDED if contact.status is Status.DISLOCATED else Verdict.UNDECIDED
-        sentence = f"No contact on the bore: {contact.status.sentence}"
-    elif float(contact.half_angle) == 0:
-        verdict, sentence = Verdict.UNDECIDED, "No contact: the ball is not loaded"
-    elif contact.edge_loaded and contact.joint.clearance < 0:
-        verdict, sentence = Verdict.UNDECIDED, "The contact reaches the rim, as is normal in a preloaded joint"
-    elif verdict is Verdict.EXCEEDED:
-        sentence = "Rim contact (edge loading): the contact reaches the rim of the cup"
-    elif verdict is Verdict.UNDECIDED:
-        sentence = f"The contact may reach the rim: it ends {apart} before it"
-    else:
-        sentence = f"The contact ends {apart} before the rim"
-    return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(sentence)}</p>"
+    verdict, sentence = rim_sentence(contact, reading.units)
+    return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(capital(sentence))}</p>"
 
 
 def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:

@@ -11,13 +11,13 @@ import numpy
 
 from ...core.quantities import JOINT, QUANTITIES, SHELL
 from ...files.joint_file import JointFile
+from ...reports import svg
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import answer_table
 from ...reports.study_plots import design_map
-from ...studies.limits import Limit, margin_on_plane, relative_margins
+from ...studies.limits import Limit, allowed, margin_on_plane, relative_margins
 from ...studies.study_answer import map_table
 from ...studies.task import BOUNDS, EDGE_DISTANCE
-from ..pictures import svg
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
 from ..view import Document, View, field_places
@@ -58,7 +58,7 @@ _BELOW_ZERO = -1e300
 _MAX_LEVELS = 12
 
 
-def _axis_control(screen: Screen, which: str) -> Control:
+def axis_control(screen: Screen, which: str) -> Control:
     """Return the parameter of an axis; another one runs over half to twice its present value."""
     present = getattr(screen, which).name
     names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
@@ -70,7 +70,8 @@ def _axis_control(screen: Screen, which: str) -> Control:
     )
 
 
-def _end_control(screen: Screen, which: str, end: str) -> Control:
+def end_control(screen: Screen, which: str, end: str) -> Control:
+    """Return the input of an end of an axis."""
     label, axis = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}", getattr(screen, which)
     quantity, spec = QUANTITIES[axis.name], replace(parameter(axis.name), label=label)
     unit = screen.reading.unit(quantity)
@@ -118,13 +119,16 @@ class DesignMap(View):
     def controls(self, screen: Screen) -> list[Control]:
         quantities = [(name, QUANTITIES[name].title) for name in MAPPED]
         controls = [
-            *(_axis_control(screen, which) for which in _AXIS_LETTERS),
-            *(_end_control(screen, which, end) for which in _AXIS_LETTERS for end in _END_WORDS),
+            *(axis_control(screen, which) for which in _AXIS_LETTERS),
+            *(end_control(screen, which, end) for which in _AXIS_LETTERS for end in _END_WORDS),
             chosen(screen, "quantity", "Map of", quantities),
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
             chosen(screen, "sizes", "Sizes at a selected point", PICKED, segments),
         ]
-        return [*(Control(control.field, _checked(screen, control.read)) for control in controls), _limits(screen)]
+        return [
+            *(Control(control.field, checked(screen, control.read)) for control in controls),
+            limits_input(screen, mapped),
+        ]
 
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#map-picture"):
@@ -169,12 +173,12 @@ class DesignMap(View):
         limits = list(limits_of(screen))
         return Document(
             picture=lambda form: figure_bytes(design_map(results, limits, units=screen.reading.units), form),
-            rows=lambda: _rows(results, screen.reading),
+            rows=lambda: study_rows(results, screen.reading),
             sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
         )
 
 
-def _checked(screen: Screen, read: Callable[[Any], Changes]) -> Callable[[Any], Changes]:
+def checked(screen: Screen, read: Callable[[Any], Changes]) -> Callable[[Any], Changes]:
     """Let an edit be refused for which no map can be computed."""
 
     def checked(value: Any) -> Changes:
@@ -185,15 +189,15 @@ def _checked(screen: Screen, read: Callable[[Any], Changes]) -> Callable[[Any], 
     return checked
 
 
-def _limits(screen: Screen) -> Control:
-    """Return the rows of limits; those that the joint does not have are refused."""
+def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
+    """Return the rows of limits of a study of the screen; those that the joint does not have are refused."""
 
     def present(name: str) -> float:
-        designs = press_designs({_PRESENT: screen.file}, mapped(screen).attrs["model"], {})
+        designs = press_designs({_PRESENT: screen.file}, study_of(screen).attrs["model"], {})
         return present_value(screen.file, name, designs[_PRESENT].contact)
 
     def change(limits: tuple[Limit, ...]) -> Changes:
-        allowed_points(mapped(screen), replace(screen, limits=limits))
+        allowed(study_of(screen), limits_of(replace(screen, limits=limits)))
         return {"limits": limits}
 
     return limits_control(_LIMITED, screen.limits, screen.reading, present, change)
@@ -217,7 +221,8 @@ def _point_html(screen: Screen) -> str:
     return f"<p>{_BUTTONS}</p>{design_table(designs, _PRESENT, screen, MAPPED)}"
 
 
-def _rows(results: Any, reading: Reading) -> list[list[Any]]:
+def study_rows(results: Any, reading: Reading) -> list[list[Any]]:
+    """Tabulate the points of a study for a file, in the units of the page."""
     flat, heads = results.to_dataframe().reset_index(), []
     for column in flat.columns:
         name, quantity = column, BOUNDS.get(column) or QUANTITIES.get(column)

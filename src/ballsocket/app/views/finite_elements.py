@@ -3,41 +3,40 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import partial
 from html import escape
-from typing import Any, cast
+from typing import Any
 
 import numpy
 
 from ...comparison import relative_deviation
 from ...contact.describe import to_summary
 from ...core.answers import Check
-from ...core.quantities import BEARING, CONTACT, JOINT
+from ...core.quantities import CONTACT, JOINT
 from ...core.unit_systems import Units
 from ...core.validity import OutsideDomainError
 from ...design_checks import checks_of
 from ...elasticity.finite_elements.model import MeshedContact
-from ...elasticity.finite_elements.section import Part
 from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference
 from ...question import complete
+from ...reports.joint_drawing import profile
 from ...reports.pages import picture, table
-from ...reports.section_plots import section_figure
+from ...reports.section_plots import section_figure, section_picture
 from ...reports.style import bytes_by_units, line_of
 from ..long_view import LongView, long_body
-from ..pictures import svg
 from ..pictures.chart import legend
 from ..pictures.section import extent_of, section
-from ..pressing import pressure_chart, profile
+from ..pressing import pressure_chart
 from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import Screen
 from ..view import Document, field_places
 from ..widgets.controls import Control
 from ..widgets.joint_controls import cup_controls
-from ..widgets.reading import Reading, number_text
+from ..widgets.reading import number_text
 from ..widgets.words import checked, distinct_quantities, notes_list, percent
 
 _NAME = "judge"
@@ -47,17 +46,6 @@ _TO_COME = (
     "von Mises stress, the pressure beside the exact one of a complete shell, and the error of the mesh. It takes some "
     "seconds."
 )
-_WIDTH, _MIDDLE, _REACH = 480.0, 240.0, 225.0
-_TOP = 34.0
-_MAX_EXTENT = 40.0  # largest distance (mm) behind the bore that is drawn; a massive socket has no end
-
-_BALL_DEPTH = 0.3
-"""Depth over the radius to which the stress of the ball is drawn: deeper it depends on how the ball is pushed."""
-
-_MAX_SHARE = 99.5
-"""Percentile of the stresses in ball or backing at the end of the colours, which leaves out sharp corners."""
-
-_MOVE, _CLOSE = 1, 79  # codes of a path in matplotlib
 _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
 
@@ -98,12 +86,11 @@ class ElementCheck(LongView):
             for entry in CONTACT.values()
             if isinstance(result.numbers[entry.key], float)
         ]
-        body = table(heads, [[str(cell) for cell in row] for row in rows])
         figure = picture(result.figures["png"][units], "mesh, von Mises stress, and pressure beside the exact one")
         return Document(
             picture=lambda form: result.figures[form][units],
             rows=lambda: [heads, *rows],
-            sections=lambda: {"judge": ("Finite elements", body + figure)},
+            sections=lambda: {"judge": ("Finite elements", _numbers(result, screen) + figure)},
         )
 
 
@@ -119,7 +106,7 @@ def _pictures(result: ElementResult, screen: Screen) -> str:
     profiles = {names[model]: (*pressures, True) for model, pressures in result.pressures.items()}
     return (
         f"<div class='beside elements'><figure><figcaption>{escape(caption)}</figcaption>"
-        f"{section_picture(result.drawing, result.file, reading)}</figure>"
+        f"{result.drawing[reading.units]}</figure>"
         f"<figure><figcaption>Pressure beside the exact one</figcaption>"
         f"{pressure_chart(profiles, lines, reading)}<p class='legend'>{legend(lines)}</p></figure></div>"
     )
@@ -149,114 +136,6 @@ def _numbers(result: ElementResult, screen: Screen) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class StressBands:
-    """Levels (MPa) of the von Mises stress in one kind of part, and the path of each band."""
-
-    levels: tuple[float, ...]
-    paths: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class SectionDrawing:
-    """Mesh at the left and stresses at the right, as paths of a picture."""
-
-    height: float
-    mesh: str
-    bands: Mapping[str, StressBands]
-
-
-def section_drawing(contact: MeshedContact) -> SectionDrawing:
-    """Draw mesh and stresses of a contact as paths."""
-    section = contact.section
-    parts = section.parts
-    extent = min(max(float(part.position[0].max()) for part in parts), section.socket_radius + _MAX_EXTENT)
-    scale, highest = _REACH / extent, max(float(part.position[1].max()) for part in parts)
-    lowest = max(min(float(part.position[1].min()) for part in parts), -extent)
-
-    def project(position: Any, side: float) -> numpy.ndarray:
-        """Return picture coordinates (points, 2) of positions (2, points) at the left (-1) or right (1)."""
-        return numpy.stack([_MIDDLE + side * scale * position[0], _TOP + scale * (highest - position[1])], axis=-1)
-
-    bands = {}
-    for kind in ("liner", "ball", "backing"):
-        drawn = [part for part in parts if part.name.startswith(kind)]
-        if drawn:
-            peak = (
-                section.peak_stress.von_mises
-                if kind == "liner"
-                else max(float(numpy.percentile(part.stress.von_mises[_is_shown(part)], _MAX_SHARE)) for part in drawn)
-            )
-            levels = svg.levels_between(0.0, peak, 6)
-            paths = zip(*(_bands(part, levels, project) for part in drawn), strict=True)
-            bands[kind] = StressBands(levels=tuple(levels), paths=tuple("".join(parts) for parts in paths))
-    mesh = "".join(_edges(part, project(part.position, -1.0)) for part in parts)
-    return SectionDrawing(height=_TOP + scale * (highest - lowest) + 8, mesh=mesh, bands=bands)
-
-
-def _is_shown(part: Part) -> numpy.ndarray:
-    """Return True at the nodes whose stress is drawn: those near the surface of the ball, and all of other parts."""
-    radius = numpy.hypot(*part.position)
-    return numpy.asarray(radius >= (1 - _BALL_DEPTH) * radius.max() * part.name.startswith("ball"))
-
-
-def _edges(part: Part, points: numpy.ndarray) -> str:
-    """Draw every edge of the elements once."""
-    corners = part.elements[:4]
-    edges = numpy.concatenate([numpy.stack([corners[a], corners[(a + 1) % 4]], axis=-1) for a in range(4)])
-    starts, ends = points[numpy.unique(numpy.sort(edges, axis=1), axis=0).T]
-    return "".join(
-        f"M{x:.1f},{y:.1f}l{dx:.1f},{dy:.1f}" for (x, y), (dx, dy) in zip(starts, ends - starts, strict=True)
-    )
-
-
-def _bands(part: Part, levels: list[float], project: Any) -> list[str]:
-    """Return the path of each band of the von Mises stress, the last one without an upper end."""
-    from matplotlib.figure import Figure
-    from matplotlib.tri import Triangulation
-
-    a, b, c, d = part.elements[:4]
-    triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
-    triangles = triangles[_is_shown(part)[triangles].all(axis=-1)]
-    triangulation = Triangulation(part.position[0], part.position[1], triangles)
-    ends = [*levels[:-1], max(levels[-1], float(part.stress.von_mises.max()) * (1 + 1e-9))]
-    filled = Figure().subplots().tricontourf(triangulation, part.stress.von_mises, levels=ends)
-    bands, outlines = [], cast("Any", filled.get_paths())
-    for path in outlines:
-        points = [] if path.codes is None else zip(project(path.vertices.T, 1.0), path.codes, strict=True)
-        strokes = (
-            "Z" if code == _CLOSE else f"{'M' if code == _MOVE else 'L'}{x:.1f},{y:.1f}" for (x, y), code in points
-        )
-        bands.append("".join(strokes))
-    return bands
-
-
-def section_picture(drawing: SectionDrawing, file: JointFile, reading: Reading) -> str:
-    """Draw mesh and stresses with a colour scale for each kind of part, in the units of the page."""
-    unit, count = reading.unit(BEARING["von_mises"]), len(drawing.bands)
-    span = (_WIDTH - 20) / count
-    parts = [
-        f'<path class="mesh" d="{drawing.mesh}"/>',
-        *(
-            f'<path fill="{svg.heat(number / max(len(bands.paths) - 1, 1))}" fill-rule="evenodd" d="{path}"/>'
-            for bands in drawing.bands.values()
-            for number, path in enumerate(bands.paths)
-        ),
-        svg.line(_MIDDLE, 24, _MIDDLE, drawing.height, "edge"),
-        svg.text(_MIDDLE - 12, 16, "mesh", "label", "end"),
-        svg.text(_MIDDLE + 12, 16, "von Mises stress", "label", "start"),
-    ]
-    for number, (kind, bands) in enumerate(drawing.bands.items()):
-        levels = [level * unit.factor for level in bands.levels]
-        parts += svg.scale(levels, f"{kind} [{unit.text}]", 14 + span * number, drawing.height + 26, span - 28)
-    sizes = [
-        f"{JOINT[name].title} {reading.with_unit(JOINT[name], float(getattr(file.joint, name)))}"
-        for name in ("head_diameter", "outer_diameter", "diametral_clearance")
-    ]
-    label = f"mesh and von Mises stress in section: {', '.join(sizes)}"
-    return svg.picture((_WIDTH, drawing.height + 56), label, parts)
-
-
-@dataclass(frozen=True, kw_only=True)
 class ElementResult:
     """Result of finite elements as for JSON, beside the exact one, with drawings for the page and for files.
 
@@ -271,7 +150,7 @@ class ElementResult:
     seconds: float
     notes: tuple[str, ...]
     checks: tuple[Check, ...]
-    drawing: SectionDrawing
+    drawing: dict[Units, str]  # SVG of mesh and stress
     pressures: dict[str, tuple[numpy.ndarray, numpy.ndarray]]
     figures: dict[str, dict[Units, bytes]]  # by the format
 
@@ -305,7 +184,7 @@ def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
         seconds=time.perf_counter() - start,
         notes=tuple(contact.notes),
         checks=checks_of(contact, complete(file)[0].cup, float(contact.von_mises)),
-        drawing=section_drawing(contact),
+        drawing=section_picture(contact),
         pressures={name: profile(pressed) for name, pressed in contacts.items() if pressed is not None},
         figures={form: bytes_by_units(section_figure(contact, exact), form) for form in ("png", "svg")},
     )

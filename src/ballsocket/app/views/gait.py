@@ -22,10 +22,10 @@ from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
 from ...reports.pages import picture, table
 from ...reports.style import BLUE, INK, LineStyle
+from ...reports.svg import attribute, levels_between
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
-from ..pictures.chart import Curve, chart, legend, plain_numbers
-from ..pictures.svg import attribute, levels_between
+from ..pictures.chart import Curve, chart, legend, plain_numbers, spans
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
@@ -317,7 +317,7 @@ def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, read
         course.name: Curve(result.phase, numpy.where(numpy.isfinite(values), values, numpy.nan), course.line)
         for course, values in charted
     }
-    flagged = _spans(result) if charted[0][0].field == "edge" else []
+    flagged = spans(result.phase, result.rim) if charted[0][0].field == "edge" else []
     sentences = []
     for course, values in charted:
         finite = values[numpy.isfinite(values)]
@@ -330,16 +330,6 @@ def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, read
         f"over the cycle: {sentence}", _PHASE_LABEL, unit.text or "λ", curves, (100.0, highest), _SIZE, flagged
     )
     return f"<figure><figcaption>{escape(sentence)}{red} {named}</figcaption>{drawn}</figure>"
-
-
-def _spans(result: GaitResult) -> list[tuple[float, float]]:
-    """List the ranges of phase in % with rim contact."""
-    steps = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], result.rim, [0]])))
-    half = 50.0 / len(result.phase)
-    return [
-        (float(result.phase[start]) - half, float(result.phase[end - 1]) + half)
-        for start, end in zip(steps[::2], steps[1::2], strict=True)
-    ]
 
 
 def least_edge_distance(result: GaitResult) -> float:
@@ -356,9 +346,9 @@ def rim_sentence(result: GaitResult, reading: Reading) -> str:
             return "<p class='trust no'>✗ No contact: this cycle never presses the ball into its socket</p>"
         least = reading.with_unit(DERIVED["edge_distance"], distance)
         return f"<p class='trust yes'>✓ No rim contact: the contact ends at least {least} before the rim</p>"
-    spans = ", ".join(f"{low:.0f} to {high:.0f} %" for low, high in _spans(result))
+    ranges = ", ".join(f"{low:.0f} to {high:.0f} %" for low, high in spans(result.phase, result.rim))
     share = f"{100 * result.rim.mean():.0f} % of the cycle"
-    return f"<p class='trust no'>✗ Rim contact in {share} ({spans}): the pressure there is a lower bound</p>"
+    return f"<p class='trust no'>✗ Rim contact in {share} ({ranges}): the pressure there is a lower bound</p>"
 
 
 def _shown(result: GaitResult, film: GaitFilm | None, reading: Reading) -> tuple[Frames, float, str]:

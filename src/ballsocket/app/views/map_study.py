@@ -34,13 +34,13 @@ _SOLVED_POINTS = 17  # values along an axis where every joint is solved: a secon
 
 
 @lru_cache(maxsize=16)
-def _mapped(
-    joint: Joint, given: tuple[str, ...], load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str
+def _studied(
+    joint: Joint, given: tuple[str, ...], load: tuple[tuple[str, float], ...], ends: tuple[MapAxis, ...], model: str
 ) -> Any:
-    """Press the joint over a map, with the lengths that it gives, which joints of equal numbers may differ in."""
-    chosen = _map_model(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
+    """Press the joint over axes, with the lengths that it gives, which joints of equal numbers may differ in."""
+    chosen = _map_model(joint, {axis.name: [axis.low, axis.high] for axis in ends}, model)
     count = _SOLVED_POINTS if chosen.name not in QUICK else _POINTS
-    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
+    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in ends}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
     return study(chosen, replace(joint, given=given), design, quantities=with_bounds(MAPPED))
@@ -79,8 +79,17 @@ def _in_domain(name: str, joint: Joint) -> bool:
 
 def mapped(screen: Screen) -> Any:
     """Compute the study behind a map."""
-    joint = _joint_on(screen.file.joint, (screen.across.name, screen.up.name))
-    return _mapped(joint, joint.given, tuple(screen.file.load.items()), screen.across, screen.up, screen.map_model)
+    return _study_over(screen, screen.across, screen.up)
+
+
+def swept(screen: Screen) -> Any:
+    """Compute the study of one parameter, that across the map."""
+    return _study_over(screen, screen.across)
+
+
+def _study_over(screen: Screen, *axes: MapAxis) -> Any:
+    joint = _joint_on(screen.file.joint, [axis.name for axis in axes])
+    return _studied(joint, joint.given, tuple(screen.file.load.items()), axes, screen.map_model)
 
 
 def _joint_on(joint: Joint, names: Iterable[str]) -> Joint:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import radians
+from types import MappingProxyType
 from typing import Any
 
 import numpy
 
+from ...comparison import Comparison
 from ...core.unit_systems import Units
 from ...elasticity.finite_elements.mesh import socket_shape
 from ...elasticity.finite_elements.progress import progress_to
@@ -23,10 +25,14 @@ from ...model_catalogue import OFF_AXIS, named_models
 from ...problem import Joint
 from ...problem.cup import Cup, Side
 from ...question import PressQuestion, answer, complete
+from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.orientation_plots import orientation_figure
+from ...reports.press_report import press_lede, press_sections
 from ..results import RESULTS, without_name
 from ..running import Reached, Report
+from ..state.screen import Screen
+from ..view import Document
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
 ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))  # orientations of the map
@@ -68,6 +74,25 @@ def pressed_in_cup(file: JointFile) -> OffAxisContact:
     """Press the load of a joint file in its cup; raise ValueError without a result."""
     file, _ = complete(file)
     return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
+
+
+def cup_document(
+    screen: Screen,
+    rows: Callable[[OffAxisContact], list[list[Any]]],
+    sections: Mapping[str, tuple[str, str]] = MappingProxyType({}),
+) -> Document:
+    """Return the content of a file for the contact in the real cup; raise ValueError while it is prepared."""
+    if not is_prepared(screen.file):
+        raise ValueError("the real cup is still being prepared: wait until its pressure is there")
+    contact, units = pressed_in_cup(screen.file), screen.reading.units
+    pressed = Comparison(screen.file.joint, {contact.model.name: contact}, {})
+    return Document(
+        picture=lambda form: figure_bytes(cup_figure(contact, units), form),
+        rows=lambda: rows(contact),
+        sections=lambda: {**press_sections(pressed, units), **sections},
+        lede=lambda: press_lede(contact, screen.file.cup, units),
+        contact=contact,
+    )
 
 
 def set_up(joint: Joint, cup: Cup, report: Report) -> bool:

@@ -9,6 +9,7 @@ VIEW_CLASSES = {
     "cup": "cup.CupView",
     "gait": "gait.Gait",
     "wear": "wear.Wear",
+    "curve": "one_input.OneInput",
     "map": "design_map.DesignMap",
     "compare": "compare.Compare",
     "judge": "finite_elements.ElementCheck",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -14,6 +15,7 @@ from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED
 from ...files.joint_file import JointFile
 from ...hip.law_fields import LawField
+from ...hip.wear_laws import WEAR_LAWS
 from ...problem.presets import joints
 from ...reports.pages import picture, table
 from ...reports.style import BLUE, VERMILLION, LineStyle
@@ -35,6 +37,7 @@ from ..widgets.controls import (
     choice,
     chosen,
     cycle_controls,
+    named,
     number,
     segments,
 )
@@ -48,6 +51,10 @@ _FIELDS = (
     *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
     *(*CREEP_INPUTS, "beside"),
 )
+_WORD = re.compile("[A-Z][a-z]+")
+_LAW_LABELS = [
+    (name, named(name, " ".join(_WORD.findall(law.__name__)).capitalize())) for name, law in WEAR_LAWS.items()
+]
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
@@ -116,7 +123,7 @@ class Wear(LongView):
     def controls(self, screen: Screen) -> list[Control]:
         return [
             *cycle_controls(screen),
-            chosen(screen, "use.law", "Wear law", CHOICES["law"]),
+            chosen(screen, "use.law", "Wear law", _LAW_LABELS),
             _coefficient(screen),
             *(_law_number(screen, key) for key in LAW_INPUTS),
             amount(screen, "use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import degrees
+from math import degrees, inf
 from operator import attrgetter
 from typing import Any
 
@@ -18,6 +18,7 @@ from ...files.joint_file import JointFileTable
 from ...files.units import parse, split_quantity
 from ...hip.cycle_registry import CYCLES
 from ...hip.schema import HipTable
+from ...model_catalogue import catalogue
 from ...problem.dimensions import DIAMETERS
 from ..state.screen import Screen
 from ..state.use import CHOICES
@@ -35,9 +36,17 @@ _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
 _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
 
 
+MODEL_LABELS = [(name, f"{name}: {model.title}") for name, model in catalogue.items()]
+
+
 def capital(title: str) -> str:
     """Write a title with a capital letter."""
     return f"{title[:1].upper()}{title[1:]}"
+
+
+def named(name: str, plain: str) -> str:
+    """Return a plain name, with the word for it in files and links behind."""
+    return plain if plain.casefold().replace(" ", "-") == name else f"{plain} ({name})"
 
 
 def choice(name: str, label: str, options: Options, value: str) -> Field:
@@ -93,7 +102,7 @@ def typed(label: str, text: Any, unit: Unit, kind: str) -> float:
     (0.2, 0.2)
     """
     if isinstance(text, int | float) and not isinstance(text, bool):
-        return round(check_number(label, text) / unit.factor, 12)
+        return _rounded(check_number(label, text) / unit.factor)
     inside = f" in {'inches' if unit.text == 'in' else unit.text}" if unit.text else ""
     rule = f"{label} must be a number{inside}" + (f", or {Kind(kind).example.replace(', ', ' ')}" if unit.text else "")
     stripped = text.strip() if isinstance(text, str) else ""
@@ -108,11 +117,16 @@ def typed(label: str, text: Any, unit: Unit, kind: str) -> float:
     try:
         number, written_unit = split_quantity(pointed)
         if not written_unit:
-            return round(number / unit.factor, 12)
+            return _rounded(number / unit.factor)
         value = parse(label, pointed, kind)
     except ValueError as error:
         raise ValueError(f"{rule}, got {shown(stripped)}") from error
-    return round(degrees(value) if kind == Kind.ANGLE else value, 12)
+    return _rounded(degrees(value) if kind == Kind.ANGLE else value)
+
+
+def _rounded(value: float) -> float:
+    """Round off the error of a conversion of units."""
+    return float(f"{value:.15g}")
 
 
 def typed_quantity(label: str, text: Any, quantity: Quantity, reading: Reading) -> float:
@@ -213,6 +227,8 @@ class Number:
     entry: Input
     quantity: Quantity
     label: str
+    largest: float = inf  # below which the bounds of its key are narrowed for a `reason`
+    reason: str = ""
 
     @property
     def typical(self) -> Typical:
@@ -250,10 +266,11 @@ class Number:
         unit = self.unit(reading)
         number = typed(self.label, value, unit, self.quantity.kind)
         low, high = self.typical.bounds
+        high, reason = (self.largest, self.reason) if self.largest < high else (high, self.typical.reason)
         if low <= number <= high:
             return number
         texts = [box_text(end * unit.factor, unit.text) for end in (low, high, number)]
-        rule = f"{texts[0]} to {texts[1]}{unit_suffix(unit.text)} ({self.typical.reason})"
+        rule = f"{texts[0]} to {texts[1]}{unit_suffix(unit.text)} ({reason})"
         if number <= 0 <= low < _NEARLY_ZERO * high:
             rule = "positive" if low else "zero or positive"
         raise ValueError(f"{self.label} must be {rule}, got {texts[2]}{unit_suffix(unit.text)}")

@@ -6,25 +6,26 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import atan2, degrees, inf, isinf, radians, tan
+from math import atan2, degrees, inf, isinf, pi, radians, tan
 from typing import Any
 
 from ...core.checks import check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
 from ...files.joint_file import JointFile, joint_of, varied
 from ...files.joint_toml import Tables, tables_of
-from ...problem import Joint, Layer, Material, Support
+from ...problem import Joint, Material
 from ...problem.cup import UP, Side
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
 from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
-from .controls import Control, Number, choice, file_choice, number_of, segments, tick, words
+from .controls import Control, Number, choice, file_choice, named, number_of, segments, tick, words
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
-_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
+_NAMED = [(name, named(name, material.name)) for name, material in materials.items()]
+_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *_NAMED)
 _CHANGED = " (changed)"
 _DIAMETERS = {single: double for double, single in DIAMETERS.items()}
 _MAX_NAME = 80  # characters of a design's name
@@ -34,6 +35,7 @@ _BODY, _AXIS = "body", "axis"
 _AIMS = {_BODY: "in the body", _AXIS: "from the cup's axis"}
 _ALLOWABLE = number_of("liner.allowable_pressure")
 _TILT = number_of("load.tilt", label="Tilt of the load")
+_MEDIAL = {Side.RIGHT: -1.0, Side.LEFT: 1.0}  # sign of the body's x axis that points medially
 _LEANS = {
     name: number_of("load.direction", quantity=_TILT.quantity, label=f"Load direction, {side}")
     for name, side in (("inwards", "medial"), ("forwards", "anterior"))
@@ -50,6 +52,9 @@ def joint_controls(screen: Screen) -> list[Control]:
     solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
     liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
     limit, load = partial(_edited, file, ("liner", "allowable_pressure")), number_of(f"load.{kind_of_load}")
+    if kind_of_load == "force":
+        stiffest = float(joint.liner.young) * pi * float(joint.socket_radius) ** 2
+        load = replace(load, largest=stiffest, reason="a mean pressure of Young's modulus of the liner")
     allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
     return [
         _control(words("name", "Design", joint.name), partial(_with_name, file)),
@@ -65,7 +70,7 @@ def joint_controls(screen: Screen) -> list[Control]:
         *_moduli(screen, "liner"),
         Control(allowable.field, lambda value: {"file": limit(None)} if value == "" else allowable.read(value)),
         *_thicknesses(screen),
-        _control(choice("ball", "Ball", (_RIGID, *_MATERIALS), ball), partial(_with_material, file, "ball")),
+        _control(choice("ball", "Ball", ((_RIGID, "rigid"), *_MATERIALS), ball), partial(_with_material, file, "ball")),
         *_moduli(screen, "ball"),
     ]
 
@@ -143,20 +148,16 @@ def _with_length(file: JointFile, key: str, value: float) -> JointFile:
 
 
 def _made_of(tables: Tables, file: JointFile) -> JointFile:
-    """Make a joint file of changed tables; drop its source if a number differs."""
-    made = joint_of(tables)
-    unchanged = made.joint == file.joint or tables == tables_of(file)
-    return made if unchanged else replace(made, joint=_as_changed(made.joint))
-
-
-def _as_changed(joint: Joint) -> Joint:
-    """Return a joint that differs from its source, with a preset marked as changed in its name."""
-    base = joint.name.removesuffix(_CHANGED)
-    if base not in joints:
-        return joint.replace(name=joint.name, source="")
-    preset = joints[base]
-    same = joint.replace(name=preset.name, source=preset.source) == preset
-    return preset if same else joint.replace(name=base + _CHANGED, source="")
+    """Make a joint file of changed tables; if a number differs it has no source, and a preset is marked as changed."""
+    made, old = joint_of(tables), file.joint
+    if made.joint == old or tables == tables_of(file):
+        return made
+    base = old.name.removesuffix(_CHANGED)
+    preset = joints.get(base)
+    if preset is None:
+        return replace(made, joint=made.joint.replace(name=old.name, source=""))
+    same = made.joint.replace(name=preset.name, source=preset.source) == preset
+    return replace(made, joint=preset if same else made.joint.replace(name=base + _CHANGED, source=""))
 
 
 def _with_name(file: JointFile, value: Any) -> JointFile:
@@ -194,28 +195,28 @@ def layer_controls(screen: Screen) -> list[Control]:
     for index, layer in enumerate(file.joint.backing):
         named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
         custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
-        options = [*custom, *materials, (_REMOVE, "– remove –")]
+        options = [*custom, *_NAMED, (_REMOVE, "– remove –")]
         field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named)
         listed.append(_control(field, partial(_with_layer, file, index)))
-    additions = [(_NO_CHOICE, "– choose –"), *materials]
+    additions = [(_NO_CHOICE, "– choose –"), *_NAMED]
     added = choice("behind.add", "Add a layer behind the liner", additions, _NO_CHOICE)
     listed.append(_control(added, partial(_with_new_layer, file)))
     if file.joint.backing:
         support = file_choice("joint.support", file.joint.support.value, "behind.support")
-        listed.append(_control(support, lambda value: _with_joint(file, support=Support(value))))
+        listed.append(_control(support, partial(_edited, file, ("joint", "support"))))
     return listed
 
 
 def _with_layer(file: JointFile, index: int, value: Any) -> JointFile:
-    """Change the material of a layer, or remove it."""
+    """Change the material of a layer, or remove it; without layers the outside is fixed."""
     if value == _CUSTOM:
         return file
-    layers = list(file.joint.backing)
+    layers = tables_of(file)["backing"]
     if value == _REMOVE:
         del layers[index]
     else:
-        layers[index] = replace(layers[index], material=materials[value])
-    return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
+        layers[index] = {"thickness": layers[index]["thickness"], "material": value}
+    return _edited(file if layers else _edited(file, ("joint", "support"), None), ("backing",), layers or None)
 
 
 def _with_new_layer(file: JointFile, value: Any) -> JointFile:
@@ -223,12 +224,8 @@ def _with_new_layer(file: JointFile, value: Any) -> JointFile:
         return file
     if len(file.joint.backing) >= _MAX_LAYERS:
         raise ValueError(f"{shown(value)} is one layer too many: at most {_MAX_LAYERS}")
-    return _with_joint(file, backing=(*file.joint.backing, Layer(thickness=_NEW_THICKNESS, material=materials[value])))
-
-
-def _with_joint(file: JointFile, **changes: Any) -> JointFile:
-    joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
-    return replace(file, joint=_as_changed(joint))
+    layer = {"thickness": _NEW_THICKNESS, "material": value}
+    return _edited(file, ("backing",), [*tables_of(file).get("backing", ()), layer])
 
 
 def cup_controls(screen: Screen) -> list[Control]:
@@ -237,26 +234,21 @@ def cup_controls(screen: Screen) -> list[Control]:
     angles = {"inclination": tilted, "anteversion": tilted, "arc_of_cover": False}
     leans = dict(zip(_LEANS, leaning(file), strict=True))
     aims = segments("aim", "Load direction given", _AIMS.items(), _AXIS if tilted else _BODY)
-    numbers: list[tuple[str, Number, float, bool, Callable[[float], JointFile]]] = [
-        *(
-            (name, number_of(f"cup.{name}"), degrees(getattr(cup, name)), hidden, partial(_with_cup, file, name))
-            for name, hidden in angles.items()
-        ),
-        ("chamfer", number_of("cup.chamfer"), cup.chamfer, False, partial(_with_cup, file, "chamfer")),
-        *((name, _LEANS[name], leans[name], tilted, partial(_with_lean, file, name)) for name in _LEANS),
-        (
-            "tilt",
-            _TILT,
-            degrees(file.aim.get("tilt", 0.0)),
-            not tilted,
-            lambda angle: varied(file, {"load": {"tilt": angle}}),
-        ),
-    ]
+
+    def angle(name: str, spec: Number, value: float, hidden: bool, edit: Callable[[float], JointFile]) -> Control:
+        return _number(screen, name, spec, round(value, 9) + 0.0, edit).but(hidden=hidden)
+
+    def turned(value: float) -> JointFile:
+        return varied(file, {"load": {"tilt": value}})
+
     return [
         *(
-            _number(screen, name, spec, round(value, 9) + 0.0, edit).but(hidden=hidden)
-            for name, spec, value, hidden, edit in numbers
+            angle(name, number_of(f"cup.{name}"), degrees(getattr(cup, name)), hidden, partial(_with_cup, file, name))
+            for name, hidden in angles.items()
         ),
+        angle("chamfer", number_of("cup.chamfer"), cup.chamfer, False, partial(_with_cup, file, "chamfer")),
+        *(angle(name, _LEANS[name], leans[name], tilted, partial(_with_lean, file, name)) for name in _LEANS),
+        angle("tilt", _TILT, degrees(file.aim.get("tilt", 0.0)), not tilted, turned),
         _control(aims, lambda aim: replace(file, aim={} if aim == _BODY else {"tilt": file.tilt})),
         _control(file_choice("cup.side", cup.side.value), partial(_with_cup, file, "side")),
         _control(file_choice("cup.interface", cup.interface.value), partial(_with_cup, file, "interface")),
@@ -266,16 +258,11 @@ def cup_controls(screen: Screen) -> list[Control]:
 def leaning(file: JointFile) -> tuple[float, float]:
     """Compute the angles in degrees by which a load leans medially and anteriorly."""
     x, y, z = file.aim.get("direction", UP)
-    return degrees(atan2(_inwards(file) * x, z)), degrees(atan2(y, z))
-
-
-def _inwards(file: JointFile) -> float:
-    """Return the sign of the body's x axis that points medially."""
-    return -1.0 if file.cup.side is Side.RIGHT else 1.0
+    return degrees(atan2(_MEDIAL[file.cup.side] * x, z)), degrees(atan2(y, z))
 
 
 def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
-    direction = (_inwards(file) * tan(radians(inwards)), tan(radians(forwards)), 1.0)
+    direction = (_MEDIAL[file.cup.side] * tan(radians(inwards)), tan(radians(forwards)), 1.0)
     return replace(file, aim={} if direction[:2] == (0.0, 0.0) else {"direction": direction})
 
 

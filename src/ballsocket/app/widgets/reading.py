@@ -9,9 +9,9 @@ from typing import Any
 from ...contact.describe import values_of
 from ...core.arrays import Array
 from ...core.kinds import Kind, Unit
-from ...core.quantities import JOINT, Quantity
+from ...core.quantities import Quantity
 from ...core.unit_systems import Units
-from ..pictures.svg import rounded_up
+from ...reports.svg import rounded_up
 
 _DIGITS, _BOX_DIGITS = 4, 5
 _LARGEST_PLAIN = 1e12  # value from which numbers are written with an exponent
@@ -37,11 +37,6 @@ class Reading:
             text, factor = _PSI_MULTIPLES[quantity.name]
             return Unit(text, factor * unit.factor)
         return unit
-
-    @property
-    def length(self) -> Unit:
-        """Unit of a dimension."""
-        return self.unit(JOINT["ball_radius"])
 
     def label(self, quantity: Quantity) -> str:
         """Return title, symbol and unit for an axis."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from html import escape
@@ -14,7 +15,7 @@ from ...contact.describe import values_of
 from ...contact.verdict import Verdict
 from ...core.answers import Check
 from ...core.kinds import Unit
-from ...core.quantities import CONTACT, HEADLINE, Quantity
+from ...core.quantities import CONTACT, HEADLINE, JOINT, Quantity
 from ...core.unit_systems import Units
 from ...design_checks import checks_of, unchecked_text, verdict_of
 from ...elasticity.off_axis.contact import OffAxisContact
@@ -155,6 +156,8 @@ def column_of(quantity: Quantity, reading: Reading) -> tuple[str, float]:
 VERDICT_KINDS = {Verdict.KEPT: "yes", Verdict.UNDECIDED: "doubt", Verdict.EXCEEDED: "no"}
 """Style of each verdict on the page."""
 
+_SYMBOL = re.compile(r"[^\W\d]+\d?")  # such as R1, p0 and ε, without exponents
+_LENGTHS = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 
@@ -178,7 +181,14 @@ def headline(
         f"<dl class='first'>{_quantity_cell(first, contact, reading)}</dl>"
         f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes, reading)}"
         f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
+        "<details class='quiet' data-why='model'><summary>Model and sources</summary>"
+        f"<p>{escape(_model_text(contact))}</p></details>"
     )
+
+
+def _model_text(contact: Contact) -> str:
+    sources = "; ".join(map(str, contact.model.sources))
+    return f"{contact.model.name}: {contact.model.title}.{f' Source: {sources}.' if sources else ''}"
 
 
 def checked(rows: Sequence[Check], reading: Reading) -> str:
@@ -194,9 +204,25 @@ def _quantity_cell(quantity: Quantity, contact: Contact, reading: Reading) -> st
     value = float(reading.values_of(contact, quantity))
     unit = "" if isnan(value) else _unit_html(reading.unit(quantity).text)
     return (
-        f"<div><dt title='{escape(quantity.symbol)}'>{escape(quantity.title)}</dt>"
+        f"<div><dt><details data-why='{quantity.name}'><summary>{escape(quantity.title)}</summary>"
+        f"<p>{escape(explanation(quantity, contact, reading))}</p></details></dt>"
         f"<dd data-name='{quantity.name}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
     )
+
+
+def explanation(quantity: Quantity, contact: Contact, reading: Reading) -> str:
+    """Explain a number: its symbol and meaning, and the values of the symbols in that."""
+    meaning, joint = quantity.meaning.replace("`", ""), contact.joint
+    symbols = _SYMBOL.findall(meaning)
+    values = {JOINT[name]: getattr(joint, name) for name in _LENGTHS}
+    values |= {other: getattr(contact, other.name) for other in CONTACT.values() if other is not quantity}
+    known = [
+        f"{other.symbol} = {reading.with_unit(other, float(value))}"
+        for other, value in values.items()
+        if other.symbol in symbols
+    ]
+    here = f" Here {', '.join(known)}." if known else ""
+    return f"{quantity.symbol}: {meaning}{here}"
 
 
 def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:

@@ -1,8 +1,9 @@
-"""SVG pictures of the page: paths, texts, ticks, colours and contours; colours follow the theme."""
+"""SVG pictures: paths, texts, ticks, colours and contours; other colours are those of the style of a page."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import pairwise
@@ -10,7 +11,6 @@ from math import ceil, floor, log10
 from typing import Any
 
 import numpy
-from contourpy import FillType, LineType, contour_generator
 
 Numbers = numpy.ndarray
 _STEPS = 240
@@ -77,6 +77,20 @@ def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: s
     return f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" {marks}>{"".join(parts)}</svg>'
 
 
+_THEMED = {"#000000": "var(--text)", "#333333": "var(--quiet)", "#ffffff": "var(--paper)"}
+_DIGITS = re.compile(r"(\d\.\d\d)\d+")  # a hundredth of a point is enough
+_OUTSIDE = re.compile(r"^.*?(?=<svg )|<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", re.DOTALL)
+
+
+def themed(document: bytes, label: str) -> str:
+    """Return an SVG document of matplotlib as a picture of a page whose ink and paper follow the theme."""
+    text = _DIGITS.sub(r"\1", _OUTSIDE.sub("", document.decode("utf-8")))
+    for colour, variable in _THEMED.items():
+        text = text.replace(colour, variable)
+    marks = f'class="picture" role="img" aria-label="{escape(label)}" style="fill: var(--text)"'
+    return text.replace("<svg ", f"<svg {marks} ", 1)
+
+
 def _colours(*stops: tuple[int, int, int]) -> list[str]:
     """List colours in even steps from the first of five stops (red, green, blue) to the last."""
     place = numpy.linspace(0.0, len(stops) - 1, _STEPS + 1)
@@ -109,6 +123,8 @@ class Contours:
     """Contours of `values` (rows, columns) at pixels `x` and `y` of the same shape; NaN cuts them off."""
 
     def __init__(self, x: Numbers, y: Numbers, values: Numbers) -> None:
+        from contourpy import FillType, LineType, contour_generator
+
         masked = numpy.ma.masked_invalid(values)
         kinds: Any = {"fill_type": FillType.OuterOffset, "line_type": LineType.Separate}
         self._made: Any = contour_generator(x, y, masked, corner_mask=True, **kinds)
