@@ -334,7 +334,7 @@ def test_a_refusal_speaks_of_the_field_and_its_unit(screen, name, text, sentence
 
 def test_a_refusal_of_the_mechanics_has_the_words_of_the_field_too():
     field = field_of("outer_radius")
-    with pytest.raises(ValueError, match="outer_radius = 5.0 is not allowed") as refused:
+    with pytest.raises(ValueError, match=r"outer_radius = 5(\.0)? is not allowed") as refused:
         typed("outer_radius", "10")
     sentence = rf"Outer diameter 10 mm is not allowed: it must leave a liner.*; {field['text']} mm stays in use"
     assert re.fullmatch(sentence, refusal_of(field, refused.value, "10 mm")["error"])

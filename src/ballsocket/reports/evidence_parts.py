@@ -103,11 +103,11 @@ _KEYS: Mapping[str, Quantity] = {
 _MAX_WRITTEN_CELLS = 150  # cells of a map up to which each contains its number
 
 
-def joint_figure(record: Record) -> Figure:
+def joint_figure(record: Record, units: Units = Units.SI) -> Figure:
     """Draw the section of the joint with the largest pressure, and the arc of an axial contact."""
     drawn = record["drawn"]
     joint = _joint(drawn["joint"])
-    figure = joint_section(joint, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
+    figure = joint_section(joint, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])), units=units)
     if drawn["half_angle_deg"] is None:
         return figure
     edge = radians(drawn["half_angle_deg"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.checks import check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
-from ...files.joint_file import JointFile, joint_of, varied
+from ...files.joint_file import JointFile, varied
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Material, Support
 from ...problem.cup import UP, Side
@@ -49,8 +49,13 @@ def joint_controls(screen: Screen) -> list[Control]:
     kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind_of_load)
     solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
     liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
-    limit, load = partial(_edited, file, ("liner", "allowable_pressure")), number_of(f"load.{kind_of_load}")
-    allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
+    limited = partial(_with_number, file, "liner", "allowable_pressure")
+    allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limited).but(optional=True)
+    unlimited = partial(_with_joint, file, liner=replace(joint.liner, allowable_pressure=None))
+
+    def with_load(value: float) -> JointFile:
+        return varied(file, {"load": {kind_of_load: value}})
+
     return [
         _control(words("name", "Design", joint.name), partial(_with_name, file)),
         _control(
@@ -59,11 +64,11 @@ def joint_controls(screen: Screen) -> list[Control]:
         *_lengths(screen),
         *([] if joint.backing else [_control(solid, partial(_with_solid_socket, file))]),
         _control(kinds, lambda kind: replace(file, load=same_load(file, screen.answered_by, kind))),
-        _number(screen, "load", load, tables["load"][kind_of_load], partial(_edited, file, ("load", kind_of_load))),
+        _number(screen, "load", number_of(f"load.{kind_of_load}"), tables["load"][kind_of_load], with_load),
         _number(screen, "tilt", _TILT, degrees(file.tilt), partial(_with_tilt, file)),
         _control(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
         *_moduli(screen, "liner"),
-        Control(allowable.field, lambda value: {"file": limit(None)} if value == "" else allowable.read(value)),
+        Control(allowable.field, lambda value: {"file": unlimited()} if value == "" else allowable.read(value)),
         *_thicknesses(screen),
         _control(choice("ball", "Ball", (_RIGID, *_MATERIALS), ball), partial(_with_material, file, "ball")),
         *_moduli(screen, "ball"),
@@ -93,7 +98,7 @@ def _lengths(screen: Screen) -> Iterator[Control]:
 def _moduli(screen: Screen, part: str) -> Iterator[Control]:
     material = getattr(screen.file.joint, part)
     for key in ("young", "poisson") if material else ():
-        edit = partial(_edited, screen.file, (part, key))
+        edit = partial(_with_number, screen.file, part, key)
         yield _number(screen, f"{part}_{key}", number_of(f"{part}.{key}"), float(getattr(material, key)), edit)
 
 
@@ -101,7 +106,7 @@ def _thicknesses(screen: Screen) -> Iterator[Control]:
     for index, layer in enumerate(screen.file.joint.backing):
         if not isinf(float(layer.thickness)):
             spec = number_of("backing.thickness", label=f"{layer.material.name or 'Layer'} thickness")
-            edit = partial(_edited, screen.file, ("backing", index, "thickness"))
+            edit = partial(_with_thickness, screen.file, index)
             yield _number(screen, f"layer{index}", spec, float(layer.thickness), edit)
 
 
@@ -118,35 +123,22 @@ def joint_words(joint: Joint) -> str:
     return f"<p>Held while other lengths change: {given}.</p>{behind}"
 
 
-def _edited(file: JointFile, path: Sequence[str | int], value: Any) -> JointFile:
-    """Set a value in the tables of a joint file; None removes it."""
-    tables = tables_of(file)
-    part: Any = tables
-    for key in path[:-1]:
-        part = part[key]
-    if value is None:
-        part.pop(path[-1], None)
-    else:
-        part[path[-1]] = value
-    return _made_of(tables, file)
+def _with_number(file: JointFile, part: str, key: str, value: float) -> JointFile:
+    """Set a number of the material of liner or ball."""
+    return _with_joint(file, **{part: getattr(varied(file, {part: {key: value}}).joint, part)})
+
+
+def _with_thickness(file: JointFile, index: int, value: float) -> JointFile:
+    layers = list(file.joint.backing)
+    layers[index] = replace(layers[index], thickness=value)
+    return _with_joint(file, backing=tuple(layers))
 
 
 def _with_length(file: JointFile, key: str, value: float) -> JointFile:
     """Set a length, which takes the place of the one that would follow from it; a diameter sets its radius."""
-    tables = tables_of(file)
-    lengths, name = tables["joint"], DIAMETERS.get(key, key)
-    kept = give(name, [length for length in lengths if length in LENGTHS])
-    for length in [length for length in lengths if length in LENGTHS and length not in kept]:
-        del lengths[length]
-    lengths[name] = value if name == key else value / 2
-    return _made_of(tables, file)
-
-
-def _made_of(tables: Tables, file: JointFile) -> JointFile:
-    """Make a joint file of changed tables; drop its source if a number differs."""
-    made = joint_of(tables)
-    unchanged = made.joint == file.joint or tables == tables_of(file)
-    return made if unchanged else replace(made, joint=_as_changed(made.joint))
+    name, given = DIAMETERS.get(key, key), file.joint.given_lengths
+    held = {length: given[length] for length in give(name, list(given)) if length in given}
+    return _with_joint(file, **{**held, name: value if name == key else value / 2})
 
 
 def _as_changed(joint: Joint) -> Joint:
@@ -181,11 +173,11 @@ def _with_tilt(file: JointFile, tilt: float) -> JointFile:
 def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
     """Change the material of liner or ball; custom numbers start from those of the previous material."""
     if chosen == _RIGID:
-        return _edited(file, (part,), None)
+        return _with_joint(file, **{part: None})
     if chosen != _CUSTOM:
-        return _edited(file, (part,), {"material": chosen})
+        return _with_joint(file, **{part: materials[chosen]})
     material = getattr(file.joint, part) or Material(young=2e5, poisson=0.3)
-    return _edited(file, (part,), {"young": float(material.young), "poisson": float(material.poisson)})
+    return _with_joint(file, **{part: Material(young=material.young, poisson=material.poisson)})
 
 
 def layer_controls(screen: Screen) -> list[Control]:
@@ -227,8 +219,9 @@ def _with_new_layer(file: JointFile, value: Any) -> JointFile:
 
 
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
+    """Change lengths or parts of the joint; drop its source if a number differs."""
     joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
-    return replace(file, joint=_as_changed(joint))
+    return replace(file, joint=joint if joint == file.joint else _as_changed(joint))
 
 
 def cup_controls(screen: Screen) -> list[Control]:
