@@ -147,9 +147,7 @@ def _pictures(record: Record, units: Units) -> list[dict[str, str]]:
     """Return pictures of the joint with the largest pressure, and of each mapped result over the matrix."""
     aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
     caption = f"The joint with the largest pressure.{aside}"
-    pictures = [
-        {"address": svg_address(figures.joint_figure(record, units)), "title": "section", "caption": caption}
-    ]
+    pictures = [{"address": svg_address(figures.joint_figure(record, units)), "title": "section", "caption": caption}]
     names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
     limited = {limit["name"] for limit in record["limits"]}
     for name in names:
