@@ -44,7 +44,7 @@ def test_reading_schema_and_documentation_follow_a_new_key():
     assert read_table({"groove_depth": "0.02 cm"}, GroovedFilm).groove_depth == pytest.approx(0.2)
     (key,) = [key for key in inputs_of(GroovedFilm) if "groove_depth" in key.name]
     assert (key.values, key.meaning) == ("a length, such as '16 mm'", "depth of a groove in the cup")
-    described = {"$ref": "#/$defs/Length", "description": "depth of a groove in the cup"}
+    described = {"$ref": "#/$defs/Length", "description": "depth of a groove in the cup in mm"}
     assert json_schema(GroovedFilm)["properties"]["groove_depth"] == described
     with pytest.raises(ValueError, match="groove_depth = '3 N' is not a length, such as '16 mm'"):
         read_table({"groove_depth": "3 N"}, GroovedFilm)

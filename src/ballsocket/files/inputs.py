@@ -217,11 +217,9 @@ class Input:
     @cached_property
     def help(self) -> str:
         """Help of the option: label, symbol, unit, example or choices, definition, remark, rivals and default."""
-        kinds = [custom.kind for custom in customs_in(self.type) if issubclass(custom, QuantityValue)]
-        unit = "degrees" if kinds == [Kind.ANGLE] else "".join(kind.assumed_unit for kind in kinds)
         symbol, definition = (self.quantity.symbol, self.quantity.meaning) if self.quantity else ("", "")
         name, _, condition = self.label.partition("; ")
-        start = f"{name} {symbol}".strip() + (f"{',' * (',' in name)} in {unit}" if unit else "")
+        start = f"{name} {symbol}".strip() + _unit_words(name, self.type)
         start += f", such as {self.example!r}" if self.example else ""
         if self.choices and self.key != "material":
             *first, last = map(repr, self.choices)
@@ -237,6 +235,13 @@ class Input:
             f"Default: {'as in the file, or ' * follows}{default}" if default else "",
         )
         return " ".join(f"{sentence.rstrip('.')}." for sentence in sentences if sentence)
+
+
+def _unit_words(name: str, kind: inspect.Type) -> str:
+    """Write the unit of a bare number behind its name; empty for other values."""
+    kinds = [custom.kind for custom in customs_in(kind) if issubclass(custom, QuantityValue)]
+    unit = "degrees" if kinds == [Kind.ANGLE] else "".join(kind.assumed_unit for kind in kinds)
+    return f"{',' * (',' in name)} in {unit}" if unit else ""
 
 
 @cache
@@ -293,6 +298,9 @@ def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, 
     example, quantity = Input("", field).example, QUANTITIES.get(field.encode_name)
     if quantity is not None and described == quantity.title:
         described = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
+    elif described:
+        name, mark, condition = described.partition("; ")
+        described = f"{name}{_unit_words(name, field.type)}{mark}{condition}"
     return {
         **_type_schema(field.type, definitions),
         **({"description": described} if described else {}),
