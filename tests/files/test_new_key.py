@@ -11,9 +11,11 @@ from ballsocket.cli import options
 from ballsocket.core.kinds import Kind
 from ballsocket.core.quantities import QUANTITIES, Quantity
 from ballsocket.core.unit_systems import Units
-from ballsocket.files import inputs
-from ballsocket.files.inputs import Typical, inputs_of, json_schema
+from ballsocket.files import inputs, joint_options
+from ballsocket.files.inputs import Typical, inputs_of
 from ballsocket.files.joint_file import CupTable, JointFileTable
+from ballsocket.files.json_schema import json_schema
+from ballsocket.files.refusals import values_of
 from ballsocket.files.schema import Length, meaning
 from ballsocket.files.tables import read_table
 from ballsocket.hip.schema import FilmTable
@@ -43,7 +45,7 @@ class GroovedJoint(JointFileTable, frozen=True, kw_only=True):
 def test_reading_schema_and_documentation_follow_a_new_key():
     assert read_table({"groove_depth": "0.02 cm"}, GroovedFilm).groove_depth == pytest.approx(0.2)
     (key,) = [key for key in inputs_of(GroovedFilm) if "groove_depth" in key.name]
-    assert (key.values, key.meaning) == ("a length, such as '16 mm'", "depth of a groove in the cup")
+    assert (values_of(key), key.meaning) == ("a length, such as '16 mm'", "depth of a groove in the cup")
     described = {"$ref": "#/$defs/Length", "description": "depth of a groove in the cup in mm"}
     assert json_schema(GroovedFilm)["properties"]["groove_depth"] == described
     with pytest.raises(ValueError, match="groove_depth = '3 N' is not a length, such as '16 mm'"):
@@ -53,7 +55,7 @@ def test_reading_schema_and_documentation_follow_a_new_key():
 
 
 def test_options_of_commands_and_arguments_of_tools_follow_a_new_key_of_a_joint_file(monkeypatch):
-    monkeypatch.setattr(inputs, "JointFileTable", GroovedJoint)
+    monkeypatch.setattr(joint_options, "JointFileTable", GroovedJoint)
 
     @options.expand_groups
     def press(*, joint_options: Annotated[options.JointOptions, ("cup",)]) -> None:

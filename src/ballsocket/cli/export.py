@@ -17,8 +17,8 @@ from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
 from ..export import TARGETS, ExportJob
-from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
+from ..files.joint_options import JOINT, PARTS
 from ..files.schema import FileTable, Length, PlainNumber, Speed, Viscosity, meaning
 from ..files.tables import written_in
 from ..files.units import as_given

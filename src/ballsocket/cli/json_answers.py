@@ -165,7 +165,7 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[Step]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    from ..files.inputs import PARTS, inputs_in
+    from ..files.joint_options import PARTS, inputs_in
 
     if "point" in answer:
         point = answer["point"]
@@ -260,7 +260,7 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[Step]:
 
 def _load_options(arguments: Arguments) -> list[str]:
     """Return the options of the load; of its direction only where the next command has the same cup."""
-    from ..files.inputs import LOAD, inputs_in
+    from ..files.joint_options import LOAD, inputs_in
 
     inputs = inputs_in(LOAD if arguments[0] == "orient" else ("load",))
     return _selected_options(arguments, *(entry.option for entry in inputs))
@@ -268,7 +268,7 @@ def _load_options(arguments: Arguments) -> list[str]:
 
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     """Return the file or preset of the joint, and the options that change joint and cup."""
-    from ..files.inputs import PARTS, RIM, inputs_in
+    from ..files.joint_options import PARTS, RIM, inputs_in
 
     inputs = inputs_in((*PARTS, *RIM) if arguments[0] == "orient" else (*PARTS, "cup"))  # its angles are ranges
     return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))

@@ -16,7 +16,7 @@ from ..core.quantities import CUP
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..files.inputs import LOAD, PARTS, RIM
+from ..files.joint_options import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_plots import orientation_figure

@@ -21,8 +21,8 @@ from ..core.kinds import NEWTON_METRES
 from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Status
 from ..design_checks import assess_strength
-from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
+from ..files.joint_options import PARTS
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
 from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model

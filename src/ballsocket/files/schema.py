@@ -6,8 +6,8 @@ A table of a file is a subclass of `FileTable`, a key of the table is a field of
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
 The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
-(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`inputs`). A key whose
-name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
+(`write_table`), describes the file as JSON schema (`json_schema`) and lists its keys for the documentation (`inputs`).
+A key whose name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
 """
 
 from __future__ import annotations
