@@ -89,7 +89,7 @@ class FigureOptions:
         if _can_write(self.view, tilted):
             from ..reports.cup_plots import save_view
 
-            save_view(tilted, self.view)
+            save_view(tilted, self.view, units)
         if JUDGE in comparison and _can_write(self.vtk, meshed):
             from ..elasticity.finite_elements.section import write_vtk as write_meshes
 
