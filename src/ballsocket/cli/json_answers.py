@@ -234,11 +234,6 @@ def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[Step]:
         yield (*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear"
 
 
-def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    if answer["file"] is not None:
-        yield ("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint"
-
-
 def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if _selected_options(arguments, "--check"):
         return
@@ -246,16 +241,9 @@ def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     yield ("evidence", "--check", folder), "computes everything again and lists the differences"
 
 
-def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    for name in _joint_name(arguments):
+def _press_first(names: Iterable[str]) -> Iterator[Step]:
+    for name in list(names)[:1]:
         yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
-
-
-def _after_list(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    for name in list(answer.get("joints", {}))[:1]:
-        yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
-    for model in answer.get("models", [])[:1]:
-        yield ("cite", model["name"]), "BibTeX"
 
 
 def _load_options(arguments: Arguments) -> list[str]:
@@ -311,11 +299,11 @@ _NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[Step]]] = Mappi
         "orient": _after_orient,
         "identify": _after_identify,
         "hip": _after_hip,
-        "planning": _after_planning,
+        "planning": lambda answer, arguments: _press_first(filter(None, [answer["file"]])),
         "evidence": _after_evidence,
-        "calibrate": _after_calibrate,
-        "models": _after_list,
-        "presets": _after_list,
+        "calibrate": lambda answer, arguments: _press_first(_joint_name(arguments)),
+        "models": lambda answer, arguments: ((("cite", model["name"]), "BibTeX") for model in answer["models"][:1]),
+        "presets": lambda answer, arguments: _press_first(answer["joints"]),
     }
 )
 """Functions that yield the next steps, by the name of the command."""

@@ -117,8 +117,10 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
     try:
         if isinstance(value, type) and issubclass(value, Model):
             value = value()
-        if callable(value) and not isinstance(value, Model | Modulus | type) and not _needs_arguments(value):
-            value = value()
+        if callable(value) and not isinstance(value, Model | Modulus | type):
+            code = getattr(value, "__code__", None)
+            if code is not None and code.co_argcount <= len(getattr(value, "__defaults__", None) or ()):
+                value = value()
         if not isinstance(value, Model | type) and (isinstance(value, Modulus) or callable(value)):
             value = RadialFoundation(modulus=value)
         if not isinstance(value, Model):
@@ -134,12 +136,6 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
     except Exception as error:
         raise ValueError(f"model {text} failed{_failure(error, path)}") from error
     return value
-
-
-def _needs_arguments(function: Any) -> bool:
-    """Return True if a function cannot be called without arguments."""
-    code = getattr(function, "__code__", None)
-    return code is None or code.co_argcount > len(getattr(function, "__defaults__", None) or ())
 
 
 def _check_description(model: Model, text: str) -> None:

@@ -177,18 +177,13 @@ def split_quantity(text: str) -> tuple[float, str]:
     fraction, number = (part.match(stripped) if len(text) <= LONGEST else None for part in (_FRACTION, _NUMBER))
     if number is None:
         raise ValueError(f"{shown(text)} does not begin with a number")
-    if fraction is not None:
-        return _fraction(fraction), stripped[fraction.end() :].strip()
-    return float(number[0]), stripped[number.end() :].strip()
-
-
-def _fraction(match: re.Match[str]) -> float:
-    """Return the number of a fraction such as "3/8", "1 1/8" or "1-1/8"; ValueError for "1 9/8"."""
-    sign, whole, top, bottom = match.groups()
+    if fraction is None:
+        return float(number[0]), stripped[number.end() :].strip()
+    sign, whole, top, bottom = fraction.groups()  # of "3/8", "1 1/8" or "1-1/8"
     if whole and int(top) >= int(bottom):
-        raise ValueError(f"{match[0]} has an improper fraction behind its whole number")
+        raise ValueError(f"{fraction[0]} has an improper fraction behind its whole number")
     value = int(whole or 0) + int(top) / int(bottom)
-    return -value if sign == "-" else value
+    return -value if sign == "-" else value, stripped[fraction.end() :].strip()
 
 
 def parse_units(text: str) -> Units:

@@ -87,22 +87,17 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
     name, content = arguments.get("file"), arguments.get("content")
     if (name is None) == (content is None):
         raise ValueError(f"either a file is needed, or content: TOML about {tool.file}, or an object with its tables")
-    if content is None:
-        path = _existing_file(name, folder)
-    else:
+    if content is not None:
         path = _stored_content(_toml(content) if isinstance(content, Mapping) else content, folder)
+    elif isinstance(name, str):
+        path = folder / _checked_operand(next(_texts("file", name)), folder)
+        if not path.is_file():
+            raise ValueError(f"{shown(name)} does not exist in the folder of this server")
+    else:
+        raise ValueError(f"file = {shown(name)} must be text")
     for key in tool.forbidden:
         if key in read_toml(path, tool.command, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")
-    return path
-
-
-def _existing_file(name: Any, folder: Path) -> Path:
-    if not isinstance(name, str):
-        raise ValueError(f"file = {shown(name)} must be text")
-    path = folder / _checked_operand(next(_texts("file", name)), folder)
-    if not path.is_file():
-        raise ValueError(f"{shown(name)} does not exist in the folder of this server")
     return path
 
 
