@@ -170,9 +170,14 @@ class Input:
         return meaning_of(self.key, self.type)
 
     @property
+    def titled(self) -> Quantity | None:
+        """Quantity of the number; None for a key with a meaning of its own."""
+        return self.quantity if self.quantity and self.meaning == QUANTITIES[self.key].title else None
+
+    @property
     def label(self) -> str:
         """Name of the input with a capital letter, and the part that it belongs to."""
-        own = self.quantity.title if self.quantity and self.meaning == QUANTITIES[self.key].title else self.meaning
+        own = self.titled.title if self.titled else self.meaning
         text = own if self.part not in ("liner", "ball", "shell") or self.part in own else f"{own} of the {self.part}"
         return f"{text[:1].upper()}{text[1:]}"
 
@@ -185,7 +190,7 @@ class Input:
     @cached_property
     def help(self) -> str:
         """Help of the option: label, symbol, unit, example or choices, definition, remark, rivals and default."""
-        symbol, definition = (self.quantity.symbol, self.quantity.meaning) if self.quantity else ("", "")
+        symbol, definition = (self.titled.symbol, self.titled.meaning) if self.titled else ("", "")
         name, _, condition = self.label.partition("; ")
         start = f"{name} {symbol}".strip() + unit_words(name, self.type)
         start += f", such as {self.example!r}" if self.example else ""
