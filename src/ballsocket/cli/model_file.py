@@ -125,7 +125,14 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
             value = RadialFoundation(modulus=value)
         if not isinstance(value, Model):
             raise ValueError(f"{text} is not a model: {shown(value)}; it must be {kinds}")
-        _check_description(value, text)
+        for attribute in ("name", "title"):
+            words = getattr(value, attribute)
+            if not isinstance(words, str) or not words.strip():
+                raise ValueError(f"{attribute} of {text} must be text, got {shown(words)}")
+        for attribute in ("sources", "validity", "domain"):
+            listed = getattr(value, attribute)
+            if not isinstance(listed, tuple):
+                raise ValueError(f"{attribute} of {text} must be a tuple, which may be empty, got {shown(listed)}")
         _check_laws(value, text)
     except OutsideDomainError:
         pass  # the model may be for other joints
@@ -136,18 +143,6 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
     except Exception as error:
         raise ValueError(f"model {text} failed{_failure(error, path)}") from error
     return value
-
-
-def _check_description(model: Model, text: str) -> None:
-    """Check name, title, sources and validity of a model."""
-    for attribute in ("name", "title"):
-        value = getattr(model, attribute)
-        if not isinstance(value, str) or not value.strip():
-            raise ValueError(f"{attribute} of {text} must be text, got {shown(value)}")
-    for attribute in ("sources", "validity", "domain"):
-        value = getattr(model, attribute)
-        if not isinstance(value, tuple):
-            raise ValueError(f"{attribute} of {text} must be a tuple, which may be empty, got {shown(value)}")
 
 
 def _check_laws(model: Model, text: str) -> None:

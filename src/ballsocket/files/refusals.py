@@ -60,24 +60,18 @@ def _step_into(location: _Location, step: re.Match[str]) -> _Location:
         kind = next(field.type for field in struct.fields if field.encode_name == key)
         qualified = issubclass(struct.cls, FileTable) and struct.cls.qualified
         return _Location(location.value[key], kind, location.key, key, qualified)
-    if step["index"] == "...":
-        return _step_into_named_entry(location)
+    if step["index"] == "...":  # a table whose keys the file chooses
+        named = next(part for part in parts_of(location.type) if isinstance(part, inspect.DictType))
+        (kind,) = parts_of(named.value_type)
+        assert isinstance(kind, inspect.StructType | inspect.CustomType)
+        for name, value in location.value.items():
+            try:
+                msgspec.convert(value, kind.cls, dec_hook=read_value)
+            except msgspec.ValidationError:
+                return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
     key = f"{location.key}[{step['index']}]"
     listed = next(part for part in parts_of(location.type) if isinstance(part, inspect.ListType))
     return replace(location, value=location.value[int(step["index"])], type=listed.item_type, key=key)
-
-
-def _step_into_named_entry(location: _Location) -> _Location:
-    """Return the location of the first refused entry of a table whose keys the file chooses."""
-    named = next(part for part in parts_of(location.type) if isinstance(part, inspect.DictType))
-    (kind,) = parts_of(named.value_type)
-    assert isinstance(kind, inspect.StructType | inspect.CustomType)
-    for name, value in location.value.items():
-        try:
-            msgspec.convert(value, kind.cls, dec_hook=read_value)
-        except msgspec.ValidationError:
-            return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
-    raise AssertionError("one of the entries is refused")
 
 
 def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, root: _Location) -> str:

@@ -203,25 +203,20 @@ def parse_units(text: str) -> Units:
     plain = text.translate(_SUPERSCRIPTS).strip().removesuffix(".")
     for words, sign in _PHRASES.items():
         plain = words.sub(sign, plain)
-    tokens = _tokens(plain)
+    found, end = [], 0
+    while end < len(plain):
+        token = _TOKEN.match(plain, end)
+        if token is None:
+            raise ValueError(f"{shown(plain)} is not a product of units")
+        found.append(token)
+        end = token.end()
+    tokens = [token for token in reversed(found) if not token["blank"]]
     units = _product(tokens) if tokens else {}
     if tokens:
         raise ValueError(f"{shown(text)} has an unexpected {tokens[-1][0]!r}")
     if any(abs(exponent) > _LARGEST_EXPONENT for exponent in units.values()):
         raise ValueError(f"an exponent of {shown(text)} is not -{_LARGEST_EXPONENT} to {_LARGEST_EXPONENT}")
     return {name: exponent for name, exponent in units.items() if exponent}
-
-
-def _tokens(text: str) -> list[re.Match[str]]:
-    """Split text into names with exponents and signs, in reverse order."""
-    tokens, end = [], 0
-    while end < len(text):
-        token = _TOKEN.match(text, end)
-        if token is None:
-            raise ValueError(f"{shown(text)} is not a product of units")
-        tokens.append(token)
-        end = token.end()
-    return [token for token in reversed(tokens) if not token["blank"]]
 
 
 def _product(tokens: list[re.Match[str]]) -> dict[str, float]:

@@ -155,7 +155,12 @@ async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallRes
         finally:
             _kill(process)
             await process.wait()
-    return _call_result(process.returncode, out, err.decode("utf-8", errors="replace"))
+    lines = err.decode("utf-8", errors="replace").splitlines()
+    messages = [line.removeprefix("ballsocket: ") for line in lines if line.startswith("ballsocket: ")]
+    refusal = "; ".join(messages) or "its process died; it may have had too little memory"
+    if len(out) > MAX_ANSWER:
+        return CallResult(None, f"the answer has {len(out)} bytes; allowed are {MAX_ANSWER}: request fewer points")
+    return CallResult(json.loads(out) if out.strip() else None, "" if process.returncode == 0 else refusal)
 
 
 _RESUME = "; the finished parts of an evidence pack are stored: call the tool again to resume"
@@ -178,14 +183,6 @@ def _kill(process: asyncio.subprocess.Process) -> None:
             os.killpg(process.pid, signal.SIGKILL)
         elif process.returncode is None:
             process.kill()
-
-
-def _call_result(status: int | None, out: bytes, err: str) -> CallResult:
-    messages = [line.removeprefix("ballsocket: ") for line in err.splitlines() if line.startswith("ballsocket: ")]
-    refusal = "" if status == 0 else "; ".join(messages) or "its process died; it may have had too little memory"
-    if len(out) > MAX_ANSWER:
-        return CallResult(None, f"the answer has {len(out)} bytes; allowed are {MAX_ANSWER}: request fewer points")
-    return CallResult(json.loads(out) if out.strip() else None, refusal)
 
 
 @dataclass(frozen=True)
