@@ -15,6 +15,7 @@ from ballsocket.core.storage.pieces import fingerprint
 from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.inputs import Input, inputs_of
+from ballsocket.files.refusals import values_of
 from ballsocket.mcp.tools import FILE_TABLES, file_table
 from ballsocket.model_catalogue import listed_models
 from ballsocket.paper.claims import SCALE
@@ -189,7 +190,7 @@ def _of(keys: tuple[Input, ...], head: str) -> tuple[Input, ...]:
 
 def _key_table(head: str, keys: tuple[Input, ...]) -> str:
     """Return the keys of one table with their values, defaults and meanings."""
-    rows = [(f"`{key.key}`", key.values, f"`{key.default}`" if key.default else "", key.meaning) for key in keys]
+    rows = [(f"`{key.key}`", values_of(key), f"`{key.default}`" if key.default else "", key.meaning) for key in keys]
     return f"### {f'`{head}`' if head else 'At the top'}\n\n{_table(('key', 'value', 'default', 'meaning'), rows)}"
 
 

@@ -452,7 +452,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "bars": {}, "case": {"force": 2e3}}}
         accuracy = {"largest": None, "required": 0.05, "holds": False}
         record = {"worst": worst, "limits": limits, "accurate": accuracy, "adequacy": {"text": "gaps"}, "recentred": []}
-        pack = EvidencePack(record=record, content=b"a pack")
+        pack = EvidencePack(record=record, content={units: units.value.encode() for units in Units})
         self._heard(key, RunFinished(pack))
 
     monkeypatch.setattr(Job, "ask", ask)
@@ -465,7 +465,10 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     assert "11.2 MPa" in found
     assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: exceeded")
     assert "✓ largest pressure at most 20 MPa: kept" in found
-    assert edits(page, "evidence.take", True)["file"]["name"] == "evidence.zip"
+    for units in ("imperial", "SI"):
+        edits(page, "units", units)
+        pack = edits(page, "evidence.take", True)["file"]
+        assert (pack["name"], b64decode(pack["content"]).decode()) == ("evidence.zip", units)
     assert b"largest pressure,11.2 MPa" in saved(page, "CSV")
     edits(page, "liner_young", 900)
     assert unescape(told(page, "evidence-found")) == found
@@ -481,7 +484,10 @@ def test_a_pack_is_what_the_command_writes(tmp_path):
     news, asked = [], EvidenceQuestion(matrix="force = 2000 N")
     found = gather_pack(asked, FILE, DEFAULT_USE, str(tmp_path), lambda reached: news.append(reached.share))
     assert news == sorted(news)
-    with zipfile.ZipFile(io.BytesIO(found.content)) as pack:
+    with zipfile.ZipFile(io.BytesIO(found.content[Units.IMPERIAL])) as pack:
+        assert "2000 N" not in pack.read("evidence.html").decode()
+    with zipfile.ZipFile(io.BytesIO(found.content[Units.SI])) as pack:
+        assert "2000 N" in pack.read("evidence.html").decode()
         assert pack.namelist() == ["checksums.txt", "evidence.html", "evidence.json", "question.toml"]
         pack.extractall(tmp_path / "again")
     assert read_question(tmp_path / "again" / "question.toml").axes == {"force": (2000.0,)}

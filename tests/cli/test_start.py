@@ -1,5 +1,6 @@
 """Start of the program: imports on demand, the list of commands, and the help of each."""
 
+import os
 import re
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import typer
 
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.core.threads import THREAD_VARIABLES
 from ballsocket.files.inputs import inputs_of
 from ballsocket.files.joint_file import JointFileTable
 
@@ -45,6 +47,18 @@ def test_a_command_imports_few_modules_and_no_heavy_package(words):
     assert HEAVY & loaded == set()
     assert words == ("models",) or sum(name.startswith("ballsocket") for name in loaded) <= 85
     assert words != ("--help",) or not {"numpy", "ballsocket.model_catalogue"} & loaded
+
+
+@pytest.mark.parametrize(("stated", "used"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
+def test_linear_algebra_has_one_thread_unless_the_user_states_another_number(stated, used):
+    code = (
+        "import os; from ballsocket.cli import root\n"
+        "root._run = lambda: os.environ['OPENBLAS_NUM_THREADS']\n"
+        "root.main()"
+    )
+    environment = {name: value for name, value in os.environ.items() if name not in THREAD_VARIABLES} | stated
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, encoding="utf-8")
+    assert done.stderr.strip() == used  # the text with which Python exits
 
 
 def test_the_package_is_imported_name_by_name():

@@ -9,11 +9,13 @@ from io import StringIO
 import numpy as np
 import pint
 import pytest
+from matplotlib.text import Text
 
 import ballsocket as bs
 from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.files.joint_file import JointFile
+from ballsocket.hip import Archard, MeasuredWear, fit_wear_coefficient
 from ballsocket.hip.bands_answer import describe_bands
 from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
 from ballsocket.identification import Measured
@@ -25,8 +27,17 @@ from ballsocket.planning.plan_answer import describe_plan
 from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
 from ballsocket.question import PressQuestion, answer
+from ballsocket.reports import evidence_parts, hip_plots, study_plots
+from ballsocket.reports.film_results import film_figure
+from ballsocket.reports.hip_comparison import wear_figure, wear_fit_figure
 from ballsocket.reports.hip_report import hip_report
+from ballsocket.reports.identify_results import corner_figure, fit_figure
+from ballsocket.reports.joint_drawing import joint_svg
+from ballsocket.reports.orientation_plots import orientation_figure
 from ballsocket.reports.pages import answer_lede, answer_sections
+from ballsocket.reports.press_plots import plot
+from ballsocket.reports.section_plots import section_figure
+from ballsocket.reports.style import in_units
 from ballsocket.reports.terminal import print_answer
 from ballsocket.studies.calibration import describe_calibration
 from ballsocket.studies.derivatives import local_uncertainty
@@ -43,7 +54,7 @@ from ..hip.test_uncertainty import bands
 from ..places import EXAMPLES
 
 WIDE = 2000
-METRIC = re.compile(r"\d (?:mm|mm³|µm|nm|MPa|kN|N|N m)(?![\w/(])")
+METRIC = re.compile(r"(?:\d |\[)(?:mm|mm²|mm³|µm|nm|MPa|kN|N|N m|mm³/\(N m\))(?![\w/(])")
 SYMBOLS = {"mm²": "mm**2", "mm³": "mm**3", "in²": "in**2", "in³": "in**3", "°": "deg", "µin": "microinch"}
 SYMBOLS |= {"million": "1", "": "1", "%": "1", "N m": "N*m", "lbf in": "lbf*in", "mm³/(N m)": "mm**3/(N*m)"}
 SYMBOLS |= {"mm MPa": "mm*MPa", "in psi": "in*psi", "mil": "thou"}
@@ -265,3 +276,40 @@ def test_every_door_has_the_same_numbers_and_sentences(name, units):
         folded = " ".join(" ".join(lines).split())
         assert all(" ".join(units.sentence(sentence).split()) in folded for sentence in sentences)
         assert units is Units.SI or not METRIC.search(folded), METRIC.search(folded)
+
+
+def fitted_wear():
+    rate = MeasuredWear(quantity="volume", values=38.0, rate="mean", end=2e5, uncertainty=3.8)
+    return fit_wear_coefficient(hip(wear=Archard(coefficient=1e-6), **QUICK), rate)
+
+
+PACK = {"drawn": {"joint": bs.joints["hip-28"].summary(), "arc_of_cover_deg": 180.0, "half_angle_deg": 30.0}}
+
+FIGURES = {
+    "press": lambda units: plot(dict(press(models=["exact", "hertz"])), units),
+    "joint": lambda units: joint_svg(JointFile(bs.joints["hip-28"], {}, Cup()), press()["exact"], units=units),
+    "joint of a pack": lambda units: evidence_parts.joint_drawing(PACK, units),
+    "section": lambda units: in_units(section_figure(yielding()["fem"]), units),
+    "film": lambda units: in_units(film_figure(film("wave")), units),
+    "worn bore": lambda units: in_units(hip_plots.wear_map(history()), units),
+    "wear": lambda units: in_units(wear_figure([history()]), units),
+    "fit of wear": lambda units: in_units(wear_fit_figure(fitted_wear()), units),
+    "identification": lambda units: in_units(fit_figure(identified("indentation", "area")), units),
+    "correlation": lambda units: in_units(corner_figure(identified("indentation", "area"), None), units),
+    "orientations": lambda units: orientation_figure(orientations(), units, RIM),
+    "map": lambda units: study_plots.design_map(plain_study(**SPACE), LIMITS, units=units),
+}
+"""Figures of every kind, in a system of units."""
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_figure_has_the_units_of_its_answer(name):
+    drawn = {units: FIGURES[name](units) for units in reversed(Units)}
+    texts = {
+        units: re.sub("<[^>]*>", " | ", figure.decode())  # an SVG document
+        if isinstance(figure, bytes)
+        else " | ".join(text.get_text() for text in figure.findobj(Text))
+        for units, figure in drawn.items()
+    }
+    assert METRIC.search(texts[Units.SI])
+    assert not METRIC.search(texts[Units.IMPERIAL]), METRIC.search(texts[Units.IMPERIAL])

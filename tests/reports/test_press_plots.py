@@ -4,6 +4,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from math import degrees, pi, radians, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import ballsocket as bs
 from ballsocket.core.unit_systems import Units
 from ballsocket.dynamics import Damping, Prony, Viscoelastic, simulate
 from ballsocket.elasticity.off_axis.vtk import BALL, BORE, write_vtk
+from ballsocket.reports import cup_plots
 from ballsocket.reports.cup_map import on_page, shown_maximum, shown_pressure
 from ballsocket.reports.cup_plots import cup_figure, save_view
 from ballsocket.reports.figure_files import save
@@ -244,6 +246,17 @@ def test_a_view_in_three_dimensions(contact, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["cup.png"]
     colours = imread(tmp_path / "cup.png")[..., :3].reshape(-1, 3)
     assert len(np.unique(colours.round(2), axis=0)) > 100
+
+
+def test_the_colour_bar_of_a_view_has_the_units_of_the_answer(contact, monkeypatch):
+    drawn = {}
+    monkeypatch.setattr(cup_plots, "_surface", lambda *words: {})
+    plotter = SimpleNamespace(add_mesh=lambda bore, **words: drawn.update(words, highest=bore["pressure"].max()))
+    for units, unit, factor in ((Units.SI, "[MPa]", 1.0), (Units.IMPERIAL, "[psi]", 1.0 / 0.006894757293168)):
+        cup_plots._add_bore(plotter, contact, np.eye(3), units)
+        assert unit in drawn["scalar_bar_args"]["title"]
+        assert drawn["clim"][1] == pytest.approx(factor * float(contact.max_pressure))
+        assert 0.9 * drawn["clim"][1] < drawn["highest"] <= drawn["clim"][1]
 
 
 @pytest.mark.long

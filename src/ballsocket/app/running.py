@@ -11,7 +11,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..core.executors.processes import available_cores, exit_with_parent, limit_threads
+from ..core.executors.processes import available_cores, exit_with_parent
+from ..core.threads import limit_threads
 from ..core.validity import OutsideDomainError
 
 MAX_SECONDS = 60.0  # processor time of a run in s

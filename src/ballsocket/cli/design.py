@@ -13,8 +13,8 @@ from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending, write_csv
-from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
+from ..files.joint_options import PARTS
 from ..model_catalogue import reference, with_gap
 from ..problem import Joint
 from ..reports import study_plots

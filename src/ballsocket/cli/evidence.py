@@ -151,7 +151,8 @@ def reproduce(
     is resumed by the same command.
     """
     from ..paper.plan import full_plan, quick_plan
-    from ..reports.paper_report import print_verdicts, write_report
+    from ..reports.paper_report import describe_verdicts, write_report
+    from ..reports.terminal import print_answer
 
     if not quick:
         needs("fem", "skfem", "meshio", "psutil")
@@ -163,5 +164,5 @@ def reproduce(
         results = plan.results(out / "data", lambda name: advance(description=name), engine)
         advance(advance=0, description="drawing")
         report = write_report(results, out, engine)
-    print_verdicts(results)
+    print_answer(describe_verdicts(results))
     echo_path(report)

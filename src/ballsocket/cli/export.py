@@ -17,8 +17,8 @@ from ..core.storage.atomic_files import check_ending
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
 from ..export import TARGETS, ExportJob
-from ..files.inputs import JOINT, PARTS
 from ..files.joint_file import JointFile
+from ..files.joint_options import JOINT, PARTS
 from ..files.schema import FileTable, Length, PlainNumber, Speed, Viscosity, meaning
 from ..files.tables import written_in
 from ..files.units import as_given
@@ -26,7 +26,8 @@ from ..lubrication import Lubricant
 from ..model_catalogue import OFF_AXIS, reference, with_gap
 from ..problem.cup import AXIAL_TILT, Cup
 from ..question import complete
-from ..reports.accuracy_results import print_rival, print_tilted_rival
+from ..reports.accuracy_results import describe_rival, describe_tilted_rival
+from ..reports.terminal import print_answer
 from ..studies.run import default_model
 from .elasticity_options import MeshTable, Yielding, solver_progress
 from .model_file import requested_model
@@ -274,7 +275,7 @@ def deck(
     made = deck_of(contact, steps=steps, scale=scale)
     echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
     if run:
-        print_rival(made.expected, run_ccx(out))
+        print_answer(describe_rival(made.expected, run_ccx(out)))
 
 
 def _write_tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshTable, run: bool) -> None:
@@ -294,4 +295,4 @@ def _write_tilted(file: JointFile, load: dict[str, float], tilt: float, out: Pat
     )
     echo_path(made.write(out), f": {made.ball.last_number} nodes, rigid ball")
     if run:
-        print_tilted_rival(made.expected["force_vector"], run_ccx(out)["force_vector"])
+        print_answer(describe_tilted_rival(made.expected["force_vector"], run_ccx(out)["force_vector"]))

@@ -11,8 +11,8 @@ from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..files.inputs import PARTS
 from ..files.joint_file import Direction, JointFile
+from ..files.joint_options import PARTS
 from ..files.schema import FileTable, Length, RotationRate, Viscosity, Word, meaning
 from ..files.tables import quantities_of, written_in
 from ..files.units import as_given

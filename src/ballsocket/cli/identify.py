@@ -21,10 +21,9 @@ from ..identification.file import read_identify
 from ..identification.result_answer import describe_identification
 from ..paper.cases import refit_table_3
 from ..reports import identify_results
-from ..reports.accuracy_results import print_table_3
+from ..reports.accuracy_results import describe_table_3
 from ..reports.figure_files import check_format
 from ..studies.calibration import FORCES, Form, describe_calibration
-from .json_answers import echo_json
 from .options import AsJson, UnitSystem, print_result, write_figure
 from .root import app, echo_path, fail
 
@@ -142,10 +141,12 @@ def calibrate(
         if force or thickness or form != "constant":
             raise ValueError("--force, --thickness and --form need a joint; without a joint Table 3 is fitted")
         columns = refit_table_3()
-        if as_json:
-            echo_json({"table_3": [column.summary() for column in columns]})
-        else:
-            print_table_3(columns, units)
+        print_result(
+            lambda: {"table_3": [column.summary() for column in columns]},
+            lambda: describe_table_3(columns),
+            units,
+            as_json,
+        )
         return
     form = known_name("form", form, _FORMS)
     fitted_joint = named_joint(joint).joint

@@ -165,7 +165,7 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[Step]:
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    from ..files.inputs import PARTS, inputs_in
+    from ..files.joint_options import PARTS, inputs_in
 
     if "point" in answer:
         point = answer["point"]
@@ -234,11 +234,6 @@ def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[Step]:
         yield (*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear"
 
 
-def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    if answer["file"] is not None:
-        yield ("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint"
-
-
 def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     if _selected_options(arguments, "--check"):
         return
@@ -246,21 +241,14 @@ def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[Step]:
     yield ("evidence", "--check", folder), "computes everything again and lists the differences"
 
 
-def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    for name in _joint_name(arguments):
+def _press_first(names: Iterable[str]) -> Iterator[Step]:
+    for name in list(names)[:1]:
         yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
-
-
-def _after_list(answer: Answer, arguments: Arguments) -> Iterator[Step]:
-    for name in list(answer.get("joints", {}))[:1]:
-        yield ("press", name, "--force", "3 kN", "--all"), "every model on that joint"
-    for model in answer.get("models", [])[:1]:
-        yield ("cite", model["name"]), "BibTeX"
 
 
 def _load_options(arguments: Arguments) -> list[str]:
     """Return the options of the load; of its direction only where the next command has the same cup."""
-    from ..files.inputs import LOAD, inputs_in
+    from ..files.joint_options import LOAD, inputs_in
 
     inputs = inputs_in(LOAD if arguments[0] == "orient" else ("load",))
     return _selected_options(arguments, *(entry.option for entry in inputs))
@@ -268,7 +256,7 @@ def _load_options(arguments: Arguments) -> list[str]:
 
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     """Return the file or preset of the joint, and the options that change joint and cup."""
-    from ..files.inputs import PARTS, RIM, inputs_in
+    from ..files.joint_options import PARTS, RIM, inputs_in
 
     inputs = inputs_in((*PARTS, *RIM) if arguments[0] == "orient" else (*PARTS, "cup"))  # its angles are ranges
     return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
@@ -311,11 +299,11 @@ _NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[Step]]] = Mappi
         "orient": _after_orient,
         "identify": _after_identify,
         "hip": _after_hip,
-        "planning": _after_planning,
+        "planning": lambda answer, arguments: _press_first(filter(None, [answer["file"]])),
         "evidence": _after_evidence,
-        "calibrate": _after_calibrate,
-        "models": _after_list,
-        "presets": _after_list,
+        "calibrate": lambda answer, arguments: _press_first(_joint_name(arguments)),
+        "models": lambda answer, arguments: ((("cite", model["name"]), "BibTeX") for model in answer["models"][:1]),
+        "presets": lambda answer, arguments: _press_first(answer["joints"]),
     }
 )
 """Functions that yield the next steps, by the name of the command."""

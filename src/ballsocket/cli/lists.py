@@ -18,7 +18,7 @@ from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import cite as bibtex_of
 from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Range
-from ..files.inputs import json_schema
+from ..files.json_schema import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..model_catalogue import listed_models
 from ..problem import Joint, Material
@@ -172,7 +172,14 @@ def _describe_model(model: ModelInfo) -> Answer:
 def _describe_preset(name: str) -> Answer:
     """List all numbers of a material or joint, and the wear factor of a material that has one."""
     preset: Material | Joint = materials[name] if name in materials else joints[name]
-    rows, factor = [*_titled_numbers(preset), ("source", preset.source)], _wear_factor(preset)
+    if isinstance(preset, Material):
+        numbers = (*MATERIAL, *preset.stress_limits)
+        rows = [("name", preset.name), *((QUANTITIES[key].title, _number(preset, key)) for key in numbers)]
+    else:
+        rows = [(quantity.title, _number(preset, key)) for key, quantity in JOINT.items()]
+        rows += [("liner", str(preset.liner)), ("ball", "rigid" if preset.ball is None else str(preset.ball))]
+    rows.append(("source", preset.source))
+    factor = _wear_factor(preset)
     if factor is not None:
         value, low, high = (Amount(number, _WEAR_FACTOR) for number in (factor.value, factor.low, factor.high))
         rows += [
@@ -184,14 +191,6 @@ def _describe_preset(name: str) -> Answer:
 
 
 _WEAR_FACTOR = Unit("mm³/(N m)")
-
-
-def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
-    if isinstance(preset, Material):
-        names = (*MATERIAL, *preset.stress_limits)
-        return [("name", preset.name), *((QUANTITIES[name].title, _number(preset, name)) for name in names)]
-    numbers = [(quantity.title, _number(preset, name)) for name, quantity in JOINT.items()]
-    return [*numbers, ("liner", str(preset.liner)), ("ball", "rigid" if preset.ball is None else str(preset.ball))]
 
 
 def _number(preset: Material | Joint, name: str) -> Sentence:

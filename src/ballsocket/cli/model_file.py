@@ -117,13 +117,22 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
     try:
         if isinstance(value, type) and issubclass(value, Model):
             value = value()
-        if callable(value) and not isinstance(value, Model | Modulus | type) and not _needs_arguments(value):
-            value = value()
+        if callable(value) and not isinstance(value, Model | Modulus | type):
+            code = getattr(value, "__code__", None)
+            if code is not None and code.co_argcount <= len(getattr(value, "__defaults__", None) or ()):
+                value = value()
         if not isinstance(value, Model | type) and (isinstance(value, Modulus) or callable(value)):
             value = RadialFoundation(modulus=value)
         if not isinstance(value, Model):
             raise ValueError(f"{text} is not a model: {shown(value)}; it must be {kinds}")
-        _check_description(value, text)
+        for attribute in ("name", "title"):
+            words = getattr(value, attribute)
+            if not isinstance(words, str) or not words.strip():
+                raise ValueError(f"{attribute} of {text} must be text, got {shown(words)}")
+        for attribute in ("sources", "validity", "domain"):
+            listed = getattr(value, attribute)
+            if not isinstance(listed, tuple):
+                raise ValueError(f"{attribute} of {text} must be a tuple, which may be empty, got {shown(listed)}")
         _check_laws(value, text)
     except OutsideDomainError:
         pass  # the model may be for other joints
@@ -134,24 +143,6 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
     except Exception as error:
         raise ValueError(f"model {text} failed{_failure(error, path)}") from error
     return value
-
-
-def _needs_arguments(function: Any) -> bool:
-    """Return True if a function cannot be called without arguments."""
-    code = getattr(function, "__code__", None)
-    return code is None or code.co_argcount > len(getattr(function, "__defaults__", None) or ())
-
-
-def _check_description(model: Model, text: str) -> None:
-    """Check name, title, sources and validity of a model."""
-    for attribute in ("name", "title"):
-        value = getattr(model, attribute)
-        if not isinstance(value, str) or not value.strip():
-            raise ValueError(f"{attribute} of {text} must be text, got {shown(value)}")
-    for attribute in ("sources", "validity", "domain"):
-        value = getattr(model, attribute)
-        if not isinstance(value, tuple):
-            raise ValueError(f"{attribute} of {text} must be a tuple, which may be empty, got {shown(value)}")
 
 
 def _check_laws(model: Model, text: str) -> None:

@@ -13,8 +13,9 @@ import typer
 from ..core.answers import Answer
 from ..core.quantities import LOADS
 from ..core.unit_systems import Units
-from ..files.inputs import ORIENTATION, PARTS, Input, inputs_in, inputs_of, plain_default
+from ..files.inputs import Input, inputs_of, plain_default
 from ..files.joint_file import JointFile, joint_of, named_joint, varied
+from ..files.joint_options import ORIENTATION, PARTS, inputs_in
 from ..files.schema import FileTable
 from ..files.tables import read_table
 from ..model_catalogue import listed_models

@@ -16,7 +16,7 @@ from ..core.quantities import CUP
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..files.inputs import LOAD, PARTS, RIM
+from ..files.joint_options import LOAD, PARTS, RIM
 from ..files.units import as_given, parse
 from ..model_catalogue import with_gap
 from ..reports.orientation_plots import orientation_figure
@@ -73,21 +73,14 @@ class OrientationOptions:
         with as_given({name: text}):
             for end in ends:
                 CUP[name].check(end)
-        (low, high), step = sorted(ends), self._step_degrees()
+        low, high = sorted(ends)
         if self.points == 1 and low != high:
             raise ValueError(f"--points 1 is not possible for the range {text}: give at least 2, or one angle")
-        if self.points is not None:
-            return numpy.unique(numpy.linspace(low, high, self.points))
-        return numpy.radians(_even_degrees(round(degrees(low), 9), round(degrees(high), 9), step))
-
-    def _step_degrees(self) -> float | None:
-        if self.step is None:
-            return None
-        if self.points is not None:
+        if self.points is None:
+            return numpy.radians(_even_degrees(round(degrees(low), 9), round(degrees(high), 9), self.step))
+        if self.step is not None:
             raise ValueError("--step and --points are one too many: either fixes the other")
-        step = degrees(parse("step", self.step, Kind.ANGLE))
-        require("step", step, step > 0, "a step (degrees) is above 0")
-        return step
+        return numpy.unique(numpy.linspace(low, high, self.points))
 
     def read_limits(self) -> list[Limit]:
         """Read the limits.
@@ -107,12 +100,16 @@ _USUAL_VALUES, _MAX_VALUES = 13, 91
 """Largest number of values of an angle, without a requested step and with one."""
 
 
-def _even_degrees(low: float, high: float, step: float | None) -> Numbers:
+def _even_degrees(low: float, high: float, step: str | None) -> Numbers:
     """Return the ends of a range in degrees and the multiples of a step between them.
 
-    Raises ValueError: more than 91 values.
+    Raises ValueError: a step that is not above 0, or more than 91 values.
     """
-    chosen = step or next(size for size in _ROUND_STEPS if (high - low) / size <= _USUAL_VALUES - 1)
+    if step is None:
+        chosen = next(size for size in _ROUND_STEPS if (high - low) / size <= _USUAL_VALUES - 1)
+    else:
+        chosen = degrees(parse("step", step, Kind.ANGLE))
+        require("step", chosen, chosen > 0, "a step (degrees) is above 0")
     if (high - low) / chosen > _MAX_VALUES - 1:
         raise ValueError(f"step = {chosen:g} degrees makes more than {_MAX_VALUES} values of an angle")
     multiples = chosen * numpy.arange(numpy.ceil(low / chosen), numpy.floor(high / chosen) + 1)

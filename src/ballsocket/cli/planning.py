@@ -89,7 +89,7 @@ class PlanInputs(FileTable, frozen=True, kw_only=True):
         SpaceName | None,
         meaning("coordinates of the scan that the liner's file has", default="as in the header of 3D Slicer"),
     ] = None
-    clearance: Annotated[Length | None, meaning("radial clearance, needed for --out", default="none")] = None
+    clearance: Annotated[Length | None, meaning("radial clearance; needed for --out", default="none")] = None
     liner_thickness: Annotated[Length | None, meaning("thickness of the liner", default="the measured wall")] = None
     liner_material: Annotated[Text, meaning("name of the liner material, see `ballsocket presets`")] = Text("uhmwpe")
     head_material: Annotated[Text | None, meaning("name of the head material", default="a rigid head")] = None

@@ -21,8 +21,8 @@ from ..core.kinds import NEWTON_METRES
 from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Status
 from ..design_checks import assess_strength
-from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
+from ..files.joint_options import PARTS
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
 from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
@@ -170,10 +170,14 @@ class PressedJoint:
         comparison, pulled, wear_depth = self.answer.comparison, self.answer.pulled, self.answer.wear_depth_to_loosen
         summary = comparison.summary()
         for result in summary["results"]:
-            result.update(_strength_summary(comparison.get(result["model"])))
-        for result in summary["results"] if friction.friction is not None else ():
             contact = comparison.get(result["model"])
-            result["friction"] = None if contact is None else friction.torques(contact)
+            if contact is not None:
+                ends = map(to_list, error_bar(contact, "utilisation")[1:])
+                result.update(zip(("utilisation_low", "utilisation_high"), ends, strict=True))
+                strength = assess_strength(contact)
+                result.update(strength_verdict=strength.verdict.word, strength_reason=strength.words)
+            if friction.friction is not None:
+                result["friction"] = None if contact is None else friction.torques(contact)
         verdict, reason = design_verdict(self.answer)
         further = {
             "design_verdict": {"model": self.answer.leading, "verdict": verdict.word, "reason": reason},
@@ -183,15 +187,6 @@ class PressedJoint:
             "pull_out": None if pulled is None else pulled.summary(),
         }
         return {**summary, **{key: part for key, part in further.items() if part}}
-
-
-def _strength_summary(contact: Contact | None) -> dict[str, Any]:
-    """Return the verdict on the strengths with its reason, and the bar of the utilisation; empty without a contact."""
-    if contact is None:
-        return {}
-    strength, bar = assess_strength(contact), map(to_list, error_bar(contact, "utilisation")[1:])
-    ends = dict(zip(("utilisation_low", "utilisation_high"), bar, strict=True))
-    return {**ends, "strength_verdict": strength.verdict.word, "strength_reason": strength.words}
 
 
 @app.command()

@@ -17,6 +17,7 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
 from ..question import PressAnswer
 from ..reports.figure_files import check_format, save
+from ..reports.style import in_units
 from .root import print_message
 
 if TYPE_CHECKING:
@@ -84,11 +85,11 @@ class FigureOptions:
         if _can_write(self.section, meshed):
             from ..reports.section_plots import section_figure
 
-            save(section_figure(meshed, contacts.get(reference.name)), self.section)
+            save(in_units(section_figure(meshed, contacts.get(reference.name)), units), self.section)
         if _can_write(self.view, tilted):
             from ..reports.cup_plots import save_view
 
-            save_view(tilted, self.view)
+            save_view(tilted, self.view, units)
         if JUDGE in comparison and _can_write(self.vtk, meshed):
             from ..elasticity.finite_elements.section import write_vtk as write_meshes
 

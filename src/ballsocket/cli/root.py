@@ -20,6 +20,7 @@ from typing import Annotated, Any, ClassVar, NoReturn, TextIO
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from ..core.threads import THREAD_VARIABLES
 from ..version import __version__
 
 UsageError: Any = typer.BadParameter.__base__  # typer contains a copy of click and does not export this class
@@ -197,6 +198,8 @@ def main() -> None:
     sys.stdout, sys.stderr = _tolerant(sys.stdout), _tolerant(sys.stderr)
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
+    for name in THREAD_VARIABLES:  # NumPy is not imported yet; threads cost more time than they save
+        os.environ.setdefault(name, "1")
     with _exit_on_sigterm():
         sys.exit(_run())
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple
 
@@ -123,12 +124,12 @@ class Check:
     trusted: bool = True  # the demand lies in the range of its model
     part: str = ""  # body of a stress: "liner" or "ball"
 
-    @property
+    @cached_property
     def ratio(self) -> Bounded | None:
         """Ratio of demand to capacity; None without a capacity."""
         return None if self.capacity is None else self.demand.scaled(1 / self.capacity)
 
-    @property
+    @cached_property
     def verdict(self) -> Verdict:
         """Verdict on the demand; undecided without a capacity, or for a kept one outside the range of its model."""
         if self.capacity is None:

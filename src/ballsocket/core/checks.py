@@ -30,7 +30,7 @@ def require(name: str, value: Array, valid: Array, allowed: str) -> None:
 
     Traced values (inside `jax.jit`) are not checked.
     """
-    if all_true(valid) is not False:
+    if valid is True or all_true(valid) is not False:
         return
     raise ValueError(f"{name}{_format_invalid_element(value, valid)} is not allowed: {allowed}")
 

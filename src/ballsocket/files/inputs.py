@@ -6,8 +6,7 @@ and `_REMARKS` a remark to its help.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache, cached_property
@@ -20,9 +19,7 @@ from msgspec import inspect
 from ..core.kinds import Kind
 from ..core.quantities import LOADS, QUANTITIES, Quantity
 from ..problem.dimensions import LENGTHS, canonical
-from .joint_file import JointFileTable
-from .refusals import choices_in, customs_in, expected, meaning_of, parts_of, tables_of
-from .schema import FileTable, QuantityValue, Value, choices_schema
+from .schema import FileTable, QuantityValue, Text, Value
 
 
 class Typical(NamedTuple):
@@ -38,21 +35,6 @@ class Typical(NamedTuple):
     reason: str = ""  # of the bounds
     sizes: tuple[float, ...] = ()  # of manufacturers
 
-
-PARTS = ("joint", "liner", "ball", "shell")  # tables of lengths and materials in a joint file
-
-ORIENTATION = tuple(f"cup.{key}" for key in ("inclination", "anteversion", "side", "orientation", "pelvic_tilt"))
-"""Keys of a joint file for the orientation of the cup in the body."""
-
-JOINT = (*PARTS, *ORIENTATION)
-RIM = ("cup.arc_of_cover", "cup.chamfer", "cup.interface")
-LOAD = tuple(f"load.{name}" for name in LOADS)
-
-_ONLY_IN_FILES = re.compile(
-    r"(ball_|shell_)?(proportional_limit|yield_stress|fatigue_limit|allowable_pressure)|"
-    r"shell_(young|poisson)"
-)
-"""Names of inputs that are no options."""
 
 # fmt: off
 _TYPICAL: Mapping[str, Typical] = MappingProxyType({
@@ -188,9 +170,14 @@ class Input:
         return meaning_of(self.key, self.type)
 
     @property
+    def titled(self) -> Quantity | None:
+        """Quantity of the number; None for a key with a meaning of its own."""
+        return self.quantity if self.quantity and self.meaning == QUANTITIES[self.key].title else None
+
+    @property
     def label(self) -> str:
         """Name of the input with a capital letter, and the part that it belongs to."""
-        own = self.quantity.title if self.quantity and self.meaning == QUANTITIES[self.key].title else self.meaning
+        own = self.titled.title if self.titled else self.meaning
         text = own if self.part not in ("liner", "ball", "shell") or self.part in own else f"{own} of the {self.part}"
         return f"{text[:1].upper()}{text[1:]}"
 
@@ -200,28 +187,12 @@ class Input:
         groups = [group for group in _RIVALS if self.part and self.key in group]
         return [rival for group in groups for rival in group if rival != self.key]
 
-    @property
-    def values(self) -> str:
-        """Accepted values."""
-        if self.choices:
-            return ", ".join(self.choices)
-        customs = customs_in(self.type)
-        if not customs:
-            return expected(self.key, self.type)
-        if issubclass(customs[0], QuantityValue):
-            noun, _, usual = customs[0].kind.example.partition(", such as ")
-            return f"{noun}, such as {repr(self.example) if self.example else usual}"
-        text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
-        return text[:1].lower() + text[1:]
-
     @cached_property
     def help(self) -> str:
         """Help of the option: label, symbol, unit, example or choices, definition, remark, rivals and default."""
-        kinds = [custom.kind for custom in customs_in(self.type) if issubclass(custom, QuantityValue)]
-        unit = "degrees" if kinds == [Kind.ANGLE] else "".join(kind.assumed_unit for kind in kinds)
-        symbol, definition = (self.quantity.symbol, self.quantity.meaning) if self.quantity else ("", "")
+        symbol, definition = (self.titled.symbol, self.titled.meaning) if self.titled else ("", "")
         name, _, condition = self.label.partition("; ")
-        start = f"{name} {symbol}".strip() + (f"{',' * (',' in name)} in {unit}" if unit else "")
+        start = f"{name} {symbol}".strip() + unit_words(name, self.type)
         start += f", such as {self.example!r}" if self.example else ""
         if self.choices and self.key != "material":
             *first, last = map(repr, self.choices)
@@ -237,6 +208,13 @@ class Input:
             f"Default: {'as in the file, or ' * follows}{default}" if default else "",
         )
         return " ".join(f"{sentence.rstrip('.')}." for sentence in sentences if sentence)
+
+
+def unit_words(name: str, kind: inspect.Type) -> str:
+    """Write the unit of a bare number behind its name; empty for other values."""
+    kinds = [custom.kind for custom in customs_in(kind) if issubclass(custom, QuantityValue)]
+    unit = "degrees" if kinds == [Kind.ANGLE] else "".join(kind.assumed_unit for kind in kinds)
+    return f"{',' * (',' in name)} in {unit}" if unit else ""
 
 
 @cache
@@ -262,66 +240,53 @@ def plain_default(field: inspect.Field) -> Any:
     return None if plain is None else plain(value)
 
 
-def inputs_in(parts: Sequence[str]) -> list[Input]:
-    """List the options for some parts of a joint file: tables such as "joint", and keys such as "cup.side"."""
-    inputs = [entry for entry in inputs_of(JointFileTable) if not _ONLY_IN_FILES.fullmatch(entry.name)]
-    return [entry for entry in inputs if {entry.part, f"{entry.part}.{entry.key}"} & {*parts}]
+def parts_of(kind: inspect.Type) -> Iterator[inspect.Type]:
+    """List the members of a union without their annotations, or the type itself."""
+    if isinstance(kind, inspect.Metadata):
+        yield from parts_of(kind.type)
+    elif isinstance(kind, inspect.UnionType):
+        for member in kind.types:
+            yield from parts_of(member)
+    else:
+        yield kind
 
 
-def json_schema(table: type[FileTable]) -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs."""
-    definitions: dict[str, Any] = {}
-    root = inspect.type_info(table)
-    assert isinstance(root, inspect.StructType)
-    schema = _object_schema(root, definitions)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "$defs": definitions}
+def struct_in(kind: inspect.Type) -> inspect.StructType | None:
+    """Return the table among the types of a value; None without one."""
+    return next((part for part in parts_of(kind) if isinstance(part, inspect.StructType)), None)
 
 
-def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a table; `definitions` gets those of the tables in it."""
-    return {
-        "title": (struct.cls.__doc__ or "").split("\n")[0].rstrip("."),
-        "type": "object",
-        "properties": {field.encode_name: _key_schema(field, definitions) for field in struct.fields},
-        "required": [field.encode_name for field in struct.fields if field.required],
-        "additionalProperties": False,
-    }
+def customs_in(kind: inspect.Type) -> list[type[Value]]:
+    """List the types of values of this package among the types of a value."""
+    return [part.cls for part in parts_of(kind) if isinstance(part, inspect.CustomType)]
 
 
-def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, Any]:
-    described, default = meaning_of(field.encode_name, field.type), plain_default(field)
-    example, quantity = Input("", field).example, QUANTITIES.get(field.encode_name)
-    if quantity is not None and described == quantity.title:
-        described = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
-    return {
-        **_type_schema(field.type, definitions),
-        **({"description": described} if described else {}),
-        **({} if default is None else {"default": default}),
-        **({"examples": [example]} if example else {}),
-    }
+def choices_in(kind: inspect.Type) -> list[str]:
+    """List the words that a key allows; empty for other keys."""
+    for part in parts_of(kind):
+        if isinstance(part, inspect.EnumType):
+            return [item.value for item in part.cls]
+    return [word for custom in customs_in(kind) if issubclass(custom, Text) for word in custom.choices]
 
 
-def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a type of values; None is left out, because TOML does not have it."""
-    parts = [part for part in parts_of(kind) if not isinstance(part, inspect.NoneType)]
-    schemas = [_part_schema(part, definitions) for part in parts]
-    return schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
+def tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
+    """List the tables of a file with their heads: "[liner]", "[[backing]]", "[machine.NAME]", "[free.liner]"."""
+    struct = struct_in(kind)
+    for field in struct.fields if struct else ():
+        for part in parts_of(field.type):
+            head, inner = field.encode_name, None
+            if isinstance(part, inspect.StructType):
+                inner = part
+            elif isinstance(part, inspect.DictType):
+                head, inner = f"{head}.NAME", struct_in(part.value_type)
+            elif isinstance(part, inspect.ListType):
+                head, inner = f"[{head}]", struct_in(part.item_type)
+            if inner is not None:
+                yield f"[{head}]", inner
+                yield from ((f"[{head}.{name.strip('[]')}]", table) for name, table in tables_of(inner))
 
 
-def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
-    if isinstance(part, inspect.CustomType):
-        value: type[Value] = part.cls
-        definitions[value.__name__] = value.json_schema()
-        return {"$ref": f"#/$defs/{value.__name__}"}
-    if isinstance(part, inspect.EnumType):
-        return choices_schema(choices_in(part))
-    if isinstance(part, inspect.ListType):
-        return {"type": "array", "items": _type_schema(part.item_type, definitions)}
-    if isinstance(part, inspect.DictType):
-        return {"type": "object", "additionalProperties": _type_schema(part.value_type, definitions)}
-    if isinstance(part, inspect.StructType):
-        name = part.cls.__name__
-        if name not in definitions:
-            definitions[name] = _object_schema(part, definitions)
-        return {"$ref": f"#/$defs/{name}"}
-    return {"type": {inspect.BoolType: "boolean", inspect.StrType: "string"}[type(part)]}
+def meaning_of(key: str, kind: inspect.Type) -> str:
+    """Return the meaning of a key: its own, or that of the quantity of this name."""
+    text = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
+    return str(text or (QUANTITIES[key].title if key in QUANTITIES else ""))

@@ -143,7 +143,9 @@ class LoadTable(FileTable, frozen=True, kw_only=True):
     indentation: Length | None = None
     half_angle: Angle | None = None
     tilt: Annotated[Angle | None, meaning(default="0 deg")] = None
-    direction: Annotated[Direction | None, meaning("direction of the load: to the right, to the front, upwards")] = None
+    direction: Annotated[
+        Direction | None, meaning("direction of the load: to the right, to the front, upwards", default="upwards")
+    ] = None
 
 
 class JointTables(FileTable, frozen=True, kw_only=True):

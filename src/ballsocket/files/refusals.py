@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
@@ -12,8 +12,8 @@ import msgspec
 from msgspec import inspect
 
 from ..core.checks import nearest, shown
-from ..core.quantities import QUANTITIES
-from .schema import KEY, FileTable, Text, Value, read_value
+from .inputs import Input, choices_in, customs_in, meaning_of, parts_of, struct_in, tables_of
+from .schema import KEY, FileTable, QuantityValue, read_value
 
 _PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
 _STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
@@ -60,76 +60,18 @@ def _step_into(location: _Location, step: re.Match[str]) -> _Location:
         kind = next(field.type for field in struct.fields if field.encode_name == key)
         qualified = issubclass(struct.cls, FileTable) and struct.cls.qualified
         return _Location(location.value[key], kind, location.key, key, qualified)
-    if step["index"] == "...":
-        return _step_into_named_entry(location)
+    if step["index"] == "...":  # a table whose keys the file chooses
+        named = next(part for part in parts_of(location.type) if isinstance(part, inspect.DictType))
+        (kind,) = parts_of(named.value_type)
+        assert isinstance(kind, inspect.StructType | inspect.CustomType)
+        for name, value in location.value.items():
+            try:
+                msgspec.convert(value, kind.cls, dec_hook=read_value)
+            except msgspec.ValidationError:
+                return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
     key = f"{location.key}[{step['index']}]"
     listed = next(part for part in parts_of(location.type) if isinstance(part, inspect.ListType))
     return replace(location, value=location.value[int(step["index"])], type=listed.item_type, key=key)
-
-
-def _step_into_named_entry(location: _Location) -> _Location:
-    """Return the location of the first refused entry of a table whose keys the file chooses."""
-    named = next(part for part in parts_of(location.type) if isinstance(part, inspect.DictType))
-    (kind,) = parts_of(named.value_type)
-    assert isinstance(kind, inspect.StructType | inspect.CustomType)
-    for name, value in location.value.items():
-        try:
-            msgspec.convert(value, kind.cls, dec_hook=read_value)
-        except msgspec.ValidationError:
-            return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
-    raise AssertionError("one of the entries is refused")
-
-
-def parts_of(kind: inspect.Type) -> Iterator[inspect.Type]:
-    """List the members of a union without their annotations, or the type itself."""
-    if isinstance(kind, inspect.Metadata):
-        yield from parts_of(kind.type)
-    elif isinstance(kind, inspect.UnionType):
-        for member in kind.types:
-            yield from parts_of(member)
-    else:
-        yield kind
-
-
-def struct_in(kind: inspect.Type) -> inspect.StructType | None:
-    """Return the table among the types of a value; None without one."""
-    return next((part for part in parts_of(kind) if isinstance(part, inspect.StructType)), None)
-
-
-def customs_in(kind: inspect.Type) -> list[type[Value]]:
-    """List the types of values of this package among the types of a value."""
-    return [part.cls for part in parts_of(kind) if isinstance(part, inspect.CustomType)]
-
-
-def choices_in(kind: inspect.Type) -> list[str]:
-    """List the words that a key allows; empty for other keys."""
-    for part in parts_of(kind):
-        if isinstance(part, inspect.EnumType):
-            return [item.value for item in part.cls]
-    return [word for custom in customs_in(kind) if issubclass(custom, Text) for word in custom.choices]
-
-
-def tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
-    """List the tables of a file with their heads: "[liner]", "[[backing]]", "[machine.NAME]", "[free.liner]"."""
-    struct = struct_in(kind)
-    for field in struct.fields if struct else ():
-        for part in parts_of(field.type):
-            head, inner = field.encode_name, None
-            if isinstance(part, inspect.StructType):
-                inner = part
-            elif isinstance(part, inspect.DictType):
-                head, inner = f"{head}.NAME", struct_in(part.value_type)
-            elif isinstance(part, inspect.ListType):
-                head, inner = f"[{head}]", struct_in(part.item_type)
-            if inner is not None:
-                yield f"[{head}]", inner
-                yield from ((f"[{head}.{name.strip('[]')}]", table) for name, table in tables_of(inner))
-
-
-def meaning_of(key: str, kind: inspect.Type) -> str:
-    """Return the meaning of a key: its own, or that of the quantity of this name."""
-    text = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
-    return str(text or (QUANTITIES[key].title if key in QUANTITIES else ""))
 
 
 def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, root: _Location) -> str:
@@ -192,9 +134,18 @@ def _expected(location: _Location) -> str:
     return " or ".join(texts) or "another kind of value"
 
 
-def expected(key: str, kind: inspect.Type) -> str:
-    """Describe what the value of a key must be."""
-    return _expected(_Location(None, kind, key=key))
+def values_of(entry: Input) -> str:
+    """Describe the accepted values of a key, for the documentation."""
+    if entry.choices:
+        return ", ".join(entry.choices)
+    customs = customs_in(entry.type)
+    if not customs:
+        return _expected(_Location(None, entry.type, key=entry.key))
+    if issubclass(customs[0], QuantityValue):
+        noun, _, usual = customs[0].kind.example.partition(", such as ")
+        return f"{noun}, such as {repr(entry.example) if entry.example else usual}"
+    text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
+    return text[:1].lower() + text[1:]
 
 
 def _array(location: _Location, kind: inspect.ListType) -> str:

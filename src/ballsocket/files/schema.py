@@ -6,8 +6,8 @@ A table of a file is a subclass of `FileTable`, a key of the table is a field of
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
 The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
-(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`inputs`). A key whose
-name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
+(`write_table`), describes the file as JSON schema (`json_schema`) and lists its keys for the documentation (`inputs`).
+A key whose name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
 """
 
 from __future__ import annotations
@@ -191,16 +191,12 @@ class QuantityValue(Value, float):
 
     def write(self, with_unit: bool) -> float | str:
         """Return the number as a file has it: bare in mm, N, MPa and degrees, or as a text with its unit."""
-        number, unit = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self), self.kind.assumed_unit
+        number, unit = float(self), self.kind.assumed_unit
+        if self.kind is Kind.ANGLE:  # the degrees that are read as exactly this angle, a round number if there is one
+            nearest = degrees(self)
+            candidates = (round(nearest, 9), nearest, nextafter(nearest, inf), nextafter(nearest, -inf))
+            number = next((angle for angle in candidates if radians(angle) == self), nearest)
         return f"{number!r} {unit}" if with_unit and unit and not isinf(number) else number
-
-
-def _in_degrees(angle: float) -> float:
-    """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
-    nearest = degrees(angle)
-    above, below = nextafter(nearest, inf), nextafter(nearest, -inf)
-    candidates = (round(nearest, 9), nearest, above, below)
-    return next((number for number in candidates if radians(number) == angle), nearest)
 
 
 class PlainNumber(QuantityValue):

@@ -177,18 +177,13 @@ def split_quantity(text: str) -> tuple[float, str]:
     fraction, number = (part.match(stripped) if len(text) <= LONGEST else None for part in (_FRACTION, _NUMBER))
     if number is None:
         raise ValueError(f"{shown(text)} does not begin with a number")
-    if fraction is not None:
-        return _fraction(fraction), stripped[fraction.end() :].strip()
-    return float(number[0]), stripped[number.end() :].strip()
-
-
-def _fraction(match: re.Match[str]) -> float:
-    """Return the number of a fraction such as "3/8", "1 1/8" or "1-1/8"; ValueError for "1 9/8"."""
-    sign, whole, top, bottom = match.groups()
+    if fraction is None:
+        return float(number[0]), stripped[number.end() :].strip()
+    sign, whole, top, bottom = fraction.groups()  # of "3/8", "1 1/8" or "1-1/8"
     if whole and int(top) >= int(bottom):
-        raise ValueError(f"{match[0]} has an improper fraction behind its whole number")
+        raise ValueError(f"{fraction[0]} has an improper fraction behind its whole number")
     value = int(whole or 0) + int(top) / int(bottom)
-    return -value if sign == "-" else value
+    return -value if sign == "-" else value, stripped[fraction.end() :].strip()
 
 
 def parse_units(text: str) -> Units:
@@ -208,25 +203,20 @@ def parse_units(text: str) -> Units:
     plain = text.translate(_SUPERSCRIPTS).strip().removesuffix(".")
     for words, sign in _PHRASES.items():
         plain = words.sub(sign, plain)
-    tokens = _tokens(plain)
+    found, end = [], 0
+    while end < len(plain):
+        token = _TOKEN.match(plain, end)
+        if token is None:
+            raise ValueError(f"{shown(plain)} is not a product of units")
+        found.append(token)
+        end = token.end()
+    tokens = [token for token in reversed(found) if not token["blank"]]
     units = _product(tokens) if tokens else {}
     if tokens:
         raise ValueError(f"{shown(text)} has an unexpected {tokens[-1][0]!r}")
     if any(abs(exponent) > _LARGEST_EXPONENT for exponent in units.values()):
         raise ValueError(f"an exponent of {shown(text)} is not -{_LARGEST_EXPONENT} to {_LARGEST_EXPONENT}")
     return {name: exponent for name, exponent in units.items() if exponent}
-
-
-def _tokens(text: str) -> list[re.Match[str]]:
-    """Split text into names with exponents and signs, in reverse order."""
-    tokens, end = [], 0
-    while end < len(text):
-        token = _TOKEN.match(text, end)
-        if token is None:
-            raise ValueError(f"{shown(text)} is not a product of units")
-        tokens.append(token)
-        end = token.end()
-    return [token for token in reversed(tokens) if not token["blank"]]
 
 
 def _product(tokens: list[re.Match[str]]) -> dict[str, float]:

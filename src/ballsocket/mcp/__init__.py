@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import mcp_types as types
     from mcp.server.lowlevel import Server
 
-    from .call import CallResult
     from .tools import Commands
 
 INSTRUCTIONS = (
@@ -34,15 +33,27 @@ def make_server(folder: Path, longest: float, commands: Commands, program: Seque
     from mcp.server.lowlevel import Server
 
     from .call import ToolCalls
-    from .tools import TOOLS
+    from .tools import TOOLS, schema
 
     calls = ToolCalls(folder, longest, commands, program)
 
     async def list_tools(context: Any, request: Any) -> types.ListToolsResult:
-        return types.ListToolsResult(tools=[_tool(name, commands) for name in TOOLS])
+        tools = []
+        for name, tool in TOOLS.items():
+            hints = types.ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
+            described = {"description": tool.description, "input_schema": schema(tool, commands)}
+            tools.append(types.Tool(name=name, **described, annotations=hints))
+        return types.ListToolsResult(tools=tools)
 
     async def call_tool(context: Any, request: types.CallToolRequestParams) -> types.CallToolResult:
-        return _tool_result(await calls.call(request.name, request.arguments or {}))
+        result = await calls.call(request.name, request.arguments or {})
+        texts = [result.refusal] if result.refusal else []
+        texts += [json.dumps(result.answer, ensure_ascii=False)] if result.answer is not None else []
+        return types.CallToolResult(
+            content=[types.TextContent(type="text", text=text) for text in texts],
+            structured_content=result.answer,
+            is_error=bool(result.refusal),
+        )
 
     return Server(
         "ballsocket", version=__version__, instructions=INSTRUCTIONS, on_list_tools=list_tools, on_call_tool=call_tool
@@ -56,25 +67,3 @@ async def serve(folder: Path, longest: float, commands: Commands, program: Seque
     tool_server = make_server(folder, longest, commands, program)
     async with stdio_server() as (requests, answers):
         await tool_server.run(requests, answers, tool_server.create_initialization_options())
-
-
-def _tool(name: str, commands: Commands) -> types.Tool:
-    import mcp_types as types
-
-    from .tools import TOOLS, schema
-
-    tool = TOOLS[name]
-    hints = types.ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
-    return types.Tool(name=name, description=tool.description, input_schema=schema(tool, commands), annotations=hints)
-
-
-def _tool_result(result: CallResult) -> types.CallToolResult:
-    import mcp_types as types
-
-    texts = [result.refusal] if result.refusal else []
-    texts += [json.dumps(result.answer, ensure_ascii=False)] if result.answer is not None else []
-    return types.CallToolResult(
-        content=[types.TextContent(type="text", text=text) for text in texts],
-        structured_content=result.answer,
-        is_error=bool(result.refusal),
-    )

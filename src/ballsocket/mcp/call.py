@@ -87,22 +87,17 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
     name, content = arguments.get("file"), arguments.get("content")
     if (name is None) == (content is None):
         raise ValueError(f"either a file is needed, or content: TOML about {tool.file}, or an object with its tables")
-    if content is None:
-        path = _existing_file(name, folder)
-    else:
+    if content is not None:
         path = _stored_content(_toml(content) if isinstance(content, Mapping) else content, folder)
+    elif isinstance(name, str):
+        path = folder / _checked_operand(next(_texts("file", name)), folder)
+        if not path.is_file():
+            raise ValueError(f"{shown(name)} does not exist in the folder of this server")
+    else:
+        raise ValueError(f"file = {shown(name)} must be text")
     for key in tool.forbidden:
         if key in read_toml(path, tool.command, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")
-    return path
-
-
-def _existing_file(name: Any, folder: Path) -> Path:
-    if not isinstance(name, str):
-        raise ValueError(f"file = {shown(name)} must be text")
-    path = folder / _checked_operand(next(_texts("file", name)), folder)
-    if not path.is_file():
-        raise ValueError(f"{shown(name)} does not exist in the folder of this server")
     return path
 
 
@@ -160,7 +155,12 @@ async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallRes
         finally:
             _kill(process)
             await process.wait()
-    return _call_result(process.returncode, out, err.decode("utf-8", errors="replace"))
+    lines = err.decode("utf-8", errors="replace").splitlines()
+    messages = [line.removeprefix("ballsocket: ") for line in lines if line.startswith("ballsocket: ")]
+    refusal = "; ".join(messages) or "its process died; it may have had too little memory"
+    if len(out) > MAX_ANSWER:
+        return CallResult(None, f"the answer has {len(out)} bytes; allowed are {MAX_ANSWER}: request fewer points")
+    return CallResult(json.loads(out) if out.strip() else None, "" if process.returncode == 0 else refusal)
 
 
 _RESUME = "; the finished parts of an evidence pack are stored: call the tool again to resume"
@@ -183,14 +183,6 @@ def _kill(process: asyncio.subprocess.Process) -> None:
             os.killpg(process.pid, signal.SIGKILL)
         elif process.returncode is None:
             process.kill()
-
-
-def _call_result(status: int | None, out: bytes, err: str) -> CallResult:
-    messages = [line.removeprefix("ballsocket: ") for line in err.splitlines() if line.startswith("ballsocket: ")]
-    refusal = "" if status == 0 else "; ".join(messages) or "its process died; it may have had too little memory"
-    if len(out) > MAX_ANSWER:
-        return CallResult(None, f"the answer has {len(out)} bytes; allowed are {MAX_ANSWER}: request fewer points")
-    return CallResult(json.loads(out) if out.strip() else None, refusal)
 
 
 @dataclass(frozen=True)

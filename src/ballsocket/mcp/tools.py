@@ -12,7 +12,7 @@ from types import MappingProxyType, NoneType, UnionType
 from typing import Any, get_args, get_origin
 
 from ..core.checks import known_name
-from ..files.inputs import json_schema
+from ..files.json_schema import json_schema
 from ..files.schema import FileTable
 from ..model_catalogue import OFF_AXIS
 

@@ -1,4 +1,4 @@
-"""Accuracy of models beside their references: text, heat map, and tables in a terminal."""
+"""Accuracy of models beside their references: text, heat map, and descriptions."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from rich.text import Text
 
-from ..core.kinds import MILLIMETRES, Unit
+from ..core.answers import Answer, Column, Row, Table
+from ..core.kinds import MILLIMETRES, NEWTONS, Unit
 from ..core.quantities import CONTACT, QUANTITIES
-from ..core.unit_systems import Amount, Sentence, Units
+from ..core.unit_systems import Amount, Sentence
 from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
 from .style import single_axes
-from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,10 +24,10 @@ _LOADS = {"indentation": "force", "max_pressure": "force", "half_angle": "force"
 HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _LOADS.items()}
 """Heads of the columns by quantity."""
 
-Row = Mapping[str, Any]
+Record = Mapping[str, Any]
 
 
-def markdown(rows: Iterable[Row]) -> str:
+def markdown(rows: Iterable[Record]) -> str:
     """Write a Markdown table: median, 95th percentile and worst error in percent, and the joint of the worst error."""
     lines = [
         f"| model | {' | '.join(HEADS.values())} | worst joint |",
@@ -40,7 +39,7 @@ def markdown(rows: Iterable[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def spread(error: Row) -> str:
+def spread(error: Record) -> str:
     """Write median, 95th percentile and worst error in percent; one number if they are equal."""
     errors = [percent(error[name]) for name in ("median", "percentile_95", "worst")]
     return errors[0] if len(set(errors)) == 1 else " / ".join(errors)
@@ -54,13 +53,13 @@ def percent(share: float) -> str:
     return f"{value:.0f}" if value >= 100 else f"{value:.2g}"
 
 
-def worst_joint(row: Row) -> str:
+def worst_joint(row: Record) -> str:
     """Describe the joint of the largest error of a model, after the symbol of its quantity."""
     name = max(HEADS, key=lambda quantity: float(row["errors"][quantity]["worst"]))
     return f"{CONTACT[name].symbol}: {place(row['errors'][name])}"
 
 
-def place(error: Row) -> str:
+def place(error: Record) -> str:
     """Describe the joint and the load of a worst error."""
     at = _numbers(error)
     digits = {"ball_radius": 3, "clearance": 2, "liner_thickness": 3, "poisson": 2}
@@ -68,7 +67,7 @@ def place(error: Row) -> str:
     return f"{joint}, {at['force']:g} {CONTACT['force'].unit}"
 
 
-def table(rows: Iterable[Row]) -> Iterator[Sequence[Any]]:
+def table(rows: Iterable[Record]) -> Iterator[Sequence[Any]]:
     """Yield heads, and a row for each model and quantity; errors as shares, lengths in mm, forces in N."""
     yield (*_COLUMNS, "ball_radius", "clearance", "liner_thickness", "poisson", "force")
     for row in rows:
@@ -80,7 +79,7 @@ def table(rows: Iterable[Row]) -> Iterator[Sequence[Any]]:
 _COLUMNS = ("model", "quantity", "median", "percentile_95", "worst", "answered", "valid")
 
 
-def _numbers(error: Row) -> dict[str, float]:
+def _numbers(error: Record) -> dict[str, float]:
     """Return the lengths (mm), Poisson's ratio and force (N) of a worst error by name."""
     at = error["worst_at"]
     lengths = {name: at["joint"][name] for name in ("ball_radius", "clearance", "liner_thickness")}
@@ -115,56 +114,62 @@ _HEAT_ENDS = (0.1, 300.0)  # %
 _DARK = 0.72  # of the colours
 
 
-_KILONEWTONS, _GIGAPASCALS = Unit("kN", 1e-3), Unit("GPa", 1e-3)
+_KILONEWTONS, _GIGAPASCALS, _PERCENT = Unit("kN", 1e-3), Unit("GPa", 1e-3), Unit("%", 100.0)
 
 
-def print_table_3(columns: Sequence[TableColumn], units: Units = Units.SI) -> None:
-    """Print Table 3 of the paper beside the same fit to the exact solution."""
-    terminal = Terminal(units)
-    table = text_table(["", *(f"ν {column.poisson:g}" for column in columns)], left=("",))
+def describe_table_3(columns: Sequence[TableColumn]) -> Answer:
+    """Describe Table 3 of the paper beside the same fit to the exact solution."""
+    rows: list[list[str]] = []
     for i, name in enumerate(("C1", "C2", "C3")):
-        table.add_row(f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns))
-        table.add_row(f"{name}, exact", *(f"{column.ours[i]:.2f}" for column in columns))
+        rows.append([f"{name}, paper", *(f"{column.paper[i]:.2f}" for column in columns)])
+        rows.append([f"{name}, exact", *(f"{column.ours[i]:.2f}" for column in columns)])
     thick = RATIOS < 4.5
     for head, part in ((f"paper's K, R2/L to {RATIOS[thick][-1]:g}", thick), (f"to {RATIOS[-1]:g}", RATIOS > 0)):
         worst = (max(column.difference[part], key=abs) for column in columns)
-        table.add_row(f"{head}: off by", *(f"{100 * share:+.1f} %" for share in worst))
+        rows.append([f"{head}: off by", *(f"{100 * share:+.1f} %" for share in worst)])
     residuals = (float(numpy.max(abs(column.calibration.residual))) for column in columns)
-    table.add_row("our fit: largest residual", *(f"{100 * share:.1f} %" for share in residuals))
+    rows.append(["our fit: largest residual", *(f"{100 * share:.1f} %" for share in residuals)])
     loads = [Amount(float(force), _KILONEWTONS) for force in columns[0].calibration.force]
-    spread = units.sentence(Sentence("K over {} to {}: spread", loads[0], loads[-1]))
-    table.add_row(spread, *(f"{100 * column.calibration.spread:.1f} %" for column in columns))
+    spread = Sentence("K over {} to {}: spread", loads[0], loads[-1])
+    rows.append([spread, *(f"{100 * column.calibration.spread:.1f} %" for column in columns)])
     for name in ("indentation", "max_pressure", "half_angle", "force"):
         errors = (100 * column.calibration.error[name] for column in columns)
-        table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
-    terminal.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
-    print_columns(terminal, table)
+        rows.append([f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors)])
+    heads = [Column.of_words("fit", " "), *(Column.of_number(f"ν {column.poisson:g}") for column in columns)]
     dimensions = Amount(24.0, MILLIMETRES), Amount(0.1, MILLIMETRES), Amount(1e3, _GIGAPASCALS)
     text = f"{len(RATIOS)} joints, outer radius {{}}, c {{}}, steel head on {{}}; mean of p0/d at {{}}, {{}}, {{}}."
-    print_folded(terminal, Sentence(text, *dimensions, *loads), "dim")
+    return Answer(
+        title="Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²",
+        tables=[Table("table_3", "Table 3", heads, list(map(Row, rows)))],
+        notes=[Sentence(text, *dimensions, *loads)],
+    )
 
 
-def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
-    """Print the result of ballsocket at each step of a deck beside that of CalculiX, with the deviation."""
-    heads = [(CONTACT["indentation"].symbol, CONTACT["indentation"].written.text)]
-    for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
-        symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
-        heads += [(symbol, unit), (f"{symbol} ccx", unit), (f"Δ{symbol}", apart)]
-    table = text_table([head for head, _ in heads], [[Text(unit, style="dim") for _, unit in heads]])
-    columns = (ours["indentation"], ours["force"], theirs.force, ours["pole_pressure"], theirs.pole_pressure)
-    angles = (ours["half_angle_deg"], numpy.degrees(theirs.half_angle))
-    for d, F, F_ccx, p, p_ccx, angle, angle_ccx in zip(*columns, *angles, strict=True):
-        if F == 0:  # after unloading
-            continue
-        forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
-        pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
-        table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
-    print_columns(Terminal(), table)
+def describe_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> Answer:
+    """Describe the result of ballsocket at each loaded step of a deck beside that of CalculiX, with the deviation."""
+    loaded = ours["force"] != 0  # the others are after unloading
+    own = {**ours, "half_angle": numpy.radians(ours["half_angle_deg"])}
+    columns, values = [Column.of(CONTACT["indentation"])], [ours["indentation"][loaded]]
+    for name in ("force", "pole_pressure", "half_angle"):
+        mine, its = own[name][loaded], getattr(theirs, name)[loaded]
+        symbol, unit, is_angle = CONTACT[name].symbol, CONTACT[name].written, name == "half_angle"
+        columns += [Column.of_number(name, symbol, unit, digits=5)]
+        columns += [Column.of_number(f"{name}_ccx", f"{symbol} ccx", unit, digits=5)]
+        columns += [Column.of_number(f"{name}_deviation", f"Δ{symbol}", unit if is_angle else _PERCENT, digits=3)]
+        values += [mine, its, its - mine if is_angle else its / mine - 1]
+    rows = [Row(cells) for cells in numpy.column_stack(values).tolist()]
+    return Answer(title="ballsocket and CalculiX", tables=[Table("steps", "Steps", columns, rows)])
 
 
-def print_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> None:
-    """Print the force components (N) of a tilted contact beside those of CalculiX."""
-    terminal, size = Terminal(), float(numpy.linalg.norm(rival))
-    for name, mine, its in zip(("towards the rim", "across", "towards the dome"), ours, rival, strict=True):
-        off = 100 * (mine - its) / size
-        terminal.print(f"  {name:<18} {mine:>12.6g} N, ccx {its:>12.6g} N, {off:+.2f} % of the load")
+def describe_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> Answer:
+    """Describe the force components (N) of a tilted contact beside those of CalculiX."""
+    size = float(numpy.linalg.norm(rival))
+    columns = [
+        Column.of_words("component", "force"),
+        Column.of_number("force", "ballsocket", NEWTONS, digits=6),
+        Column.of_number("force_ccx", "ccx", NEWTONS, digits=6),
+        Column.of_number("deviation", "Δ of the load", _PERCENT, digits=3),
+    ]
+    names = ("towards the rim", "across", "towards the dome")
+    rows = [Row((name, mine, its, (mine - its) / size)) for name, mine, its in zip(names, ours, rival, strict=True)]
+    return Answer(title="ballsocket and CalculiX", tables=[Table("components", "Components", columns, rows)])

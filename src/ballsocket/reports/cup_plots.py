@@ -181,7 +181,7 @@ _SIZE = (1100, 900)
 _FROM = (0.8, 0.65)  # camera position outside the opening and beside the axis
 
 
-def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Plotter:
+def cup_view(contact: OffAxisContact, units: Units = Units.SI, *, off_screen: bool = False) -> pyvista.Plotter:
     """Draw the liner in three dimensions, seen from beside its opening, with the pressure on its bore.
 
     The edge of the contact is a black line; an arrow from the ball's centre shows the load. The ball is left out.
@@ -190,6 +190,8 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
     ----------
     contact : OffAxisContact
         One contact under load, from `OffAxisContactModel.press`.
+    units : Units
+        Units of the pressure.
     off_screen : bool
         True to draw without a window, for `screenshot`.
 
@@ -213,7 +215,7 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
     plotter.set_background("white")
     to_body = numpy.array(contact.model.cup.frame)  # rows are the cup's axes in the body's frame
     _add_liner(plotter, contact, to_body)
-    _add_bore(plotter, contact, to_body)
+    _add_bore(plotter, contact, to_body, units)
     radius = float(contact.joint.socket_radius)
     edge = 0.999 * radius * numpy.vstack([contact.outline, contact.outline[:1]]) @ to_body
     plotter.add_mesh(pyvista.MultipleLines(edge), color=INK, line_width=3)
@@ -227,13 +229,13 @@ def cup_view(contact: OffAxisContact, *, off_screen: bool = False) -> pyvista.Pl
     return plotter
 
 
-def save_view(contact: OffAxisContact, path: Path) -> None:
+def save_view(contact: OffAxisContact, path: Path, units: Units = Units.SI) -> None:
     """Write the view of `cup_view` as PNG; after an error there is no file.
 
     Raises ValueError, ImportError: as `cup_view`.
     Raises OSError: a path that cannot be written to.
     """
-    plotter = cup_view(contact, off_screen=True)
+    plotter = cup_view(contact, units, off_screen=True)
     try:
         with write_atomically(path) as draft:
             plotter.screenshot(str(draft))
@@ -241,13 +243,14 @@ def save_view(contact: OffAxisContact, path: Path) -> None:
         plotter.close()
 
 
-def _add_bore(plotter: Any, contact: OffAxisContact, to_body: Numbers) -> None:
+def _add_bore(plotter: Any, contact: OffAxisContact, to_body: Numbers, units: Units) -> None:
+    unit = units.unit_of(FIELD["pressure"])
     reach = float(contact.model.reach_of(contact.joint))
     directions = _directions(numpy.linspace(0.0, reach, _RINGS))
     bore = _surface(float(contact.joint.socket_radius) * directions, to_body)
-    bore["pressure"] = shown_pressure(contact, directions).ravel(order="F")
+    bore["pressure"] = unit.factor * shown_pressure(contact, directions).ravel(order="F")
     bar = {
-        "title": FIELD["pressure"].head(),
+        "title": FIELD["pressure"].head(unit),
         "color": "black",
         "vertical": True,
         "below_label": " ",
@@ -255,7 +258,7 @@ def _add_bore(plotter: Any, contact: OffAxisContact, to_body: Numbers) -> None:
         "label_font_size": 18,
     }
     bar |= {"position_x": 0.88, "position_y": 0.2, "height": 0.6, "width": 0.06, "title_font_size": 18}
-    maximum = shown_maximum(contact)
+    maximum = unit.factor * shown_maximum(contact)
     appearance = {
         "cmap": "viridis",
         "clim": (_SEEN * maximum, maximum),

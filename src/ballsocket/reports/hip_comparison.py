@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.answers import named_records
+from ..core.kinds import Unit
 from ..core.storage.atomic_files import write_csv
+from ..core.unit_systems import Amount, Sentence
 from ..hip.history import History
 from ..hip.history_answer import HipRun
 from ..hip.measured_wear import WEAR_QUANTITIES
@@ -83,9 +85,10 @@ def _draw_fit(axes: Axes, fit: WearFit, runs: Sequence[History], quantity: str) 
     tables = [named_records(run.table()) for run in runs]
     cycles = [0.0, *(row["cycles"] / 1e6 for row in tables[0])]
     totals, low, high = ([0.0, *(row[column] for row in table)] for table in tables)
-    axes.plot(cycles, totals, color=BLUE, label=f"coefficient {fit.coefficient:.3g} {fit.unit}")
+    coefficient, *ends = (Amount(value, Unit(fit.unit), 3) for value in (fit.coefficient, fit.low, fit.high))
+    axes.plot(cycles, totals, color=BLUE, label=Sentence("coefficient {}", coefficient))
     if isfinite(fit.high):
-        band = f"95 %: {fit.low:.3g} to {fit.high:.3g}"
+        band = Sentence("95 %: {} to {}", *ends)
         axes.fill_between(cycles, low, high, color=BLUE, alpha=0.15, linewidth=0, label=band)
     starts = numpy.cumsum([0, *map(len, fit.data)])
     for number, (station, indices) in enumerate(fit.specimens.items()):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..core.answers import Answer, Column, Row, Table
 from ..core.executors.processes import Engine, Serial
 from ..core.kinds import Unit
 from ..core.quantities import JOINT
@@ -24,7 +25,6 @@ from ..paper.plan import ELEMENTS
 from . import accuracy_results
 from .pages import data_address, render_page
 from .style import LEGEND, finish, in_matplotlib, line_of
-from .terminal import Terminal, print_columns, print_folded, text_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ _VERDICT_STYLES = {"holds": "holds", "holds within": "nearly", "does not hold": 
 _VERDICT_COUNTS = ("hold", "hold within some percent", "fail")
 """Words after the number of each verdict, in the order of `_VERDICT_STYLES`."""
 
-Row = Mapping[str, Any]
+Record = Mapping[str, Any]
 PageTable = dict[str, Sequence[Any]]
 
 
@@ -104,7 +104,7 @@ class _DrawFigure:
     """Callable that draws a figure by its index, or the accuracy after the last; it writes the files of the figure."""
 
     figures: tuple[tuple[str, Figure], ...]
-    rows: tuple[Row, ...]
+    rows: tuple[Record, ...]
     folder: Path
 
     def __call__(self, index: int) -> bytes:
@@ -138,19 +138,19 @@ def _points(figure: Figure) -> Iterator[tuple[Any, ...]]:
                     yield field.title, "", "", field.x_label, x, field.y_label, y, z
 
 
-def _tally(findings: Iterable[Row]) -> str:
+def _tally(findings: Iterable[Record]) -> str:
     verdicts = [finding["verdict"] for finding in findings]
     counts = zip(_VERDICT_STYLES, _VERDICT_COUNTS, strict=True)
     return ", ".join(f"{verdicts.count(verdict)} {words}" for verdict, words in counts)
 
 
-def print_verdicts(results: Mapping[str, Sequence[Any]]) -> None:
-    """Print the verdict on each claim, the scale of the words, and the number of each verdict."""
-    terminal = Terminal()
-    heads = ("claim", "verdict")
-    rows = [(finding["name"], finding["text"]) for finding in (*results["claims"], *results["elsewhere"])]
-    print_columns(terminal, text_table(heads, rows, left=heads, folded=heads))
-    print_folded(terminal, f"Claims of the paper: {_tally(results['claims'])}. {SCALE}", "dim")
+def describe_verdicts(results: Mapping[str, Sequence[Any]]) -> Answer:
+    """Describe the verdict on each claim, the scale of the words, and the number of each verdict."""
+    findings = [*results["claims"], *results["elsewhere"]]
+    columns = [Column.of_words("claim"), Column.of_words("verdict")]
+    table = Table("claims", "Claims", columns, [Row((finding["name"], finding["text"])) for finding in findings])
+    note = f"Claims of the paper: {_tally(results['claims'])}. {SCALE}"
+    return Answer(title="Heß & Forsbach 2021, computed again", tables=[table], notes=[note])
 
 
 def _number_text(value: float) -> str:
@@ -167,13 +167,13 @@ def _geometry() -> PageTable:
     }
 
 
-def _fits(columns: Sequence[Row]) -> list[dict[str, Any]]:
+def _fits(columns: Sequence[Record]) -> list[dict[str, Any]]:
     """Return Table 3 by reference: the paper's constants beside those fitted here, and the differences."""
     groups = groupby(columns, key=lambda column: str(column["reference"]))
     return [{"reference": name, **_fit_table(name, list(group))} for name, group in groups]
 
 
-def _fit_table(name: str, columns: Sequence[Row]) -> PageTable:
+def _fit_table(name: str, columns: Sequence[Record]) -> PageTable:
     """Return the constants fitted to one reference, by Poisson's ratio."""
     rows: list[tuple[str, ...]] = []
     for i, constant in enumerate(("C1", "C2", "C3")):
@@ -189,7 +189,7 @@ def _fit_table(name: str, columns: Sequence[Row]) -> PageTable:
     return {"heads": ("", *(f"ν {column['poisson']:g}" for column in columns)), "rows": rows}
 
 
-def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
+def _accuracy(rows: Iterable[Record], png: bytes) -> dict[str, Any]:
     heads = accuracy_results.HEADS
     return {
         "address": data_address(png),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import replace
 from math import degrees, pi
@@ -65,8 +65,10 @@ def print_table(terminal: Terminal, table: Table) -> None:
     """
     written, gap = _fitting_grid(terminal, table)
     if written.rows:
-        words = [column.head for column in written.columns if column.unit is None]
-        texts = text_table(written.heads, left=words, folded=words, gap=gap)
+        texts = RichTable(box=None, pad_edge=False, header_style="bold", padding=(0, gap, 0, 0))
+        for column in written.columns:  # words may be folded, numbers are not
+            is_number = column.unit is not None
+            texts.add_column(Text(column.head), justify="right" if is_number else "left", no_wrap=is_number)
         if any(written.units):
             texts.add_row(*(Text(unit, style="dim") for unit in written.units))
         for row, verdicts in zip(written.rows, written.verdicts, strict=True):
@@ -113,22 +115,6 @@ class Terminal(Console):
         self.units = units
 
 
-def text_table(
-    heads: Iterable[str],
-    rows: Iterable[Sequence[str | Text]] = (),
-    left: Container[str] = (),
-    folded: Container[str] = (),
-    gap: int = 2,
-) -> RichTable:
-    """Make a table of texts; columns are aligned to the right but in `left`, and in one line but in `folded`."""
-    table = RichTable(box=None, pad_edge=False, header_style="bold", padding=(0, gap, 0, 0))
-    for head in heads:
-        table.add_column(Text(head), justify="left" if head in left else "right", no_wrap=head not in folded)
-    for row in rows:
-        table.add_row(*(Text(cell) if isinstance(cell, str) else cell for cell in row))  # "[nm]" is no style of rich
-    return table
-
-
 def print_folded(terminal: Terminal, text: str, style: str) -> None:
     """Print a line in the units of the terminal, folded between words, with continuation lines indented."""
     written, width = terminal.units.sentence(text), max(terminal.width, 20)
@@ -136,7 +122,7 @@ def print_folded(terminal: Terminal, text: str, style: str) -> None:
     terminal.print(Text(folded, style=style), soft_wrap=True)
 
 
-def print_columns(terminal: Console, table: RichTable, lead: int = 1) -> None:
+def print_columns(terminal: Console, table: RichTable, lead: int) -> None:
     """Print a table without a cut number: columns that do not fit follow below, beside the first `lead` ones again.
 
     Columns without `no_wrap` are folded between words first.

@@ -5,8 +5,7 @@ from __future__ import annotations
 import io
 import tempfile
 import zipfile
-from base64 import b64encode
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from html import escape
@@ -107,8 +106,8 @@ class Evidence(LongView):
         self.put(found=_case_table(screen) if result is None else _pack_html(result, screen.reading.units))
 
     def _take(self, value: Any) -> None:
-        content = b64encode(self.result(self.page.screen).content).decode("ascii")
-        self.channel.once("file", {"name": "evidence.zip", "content": content})
+        screen = self.page.screen
+        self.page.send_file("evidence.zip", self.result(screen).content[screen.reading.units])
 
     def _limit_allowable(self, value: Any) -> Changes:
         screen = self.page.screen
@@ -257,10 +256,10 @@ def _texts(part: Any) -> Iterator[str]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EvidencePack:
-    """Record of a pack, and its folder as a ZIP file."""
+    """Record of a pack, and its folder as a ZIP file by the units of its page."""
 
     record: dict[str, Any]
-    content: bytes
+    content: Mapping[Units, bytes]
 
 
 def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tuple[float, ...]]:
@@ -281,9 +280,12 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
         report(Reached(share=min(0.95, len(finished) / pieces), words=f"done: {name}"))
 
     record = gather_evidence(question, path / WORK, heard)
-    write(question, record, evidence_page, path)
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
-        for name in sorted({*names_of(question), SUMS}):
-            pack.write(path / name, name)
-    return EvidencePack(record=record, content=stream.getvalue())
+    content = {}
+    for units in Units:
+        write(question, record, partial(evidence_page, units=units), path)
+        stream = io.BytesIO()
+        with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as pack:
+            for name in sorted({*names_of(question), SUMS}):
+                pack.write(path / name, name)
+        content[units] = stream.getvalue()
+    return EvidencePack(record=record, content=content)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -11,9 +11,9 @@ from typing import Any
 
 from ...core.checks import check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
-from ...files.joint_file import JointFile, joint_of, varied
+from ...files.joint_file import JointFile, varied
 from ...files.joint_toml import Tables, tables_of
-from ...problem import Joint, Material
+from ...problem import Joint, Layer, Material, Support
 from ...problem.cup import UP, Side
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
 from ...problem.presets import joints, materials
@@ -51,11 +51,16 @@ def joint_controls(screen: Screen) -> list[Control]:
     kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind_of_load)
     solid = tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))
     liner, ball = _chosen(tables["liner"]), _chosen(tables["ball"]) if joint.ball else _RIGID
-    limit, load = partial(_edited, file, ("liner", "allowable_pressure")), number_of(f"load.{kind_of_load}")
+    limited, load = partial(_with_number, file, "liner", "allowable_pressure"), number_of(f"load.{kind_of_load}")
     if kind_of_load == "force":
         stiffest = float(joint.liner.young) * pi * float(joint.socket_radius) ** 2
         load = replace(load, largest=stiffest, reason="a mean pressure of Young's modulus of the liner")
-    allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limit).but(optional=True)
+    allowable = _number(screen, "allowable", _ALLOWABLE, joint.liner.allowable_pressure, limited).but(optional=True)
+    unlimited = partial(_with_joint, file, liner=replace(joint.liner, allowable_pressure=None))
+
+    def with_load(value: float) -> JointFile:
+        return varied(file, {"load": {kind_of_load: value}})
+
     return [
         _control(words("name", "Design", joint.name), partial(_with_name, file)),
         _control(
@@ -64,11 +69,11 @@ def joint_controls(screen: Screen) -> list[Control]:
         *_lengths(screen),
         *([] if joint.backing else [_control(solid, partial(_with_solid_socket, file))]),
         _control(kinds, lambda kind: replace(file, load=same_load(file, screen.answered_by, kind))),
-        _number(screen, "load", load, tables["load"][kind_of_load], partial(_edited, file, ("load", kind_of_load))),
+        _number(screen, "load", load, tables["load"][kind_of_load], with_load),
         _number(screen, "tilt", _TILT, degrees(file.tilt), partial(_with_tilt, file)),
         _control(choice("liner", "Liner", _MATERIALS, liner), partial(_with_material, file, "liner")),
         *_moduli(screen, "liner"),
-        Control(allowable.field, lambda value: {"file": limit(None)} if value == "" else allowable.read(value)),
+        Control(allowable.field, lambda value: {"file": unlimited()} if value == "" else allowable.read(value)),
         *_thicknesses(screen),
         _control(choice("ball", "Ball", ((_RIGID, "rigid"), *_MATERIALS), ball), partial(_with_material, file, "ball")),
         *_moduli(screen, "ball"),
@@ -98,7 +103,7 @@ def _lengths(screen: Screen) -> Iterator[Control]:
 def _moduli(screen: Screen, part: str) -> Iterator[Control]:
     material = getattr(screen.file.joint, part)
     for key in ("young", "poisson") if material else ():
-        edit = partial(_edited, screen.file, (part, key))
+        edit = partial(_with_number, screen.file, part, key)
         yield _number(screen, f"{part}_{key}", number_of(f"{part}.{key}"), float(getattr(material, key)), edit)
 
 
@@ -106,7 +111,7 @@ def _thicknesses(screen: Screen) -> Iterator[Control]:
     for index, layer in enumerate(screen.file.joint.backing):
         if not isinf(float(layer.thickness)):
             spec = number_of("backing.thickness", label=f"{layer.material.name or 'Layer'} thickness")
-            edit = partial(_edited, screen.file, ("backing", index, "thickness"))
+            edit = partial(_with_thickness, screen.file, index)
             yield _number(screen, f"layer{index}", spec, float(layer.thickness), edit)
 
 
@@ -123,41 +128,32 @@ def joint_words(joint: Joint) -> str:
     return f"<p>Held while other lengths change: {given}.</p>{behind}"
 
 
-def _edited(file: JointFile, path: Sequence[str | int], value: Any) -> JointFile:
-    """Set a value in the tables of a joint file; None removes it."""
-    tables = tables_of(file)
-    part: Any = tables
-    for key in path[:-1]:
-        part = part[key]
-    if value is None:
-        part.pop(path[-1], None)
-    else:
-        part[path[-1]] = value
-    return _made_of(tables, file)
+def _with_number(file: JointFile, part: str, key: str, value: float) -> JointFile:
+    """Set a number of the material of liner or ball."""
+    return _with_joint(file, **{part: getattr(varied(file, {part: {key: value}}).joint, part)})
+
+
+def _with_thickness(file: JointFile, index: int, value: float) -> JointFile:
+    layers = list(file.joint.backing)
+    layers[index] = replace(layers[index], thickness=value)
+    return _with_joint(file, backing=tuple(layers))
 
 
 def _with_length(file: JointFile, key: str, value: float) -> JointFile:
     """Set a length, which takes the place of the one that would follow from it; a diameter sets its radius."""
-    tables = tables_of(file)
-    lengths, name = tables["joint"], DIAMETERS.get(key, key)
-    kept = give(name, [length for length in lengths if length in LENGTHS])
-    for length in [length for length in lengths if length in LENGTHS and length not in kept]:
-        del lengths[length]
-    lengths[name] = value if name == key else value / 2
-    return _made_of(tables, file)
+    name, given = DIAMETERS.get(key, key), file.joint.given_lengths
+    held = {length: given[length] for length in give(name, list(given)) if length in given}
+    return _with_joint(file, **{**held, name: value if name == key else value / 2})
 
 
-def _made_of(tables: Tables, file: JointFile) -> JointFile:
-    """Make a joint file of changed tables; if a number differs it has no source, and a preset is marked as changed."""
-    made, old = joint_of(tables), file.joint
-    if made.joint == old or tables == tables_of(file):
-        return made
-    base = old.name.removesuffix(_CHANGED)
-    preset = joints.get(base)
-    if preset is None:
-        return replace(made, joint=made.joint.replace(name=old.name, source=""))
-    same = made.joint.replace(name=preset.name, source=preset.source) == preset
-    return replace(made, joint=preset if same else made.joint.replace(name=base + _CHANGED, source=""))
+def _as_changed(joint: Joint) -> Joint:
+    """Return a joint that differs from its source, with a preset marked as changed in its name."""
+    base = joint.name.removesuffix(_CHANGED)
+    if base not in joints:
+        return joint.replace(name=joint.name, source="")
+    preset = joints[base]
+    same = joint.replace(name=preset.name, source=preset.source) == preset
+    return preset if same else joint.replace(name=base + _CHANGED, source="")
 
 
 def _with_name(file: JointFile, value: Any) -> JointFile:
@@ -182,28 +178,28 @@ def _with_tilt(file: JointFile, tilt: float) -> JointFile:
 def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
     """Change the material of liner or ball; custom numbers start from those of the previous material."""
     if chosen == _RIGID:
-        return _edited(file, (part,), None)
+        return _with_joint(file, **{part: None})
     if chosen != _CUSTOM:
-        return _edited(file, (part,), {"material": chosen})
+        return _with_joint(file, **{part: materials[chosen]})
     material = getattr(file.joint, part) or Material(young=2e5, poisson=0.3)
-    return _edited(file, (part,), {"young": float(material.young), "poisson": float(material.poisson)})
+    return _with_joint(file, **{part: Material(young=material.young, poisson=material.poisson)})
 
 
 def layer_controls(screen: Screen) -> list[Control]:
     """List a material for each layer behind the liner, one to add a layer, and the support of the outermost."""
     file, listed = screen.file, []
     for index, layer in enumerate(file.joint.backing):
-        named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
-        custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
+        known = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
+        custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if known == _CUSTOM else []
         options = [*custom, *_NAMED, (_REMOVE, "– remove –")]
-        field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named)
+        field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, known)
         listed.append(_control(field, partial(_with_layer, file, index)))
     additions = [(_NO_CHOICE, "– choose –"), *_NAMED]
     added = choice("behind.add", "Add a layer behind the liner", additions, _NO_CHOICE)
     listed.append(_control(added, partial(_with_new_layer, file)))
     if file.joint.backing:
         support = file_choice("joint.support", file.joint.support.value, "behind.support")
-        listed.append(_control(support, partial(_edited, file, ("joint", "support"))))
+        listed.append(_control(support, lambda value: _with_joint(file, support=Support(value))))
     return listed
 
 
@@ -211,12 +207,12 @@ def _with_layer(file: JointFile, index: int, value: Any) -> JointFile:
     """Change the material of a layer, or remove it; without layers the outside is fixed."""
     if value == _CUSTOM:
         return file
-    layers = tables_of(file)["backing"]
+    layers = list(file.joint.backing)
     if value == _REMOVE:
         del layers[index]
     else:
-        layers[index] = {"thickness": layers[index]["thickness"], "material": value}
-    return _edited(file if layers else _edited(file, ("joint", "support"), None), ("backing",), layers or None)
+        layers[index] = replace(layers[index], material=materials[value])
+    return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
 
 
 def _with_new_layer(file: JointFile, value: Any) -> JointFile:
@@ -224,8 +220,13 @@ def _with_new_layer(file: JointFile, value: Any) -> JointFile:
         return file
     if len(file.joint.backing) >= _MAX_LAYERS:
         raise ValueError(f"{shown(value)} is one layer too many: at most {_MAX_LAYERS}")
-    layer = {"thickness": _NEW_THICKNESS, "material": value}
-    return _edited(file, ("backing",), [*tables_of(file).get("backing", ()), layer])
+    return _with_joint(file, backing=(*file.joint.backing, Layer(thickness=_NEW_THICKNESS, material=materials[value])))
+
+
+def _with_joint(file: JointFile, **changes: Any) -> JointFile:
+    """Change lengths or parts of the joint; drop its source if a number differs."""
+    joint = file.joint.replace(**changes, name=file.joint.name, source=file.joint.source)
+    return replace(file, joint=joint if joint == file.joint else _as_changed(joint))
 
 
 def cup_controls(screen: Screen) -> list[Control]:

@@ -19,6 +19,7 @@ from threading import Thread
 from typing import Any, Protocol
 
 from ..checks import require
+from ..threads import limit_threads
 
 try:
     import fcntl
@@ -33,9 +34,6 @@ Work = Callable[[int], Any]
 _QUEUED_PER_WORKER = 2  # submitted pieces per worker: one is computed while the next one waits
 _PARENT_CHECK_INTERVAL = 0.5  # seconds between two checks that the parent process still runs
 _PARENT_ENDED = 1  # exit status of a process whose parent process has ended
-
-_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""Environment variables that limit the threads of linear algebra."""
 
 _WORKER_DIED: Any = object()  # result of a piece whose worker process died
 
@@ -144,21 +142,6 @@ def _start_pool(workers: int, work: Work) -> Iterator[ProcessPoolExecutor]:
             yield pool
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
-
-
-@contextmanager
-def limit_threads() -> Iterator[None]:
-    """Limit linear algebra to one thread in processes started within the block: more threads than cores are slow."""
-    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 _work: Work | None = None  # work of this worker process

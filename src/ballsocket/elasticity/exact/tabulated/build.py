@@ -18,8 +18,8 @@ import numpy
 from ....contact.coordinates import half_angle_at
 from ....core.arrays import Numbers
 from ....core.chebyshev import chebyshev_coefficients, chebyshev_points
-from ....core.executors.processes import limit_threads
 from ....core.storage.atomic_files import write_atomically
+from ....core.threads import limit_threads
 from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
 from ..abel import AbelState
