@@ -53,18 +53,13 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     tables = numpy.empty((5, len(depths), len(angles)))
     for halving in sorted(set(halvings.ravel().tolist())):  # numpy.unique imports masked arrays
         band, size = halvings == halving, count >> halving
-        tables[:, band] = _sum_fields(state, modes[:size], depths[band], tuple(wave[:size] for wave in waves))
+        fields = state.kernel.socket.fields(numpy.arange(size), state.gap.socket_radius + depths[band])
+        cosine, cotangent, sine = (wave[:size] for wave in waves)
+        pairs = [(fields.sigma_rr, cosine), (fields.sigma_phiphi, cosine), (fields.sigma_thetatheta, cosine)]
+        pairs += [(fields.sigma_cot, cotangent), (fields.sigma_rphi, sine)]
+        tables[:, band] = [(modes[:size, None] * field).T @ wave for field, wave in pairs]
     radial, meridional, hoop, tilt, shear = tables[:, row.ravel(), column.ravel()].reshape(5, *angle.shape)
     return Stress(radial=radial, meridional=meridional - tilt, hoop=hoop + tilt, shear=shear)
-
-
-def _sum_fields(state: AbelState, modes: Numbers, depths: Numbers, waves: tuple[Numbers, ...]) -> Numbers:
-    """Sum modes times stress fields times waves: σ_rr, σ_φφ and σ_θθ of P, σ_cot and σ_rφ: (5, depths, angles)."""
-    fields = state.kernel.socket.fields(numpy.arange(len(modes)), state.gap.socket_radius + depths)
-    P, cotangent, sine = waves
-    pairs = [(fields.sigma_rr, P), (fields.sigma_phiphi, P), (fields.sigma_thetatheta, P)]
-    pairs += [(fields.sigma_cot, cotangent), (fields.sigma_rphi, sine)]
-    return numpy.array([(modes[:, None] * field).T @ wave for field, wave in pairs])
 
 
 def find_peak_stress(state: AbelState, thickness: float) -> Peak:
