@@ -30,7 +30,6 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text, finite_or_none
 from ...problem.gaps import LinearGap, select_gap
-from ...problem.hardening import Hardening
 from ...version import __version__
 from .calculix import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
@@ -110,17 +109,14 @@ class Deck(InputDeck):
         for number, row in enumerate(zip(*self.expected.values(), strict=True), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
         yield from mesh_lines(bodies)
-        yield from material_lines(bodies.materials, self._hardening)
+        curve, hardening = self.contact.joint.liner.yield_curve, {}
+        if self.contact.yields and curve:  # at scaled stresses and strains
+            hardening = {"LINER": curve.scaled(self.scale, self.scale)}
+        yield from material_lines(bodies.materials, hardening)
         yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
         yield from support_lines(bodies)
         for depth in self._indentations:
             yield from step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
-
-    @property
-    def _hardening(self) -> dict[str, Hardening]:
-        """Hardening of the liner at scaled stresses and strains, if it yields."""
-        curve = self.contact.joint.liner.yield_curve
-        return {"LINER": curve.scaled(self.scale, self.scale)} if self.contact.yields and curve else {}
 
     @cached_property
     def _bodies(self) -> DeckBodies:

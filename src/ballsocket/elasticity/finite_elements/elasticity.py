@@ -76,30 +76,29 @@ class ElasticBlock:
         return self.young / (2 * (1 + self.poisson)), self.young / (3 * (1 - 2 * self.poisson))
 
     def stiffness_matrix(self) -> csc_matrix:
-        """Assemble the stiffness matrix, from displacements to forces on full rings."""
+        """Assemble the stiffness matrix, from displacements to forces on full rings.
+
+        The energy density 2G (|ε|² - tr²/3) + K tr² is integrated over elements; in its last term tr is projected.
+        """
         count = self.element_unknowns.shape[1]
         K = numpy.empty((len(self.element_unknowns), count, count))
-        elements = numpy.arange(len(self.element_unknowns))
+        elements, (points, weights) = numpy.arange(len(self.element_unknowns)), element_quadrature(self.block.order)
         for chunk in self.chunks(elements):
-            K[chunk] = self._element_stiffness(elements[chunk])
+            strains = self.strains(elements[chunk], points)
+            volume = strains.volume * weights
+            shear, bulk = (modulus[self.block.layers[chunk]][:, None] * volume for modulus in self.moduli)
+            rows = strains.strain * (_SCALE * numpy.sqrt(shear)[..., None, None])
+            rows = rows.reshape(len(rows), -1, rows.shape[-1])
+            trace = strains.trace * numpy.sqrt(2 / 3 * shear)[..., None]
+            swelling = strains.swelling * numpy.sqrt(bulk)[..., None]
+            energy = rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace
+            K[chunk] = energy + swelling.swapaxes(1, 2) @ swelling
         return assemble(K, self.element_unknowns, 2 * self.block.number.size)
 
     def chunks(self, elements: Numbers) -> Iterator[slice]:
         """Yield slices of a list of elements, each small enough for the cache."""
         for first in range(0, len(elements), _CHUNK):
             yield slice(first, first + _CHUNK)
-
-    def _element_stiffness(self, element_indices: Numbers) -> Numbers:
-        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements; in its last term tr is projected."""
-        points, weights = element_quadrature(self.block.order)
-        strains = self.strains(element_indices, points)
-        volume = strains.volume * weights
-        shear, bulk = (modulus[self.block.layers[element_indices]][:, None] * volume for modulus in self.moduli)
-        rows = strains.strain * (_SCALE * numpy.sqrt(shear)[..., None, None])
-        rows = rows.reshape(len(rows), -1, rows.shape[-1])
-        trace = strains.trace * numpy.sqrt(2 / 3 * shear)[..., None]
-        swelling = strains.swelling * numpy.sqrt(bulk)[..., None]
-        return rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace + swelling.swapaxes(1, 2) @ swelling
 
     def strains(self, element_indices: Numbers, points: Numbers) -> Strains:
         """Compute the strains and projected changes of volume per unknown of some elements.
