@@ -42,22 +42,17 @@ def interpolate_harmonics(compute: Callable[[Numbers], Numbers], max_harmonic: i
     """
     from scipy.interpolate import make_interp_spline  # slow to import
 
-    nodes = _harmonic_nodes(max_harmonic)
+    orders, step = list(range(min(_MAX_CONSECUTIVE_HARMONIC, max_harmonic) + 1)), 1.0
+    while orders[-1] < max_harmonic:  # high ones at growing steps
+        step *= _STEP_GROWTH
+        orders.append(min(max_harmonic, orders[-1] + max(1, round(step))))
+    nodes = numpy.array(orders)
     exact = compute(nodes)
     harmonics = numpy.arange(max_harmonic + 1)
     scaled = exact[2:] * (nodes[2:] + 1.0)[:, None, None]  # compliances fall like 1/m
     spline = make_interp_spline(numpy.log(nodes[2:] + 1.0), scaled, k=5)
     interpolated = spline(numpy.log(harmonics[2:] + 1.0)) / (harmonics[2:] + 1.0)[:, None, None]
     return numpy.concatenate([exact[:2], interpolated])
-
-
-def _harmonic_nodes(max_harmonic: int) -> Numbers:
-    """Choose the harmonics to compute: all low ones, and high ones at growing steps."""
-    nodes, step = list(range(min(_MAX_CONSECUTIVE_HARMONIC, max_harmonic) + 1)), 1.0
-    while nodes[-1] < max_harmonic:
-        step *= _STEP_GROWTH
-        nodes.append(min(max_harmonic, nodes[-1] + max(1, round(step))))
-    return numpy.array(nodes)
 
 
 def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
