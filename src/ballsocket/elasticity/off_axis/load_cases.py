@@ -17,7 +17,7 @@ from .contact_states import ContactStates, ContactSummaries, LoadSolver, summari
 from .directions import TILT_TOLERANCE, polar_angle, unit_vectors
 from .equilibrium import solve_force
 from .lane_solver import coarser_lanes
-from .rim_curve import cached_rim_points, force_curve, indentation_curve
+from .rim_curve import RimCurve, cached_rim_points, force_curve, indentation_curve
 from .surfaces import EdgeRelation, initial_displacement
 
 _MAX_FREE_DISPLACEMENT = 0.5
@@ -207,10 +207,7 @@ def _interpolate_rim_contact(
         return solved
     if not (solved > 0).all():
         return _solve_rim_contact(states, load, azimuth, high, high_level)
-    from scipy.interpolate import make_interp_spline  # slow to import
-
-    spline = make_interp_spline(positions[nodes], solved, k=min(3, len(nodes) - 1))
-    return spline(positions)
+    return RimCurve(log_load=positions[nodes], tilt=solved).interpolate(load)
 
 
 def _solve_rim_contact(
