@@ -91,7 +91,12 @@ class FilmWave:
         rise = mesh.normal_rise(pressure, faces)
         distance = (mesh.first_distance + mesh.second_distance)[faces]
         pressed = mesh.width[faces] * rise / (distance * 12 * self.viscosity)
-        return numpy.where(self._near_edge, 0.0, pressed)
+        if not self.contact.edge.prescribed:
+            return pressed
+        # near an elastic edge the film changes the dry pressure
+        speed, depth = numpy.asarray(self.contact.speed(self.spin)), self.contact.edge_distance
+        reach = _EDGE_LENGTHS * float(self.contact.edge.inlet_length(self.viscosity, speed))
+        return numpy.where(numpy.maximum(depth[mesh.first[faces]], depth[mesh.second[faces]]) < reach, 0.0, pressed)
 
     @cached_property
     def _turning(self) -> Numbers:
@@ -129,17 +134,6 @@ class FilmWave:
         film = numpy.minimum(largest, self._flood)
         enters = contact.inside[second]
         return (edge[enters], film[enters]), (edge[~enters], film[~enters])
-
-    @cached_property
-    def _near_edge(self) -> Numbers:
-        """Mask of the faces so near an elastic edge that the film changes the dry pressure."""
-        mesh, faces = self.contact.mesh, self._faces
-        if not self.contact.edge.prescribed:
-            return numpy.zeros(len(faces), dtype=bool)
-        speed = numpy.asarray(self.contact.speed(self.spin))
-        reach = _EDGE_LENGTHS * float(self.contact.edge.inlet_length(self.viscosity, speed))
-        depth = self.contact.edge_distance
-        return numpy.maximum(depth[mesh.first[faces]], depth[mesh.second[faces]]) < reach
 
     @cached_property
     def _inflow(self) -> tuple[Numbers, Numbers]:
