@@ -78,10 +78,7 @@ class FreeFace:
 
     @cached_property
     def _stiffness_matrix(self) -> Numbers:
-        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r, then those of u_φ.
-
-        The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
-        """
+        """Stiffness over 2π, for coefficients of u_r = f(r) P(cos φ), then of u_φ = f(r) sin φ P(cos φ)."""
         r, w, f, slope, layer = self._radial_functions
         young, nu = numpy.array([(shell.young, shell.poisson) for shell in self.socket.shells])[layer].T
         lame, shear = _lame_constants(young, nu)

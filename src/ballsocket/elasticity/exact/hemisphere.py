@@ -115,10 +115,7 @@ def low_pressure_modes(state: AbelState) -> Numbers:
 
 @lru_cache(maxsize=16)
 def _quadrature_waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
-    """Compute the sines and weights of the quadrature that gives the pressure modes p_n.
-
-    The sines are sin((n + ½) s) at quadrature points s of each contact. The weights include sin s.
-    """
+    """Compute sin((n + ½) s) at quadrature points s of each contact, and the weights with sin s, for modes p_n."""
     y, weight = (numpy.array(part) for part in gauss_legendre(_POINTS))
     angle = numpy.array(angles)[:, None]
     s = angle * numpy.sin(pi / 2 * y)
@@ -215,10 +212,7 @@ class Hemisphere:
         return self._solve_bodies(self._load_curve.knots)
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
-        """Solve the contacts of both bodies around half angles, a few if these are close together.
-
-        The result is None if the hemisphere has too few contacts or the numbers of the joint overflow.
-        """
+        """Solve the contacts of both bodies around half angles; None with too few contacts or overflow."""
         window = knot_window(half_angle)
         try:
             if window is None:

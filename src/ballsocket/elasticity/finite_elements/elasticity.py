@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi
 
 import numpy
@@ -131,10 +131,7 @@ class ElasticBlock:
         return target @ numpy.linalg.solve(weighted @ Q, weighted @ trace)
 
     def _volume_polynomials(self, element_indices: Numbers, coordinates: Numbers) -> Numbers:
-        """Evaluate the polynomials of the volume change in elements: (elements, points, polynomials).
-
-        They are 1 for order 1; 1, ρ and z about the middle of the element for order 2.
-        """
+        """Evaluate 1, and for order 2 also ρ and z about the middle, in elements: (elements, points, polynomials)."""
         constant = numpy.ones((*coordinates.shape[1:], 1))
         if self.block.order == 1:
             return constant
@@ -190,14 +187,11 @@ def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:
     return numpy.stack([function[0] for function in functions]), numpy.stack([function[1] for function in functions])
 
 
-_RULES: dict[int, tuple[Numbers, Numbers]] = {}
-
-
+@cache
 def element_quadrature(order: int) -> tuple[Numbers, Numbers]:
     """Return the quadrature points (2, points) and weights (points,) of an element's energy, 2 by 2 or 3 by 3."""
-    if order not in _RULES:
-        from skfem import ElementQuad1
-        from skfem.quadrature import get_quadrature
+    from skfem import ElementQuad1
+    from skfem.quadrature import get_quadrature
 
-        _RULES[order] = get_quadrature(ElementQuad1().refdom, 2 * order + 1)
-    return _RULES[order]
+    points, weights = get_quadrature(ElementQuad1().refdom, 2 * order + 1)
+    return points, weights

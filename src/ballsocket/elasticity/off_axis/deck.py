@@ -100,10 +100,7 @@ class SphericalBlock:
 
 
 def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
-    """Return the indices of an element's nodes in CalculiX's order.
-
-    The order is corners and middles at the inner and outer face, then the middles of the radial edges.
-    """
+    """Return the nodes of an element: corners and middles at inner and outer face, then middles of the radial edges."""
     rows = [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)]
     return [(a, b, c) for row, c in rows for a, b in row]
 

@@ -124,10 +124,7 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
 
 
 def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
-    """Compute the indentation in mm at which a contact on springs has a half angle in rad.
-
-    Without clearance it is only proportional to that indentation.
-    """
+    """Compute the indentation in mm of a half angle in rad on springs; without clearance only proportional to it."""
     versine = versine_of(half_angle)
     return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
 
@@ -190,11 +187,7 @@ _MIN_NODE_DISTANCE = 1e-3  # difference of ln load below which two loads need no
 def _interpolate_rim_contact(
     states: ContactStates | ContactSummaries, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
 ) -> Numbers:
-    """Find the tilts in rad at first rim contact by a spline in ln load through a few of them.
-
-    See `_solve_rim_contact` for the arguments. Loads that fill the bore along its axis have no such tilt; then all are
-    solved.
-    """
+    """Find the tilts of `_solve_rim_contact` by a spline in ln load; all are solved if some fill the bore."""
     positions, nodes = numpy.log(load), sorted({0, len(load) - 1})
     while len(nodes) < min(_MAX_RIM_NODES, len(load)):  # add the load that is farthest from the nearest node
         distance = abs(positions[:, None] - positions[nodes]).min(axis=1)

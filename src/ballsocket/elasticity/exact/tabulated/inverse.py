@@ -133,20 +133,14 @@ def _start_table(file: str, kind: str) -> Numbers:
 
 
 def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the relative indentation d/c at a trial half angle, and its slope by ln ε.
-
-    The residual is ln d/(c + d) minus that of the load.
-    """
+    """Compute the residual ln d/(c + d), minus that of the load d/c, at a trial half angle, and its slope by ln ε."""
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     sigma, rate = opening(angle, evaluate_table_functions(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the dimensionless force q at a trial half angle, and its slope by ln ε.
-
-    The residual is ln(σ + h/q), which is 0 for q = h/(1 - σ).
-    """
+    """Compute the residual ln(σ + h/q), 0 for the force q = h/(1 - σ), at a trial half angle, and its slope by ln ε."""
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)
