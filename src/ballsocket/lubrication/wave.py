@@ -151,10 +151,7 @@ class FilmWave:
 
     @cached_property
     def _reconstruction(self) -> tuple[Any, Numbers]:
-        """Matrix from films to their slopes at the faces from both sides, and factors (2, faces) of the slopes.
-
-        The factors are 0 in cells next to the contact's edge, whose slopes are not defined.
-        """
+        """Matrix from films to slopes at the faces from both sides; factors (2, faces), 0 next to the edge."""
         from scipy.sparse import csr_matrix  # slow to import
 
         mesh, faces, interior = self.contact.mesh, self._faces, self.contact.interior
@@ -171,10 +168,7 @@ class FilmWave:
         return slopes, factors
 
     def _at_faces(self, film: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the film on both sides of each face by linear functions in the cells, without new extremes.
-
-        The last film is that around the contact.
-        """
+        """Compute the film on both sides of each face by linear functions in the cells, without new extremes."""
         first, second = self._sides
         slopes, factors = self._reconstruction
         upstream, downstream = film[first], film[second]
@@ -207,10 +201,7 @@ class FilmWave:
         return carried * self._inverse_area, 3 * pressed * self._inverse_area
 
     def _stable_step(self, film: Numbers) -> float:
-        """Compute the largest time step in s in which only a part of the film of any cell leaves it.
-
-        A change of the film leaves a cell at the speed f'(h) across each face.
-        """
+        """Compute the largest time step in s in which only a part of the film of any cell leaves it, at f'(h)."""
         carried, pressed = self._leaving
         fastest = float((carried + pressed * film**2).max())
         return _COURANT / fastest if fastest > 0 else numpy.inf
