@@ -174,10 +174,7 @@ _OPTIONAL = ("smoothing", "time", "static", "viscous", "rim", "film_damping")  #
 
 @cache
 def _compiled_batch_loop(absent: tuple[int, ...]) -> Any:
-    """Compile the loop over states for elements in which the constants of some indices are 0.
-
-    Without the branches of absent effects the loop over a block has vector instructions.
-    """
+    """Compile the loop over states without the branches of absent constants, so that it has vector instructions."""
     without_absent = zero_setter(absent)
 
     @njit(error_model="numpy", fastmath={"contract"})

@@ -197,10 +197,7 @@ class Viscoelastic:
         return force
 
     def _unloading_force(self, weights: Numbers, depth: Numbers, peak_index: int, instant: int) -> float:
-        """Compute the force in N at one instant of unloading, by the method of Ting.
-
-        The force depends on the loading up to the last instant t1 at which the contact had the same edge.
-        """
+        """Compute the force in N at an instant of unloading from the loading up to the same edge (Ting)."""
         strain = numpy.cumsum((weights[:instant] * numpy.diff(depth)[:instant])[::-1])[::-1]
         initial = numpy.flatnonzero(strain[: peak_index + 1] <= 0)
         if len(initial) and initial[0] == 0:
