@@ -231,11 +231,6 @@ class StressCurve:
     points: int
     _cached_ratios: dict[int, float] = field(default_factory=dict, init=False, repr=False)  # by index of the half angle
 
-    @cached_property
-    def _widest_coordinate(self) -> float:
-        """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest_angle, self.curve.ratio))
-
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
         start, step = self._first_coordinate_and_step
@@ -246,11 +241,11 @@ class StressCurve:
         low, high = numpy.array([self._solve_stress_ratio(int(i)) for i in unique])[which.reshape(2, -1)]
         return low + fraction * (high - low)
 
-    @property
+    @cached_property
     def _first_coordinate_and_step(self) -> tuple[float, float]:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
-        first = min(float(angle_root(_NARROWEST, self.curve.ratio)), self._widest_coordinate)
-        return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
+        first, last = (float(angle_root(a, self.curve.ratio)) for a in (_NARROWEST, self.curve.widest_angle))
+        return min(first, last), max(last - first, 0.0) / _STRESS_INTERVALS
 
     def _solve_stress_ratio(self, number: int) -> float:
         """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""

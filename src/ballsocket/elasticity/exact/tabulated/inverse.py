@@ -18,13 +18,7 @@ from ....contact.coordinates import LIMIT, angle_root, half_angle_at
 from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
 from ....core.arrays import Array, Numbers, convert_like, exp, log, where
-from ....core.chebyshev import (
-    Pair,
-    chebyshev_coefficients,
-    chebyshev_points,
-    multiply_factors,
-    series_values,
-)
+from ....core.chebyshev import Pair, chebyshev_coefficients, chebyshev_points, multiply_factors, series_values
 from .chebyshev import load_tables, thickness_ratio_at
 from .curves import (
     ONE,
