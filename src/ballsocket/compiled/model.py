@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy
@@ -10,8 +11,9 @@ import numpy
 from ..contact import Contact, Model, ModelWrapper
 from ..contact.assembly import SolverResult, as_arrays, broadcast_load, check_joint, select_and_check_load
 from ..contact.joint_curve import solve_by_curve
+from ..contact.octave_curve import OctaveCurve
 from ..core import arrays
-from ..core.arrays import Array
+from ..core.arrays import Array, Numbers
 from ..core.checks import reject_unnamed_loads, shown
 from ..core.validity import Status, check_domain
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -20,8 +22,8 @@ from ..models.foundation import RadialFoundation
 from ..models.modulus import FunctionModulus
 from ..problem import Joint
 from . import kernels
-from .curve_kernel import evaluate_curve
 from .law import CompiledLaw, compiled_law
+from .overloads import compile_loop, frexp
 from .table_kernel import solve_tabulated
 
 
@@ -120,3 +122,31 @@ class Compiled(ModelWrapper):
 def _is_float64(number: Any) -> bool:
     """Check if a value is a NumPy array of float64."""
     return isinstance(number, numpy.ndarray) and number.dtype == numpy.float64
+
+
+def evaluate_curve(curve: OctaveCurve, x: Numbers) -> Numbers:
+    """Evaluate all quantities of a curve (quantities, n) at numbers (n,) between both ends."""
+    quantities, terms, _ = curve.coefficients.shape
+    values = numpy.empty((quantities, len(x)))
+    rows = numpy.ascontiguousarray(curve.coefficients.transpose(2, 0, 1))
+    _curve_loop(quantities, terms)(x, curve.first, curve.density, curve.origins, rows, values)
+    return values
+
+
+@cache
+def _curve_loop(quantities: int, terms: int) -> Any:
+    """Return the compiled loop over numbers; the counts are constants of it, so that inner loops are unrolled."""
+
+    def evaluate(x, first, density, origins, rows, values):  # type: ignore[no-untyped-def]
+        """Evaluate the polynomials of the piece of each number."""
+        for j in range(len(x)):
+            mantissa, exponent = frexp(x[j])
+            piece = min(int(2 * density * mantissa) + density * exponent - first, len(origins) - 1)
+            offset = x[j] - origins[piece]
+            for row in range(quantities):
+                total = rows[piece, row, 0]
+                for term in range(1, terms):
+                    total = total * offset + rows[piece, row, term]
+                values[row, j] = total
+
+    return compile_loop(evaluate)

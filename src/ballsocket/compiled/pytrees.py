@@ -41,9 +41,7 @@ def _register_pytree(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) 
 _register_pytree(Material, ("young", "poisson", *STRESS_LIMITS), ("name", "source"))
 _register_pytree(Layer, ("thickness", "material"), ())
 _register_pytree(
-    Joint,
-    ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"),
-    ("support", "name", "source"),
+    Joint, ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"), ("support", "name", "source")
 )
 _TABLE_LEAVES = ("joint", "half_angle", "indentation", "force", "pole_pressure", "stiffness")
 _register_pytree(TableSolution, _TABLE_LEAVES, ("file",))

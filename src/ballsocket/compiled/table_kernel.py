@@ -122,16 +122,12 @@ def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) ->
         inputs = (load, curves.load_scale(kind), curves.ratio, *curves.widest, *curves.scale)
         start, functions = inverse.start_series(curves, kind), curves.functions
         outputs = numpy.empty((_OUTPUT_COUNT, len(load)))
-        rows = tuple(_as_input(number, load.shape) for number in inputs)
+        # a number in an array of one element, or a flat array
+        rows = tuple(number.item() if number.size == 1 else as_row(number, load.shape) for number in inputs)
         _tabulated_kernel(kind)(rows, start, functions, steps, outputs)
         return tuple(outputs)
 
     return model.solve_with_reader(joint, kind, load, read_curves)
-
-
-def _as_input(values: Numbers, shape: tuple[int, ...]) -> Any:
-    """Return the number in an array of one element; broadcast and flatten another array."""
-    return values.item() if values.size == 1 else as_row(values, shape)
 
 
 class _EvaluatedCurve(NamedTuple):

@@ -52,17 +52,6 @@ def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
     return arrays.broadcast(*arrays.to_common_arrays(load, *strengths))
 
 
-def _check_shapes(shapes: set[tuple[int, ...]]) -> None:
-    """Check that the shapes of joint, load and parameters broadcast; raise ValueError otherwise."""
-    if len(shapes) > 1 and any(
-        len({*lengths} - {1}) > 1 for lengths in zip_longest(*(shape[::-1] for shape in shapes), fillvalue=1)
-    ):
-        listed = ", ".join(map(str, sorted(shapes - {()})))
-        raise ValueError(
-            f"the shapes {listed} of joint, load and direction do not broadcast: an axis has one length in all, or 1"
-        )
-
-
 def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
     """Convert the numbers of a joint and a load to arrays of one library and data type.
 
@@ -74,7 +63,13 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
     numbers = (*joint.numbers(), load)
     all_plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))
     common = arrays.to_common_arrays(*numbers, *parameters)
-    _check_shapes({tuple(getattr(number, "shape", ())) for number in common})
+    shapes = {tuple(getattr(number, "shape", ())) for number in common}
+    if len(shapes) > 1:
+        lengths = zip_longest(*(shape[::-1] for shape in shapes), fillvalue=1)
+        if any(len({*axis} - {1}) > 1 for axis in lengths):
+            listed = ", ".join(map(str, sorted(shapes - {()})))
+            reason = "do not broadcast: an axis has one length in all, or 1"
+            raise ValueError(f"the shapes {listed} of joint, load and direction {reason}")
     joint_numbers = common[: len(numbers)]
     return all_plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 

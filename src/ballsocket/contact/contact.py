@@ -443,10 +443,7 @@ _UNIT_TOLERANCE = 1e-10  # tolerance of the square of (x² + y² + z² - 1) of a
 
 
 def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:
-    """Compute the mean lever arm of friction, divided by the ball radius, on the circle at a polar angle in rad.
-
-    It is the mean sine of the angle between radius and axis of rotation.
-    """
+    """Compute the mean sine of the angle between radius and axis of rotation, on the circle at a polar angle in rad."""
     azimuths = [pi * (k + 0.5) / 64 for k in range(64)]
     axial_part, transverse_part = (
         arrays.cos(angle) * float(numpy.cos(axis_angle)),

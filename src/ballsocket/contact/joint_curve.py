@@ -160,8 +160,7 @@ def solve_by_curve(
     names = [QUANTITIES[kind][index] for index in accurate]
     by_name = dict(zip(names, values.reshape(len(values), *load.shape), strict=True)) | {kind: load}
     solution = CurveSolution(
-        solve=partial(model._solve, as_arrays(joint, load)[1], kind, load),
-        interpolation_error=float(curve.error.max()),
+        solve=partial(model._solve, as_arrays(joint, load)[1], kind, load), interpolation_error=float(curve.error.max())
     )
     vars(solution).update(by_name)
     return SolverResult(laws=solution, force=by_name["force"], indentation=by_name["indentation"])

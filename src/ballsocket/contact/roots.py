@@ -160,7 +160,17 @@ def _iterate_until_converged(
     """Repeat a step until its last item, the mask of unconverged elements, is false; return the first item."""
     is_traced = all_true(state[-1]) is None
     if is_traced and max_steps > _MAX_UNROLLED_STEPS and array_api_compat.is_jax_array(state[0]):
-        return _jax_while_loop(iteration_step, state, max_steps)
+        import jax
+
+        def is_unconverged(count_and_state: tuple[Any, tuple[Array, ...]]) -> Array:
+            count, current = count_and_state
+            return (count < max_steps) & jax.numpy.any(current[-1])
+
+        def advance(count_and_state: tuple[Any, tuple[Array, ...]]) -> tuple[Any, tuple[Array, ...]]:
+            count, current = count_and_state
+            return count + 1, iteration_step(current)
+
+        return jax.lax.while_loop(is_unconverged, advance, (0, state))[1][0]
     for _ in range(max_steps):
         state = iteration_step(state)
         if not is_traced and all_true(logical_not(state[-1])):
@@ -170,23 +180,6 @@ def _iterate_until_converged(
 
 _MAX_UNROLLED_STEPS = 2
 """Largest number of steps that traced JAX unrolls into one fused computation, in place of a loop."""
-
-
-def _jax_while_loop(
-    iteration_step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], max_steps: int
-) -> Array:
-    """Repeat an iteration step inside `jax.jit` until all elements have converged; return the first item."""
-    import jax
-
-    def is_unconverged(count_and_state: tuple[Any, tuple[Array, ...]]) -> Array:
-        count, current = count_and_state
-        return (count < max_steps) & jax.numpy.any(current[-1])
-
-    def advance(count_and_state: tuple[Any, tuple[Array, ...]]) -> tuple[Any, tuple[Array, ...]]:
-        count, current = count_and_state
-        return count + 1, iteration_step(current)
-
-    return jax.lax.while_loop(is_unconverged, advance, (0, state))[1][0]
 
 
 _PROFILE_POSITIONS = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])

@@ -64,7 +64,11 @@ def check_numeric(name: str, value: Any) -> Array:
     Raises ValueError: an integer that is too large for a float.
     """
     if isinstance(value, list | tuple):
-        value = _list_to_array(name, value)
+        try:
+            listed = numpy.asarray(value)
+        except (ValueError, OverflowError) as error:  # rows of different lengths
+            raise TypeError(_format_type_error(name, value)) from error
+        value = listed.astype(float) if listed.dtype.kind in "iuf" else listed
     if is_plain_number(value) and not isinstance(value, bool):
         try:
             float(value)
@@ -114,15 +118,6 @@ def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> 
         shapes = " or ".join(dict.fromkeys(map(str, allowed)))
         raise ValueError(f"{name} of shape {_array_shape(value)} is not allowed: its shape is {shapes}")
     return value
-
-
-def _list_to_array(name: str, value: Any) -> numpy.ndarray:
-    """Convert a list to an array of floats; raise TypeError for rows of different lengths."""
-    try:
-        listed = numpy.asarray(value)
-    except (ValueError, OverflowError) as error:  # rows of different lengths
-        raise TypeError(_format_type_error(name, value)) from error
-    return listed.astype(float) if listed.dtype.kind in "iuf" else listed
 
 
 def _has_real_numbers(value: Any) -> bool:

@@ -232,15 +232,11 @@ def fixed_text(number: float, factor: float, metric_factor: float, decimals: int
 
 
 def _written(number: float, unit: Unit, digits: int = 4) -> str:
-    """Write a number, stated in the internal unit, with a unit."""
-    legible = _legible(unit, number)
-    text = plain_number(number * legible.factor, digits)
-    return f"{text}{'' if legible.text in ('', '°') else ' '}{legible.text}"
-
-
-def _legible(unit: Unit, number: float) -> Unit:
-    """Return ksi in place of psi for large numbers, and millionths of an inch in place of mil for small ones."""
+    """Write a number, stated in the internal unit, with a unit; large ones of psi in ksi, small ones of mil in µin."""
     size = abs(number) * unit.factor
     if unit.text == "psi" and size >= _KSI_FROM:
-        return Unit("ksi", 1e-3 * unit.factor)
-    return Unit("µin", 1e3 * unit.factor) if unit.text == "mil" and 0 < size < 0.1 else unit
+        unit = Unit("ksi", 1e-3 * unit.factor)
+    elif unit.text == "mil" and 0 < size < 0.1:
+        unit = Unit("µin", 1e3 * unit.factor)
+    text = plain_number(number * unit.factor, digits)
+    return f"{text}{'' if unit.text in ('', '°') else ' '}{unit.text}"

@@ -136,10 +136,7 @@ _TRANSITION_SPEED_SQUARED = 1e-30  # square of the transition speed in (mm/s)²;
 
 
 def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
-    """Compute the effective slip speed of the patch in mm/s, its derivatives, and the smallest derivative.
-
-    The slopes are derivatives by half the squares of the slip components.
-    """
+    """Compute the effective slip speed in mm/s, its derivatives by half the squares of the slip, and the least."""
     slip_x, slip_y, slip_z, slip_arc = slip
     patch_versine = versine(centre)
     squared_slip, slip_ratio = slip_x * slip_x + slip_y * slip_y + slip_z * slip_z, rolling_slip_ratio(patch_versine)

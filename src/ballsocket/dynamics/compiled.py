@@ -95,7 +95,7 @@ class CompiledElement:
     @property
     def march(self) -> Any:
         """Compiled function that advances a ball over all time steps of `simulate`."""
-        return _compiled_march()
+        return _MARCH
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
         """Compute force and moment on the ball, energy and tangent stiffness for an array of states.
@@ -166,16 +166,15 @@ def load_from_contact(centre, contact, velocity, spin, constants):  # type: igno
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
+_MARCH = njit(error_model="numpy")(stepping.march)
+
 _BLOCK_SIZE = 256  # number of states in a block, whose loads one loop of vector instructions computes
 _OPTIONAL = ("smoothing", "time", "static", "viscous", "rim", "film_damping")  # constants that are 0 without an effect
 
 
 @cache
 def _compiled_batch_loop(absent: tuple[int, ...]) -> Any:
-    """Compile the loop over states for elements in which the constants of some indices are 0.
-
-    Without the branches of absent effects the loop over a block has vector instructions.
-    """
+    """Compile the loop over states without the branches of absent constants, so that it has vector instructions."""
     without_absent = zero_setter(absent)
 
     @njit(error_model="numpy", fastmath={"contract"})
@@ -213,11 +212,6 @@ def _compiled_batch_loop(absent: tuple[int, ...]) -> Any:
                     tangent[first + i, component] = results[7 + component, i]
 
     return compute_batch
-
-
-@cache
-def _compiled_march() -> Any:
-    return njit(error_model="numpy")(stepping.march)
 
 
 for _formula in (

@@ -242,10 +242,7 @@ def _restitutions_at(chi: float, speeds: Numbers) -> Numbers:
 
 
 def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
-    """Compute the derivatives ∂e/∂χ of the coefficients of restitution e with respect to the hysteresis χ.
-
-    They follow from h (1 + e) = ln[(1 + h)/(1 - h e)].
-    """
+    """Compute the derivatives ∂e/∂χ of the coefficients of restitution, from h (1 + e) = ln[(1 + h)/(1 - h e)]."""
     h, e = chi * speeds, _restitutions_at(chi, speeds)
     small = h < 1e-4
     nonzero_h = numpy.where(small, 0.5, h)

@@ -353,20 +353,18 @@ class ValidityMonitor:
         if not self.limit < indentation <= self.wall:
             return
         contact = self.model.press(self.joint, indentation=indentation)
-        if not self._exceeds_validity_range(contact):
-            self.limit = self._find_valid_indentation(indentation)
+        if self._exceeds_validity_range(contact):
+            self.limit = inf
+            _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
             return
-        self.limit = inf
-        _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
-
-    def _find_valid_indentation(self, depth: float) -> float:
-        """Find an indentation in mm, `depth` or larger, at which the model is valid."""
-        deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
+        deeper = min(max(2 * indentation, 1e-3 * self.wall), self.wall)
         for _ in range(6):
             if not self._exceeds_validity_range(self.model.press(self.joint, indentation=deeper)):
-                return deeper
-            deeper = (depth + deeper) / 2
-        return depth
+                break
+            deeper = (indentation + deeper) / 2
+        else:
+            deeper = indentation
+        self.limit = deeper
 
     def _exceeds_validity_range(self, contact: Contact) -> bool:
         """Check if a contact is invalid for a reason other than its small size."""

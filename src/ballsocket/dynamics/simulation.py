@@ -127,10 +127,7 @@ def _march(
 ) -> tuple[Numbers, dict[str, Any]]:
     """Simulate `count` energy-momentum steps of h seconds; return the states and further fields of the motion."""
     states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
-    if callable(pull):
-        pulls = numpy.array([components(pull(time), "a pull") for time in (h * (numpy.arange(count) + 0.5)).tolist()])
-    else:
-        pulls = numpy.tile(numpy.array(components(pull, "a pull")), (count, 1))
+    pulls = numpy.array(list(map(pull_function(pull), (h * (numpy.arange(count) + 0.5)).tolist())))
     is_uncompiled = isinstance(element, ForceElement)
     march, rows = (stepping.march, pulls.tolist()) if is_uncompiled else (element.march, pulls)
     n_converged = march(element.potential, element.constants, initial, mass, inertia, rows, h, states, dissipated)

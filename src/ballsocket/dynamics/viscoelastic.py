@@ -91,19 +91,14 @@ class Prony:
 
     def creep_compliance(self, time: Numbers) -> Numbers:
         """Compute the relative creep compliance J(t), from 1 at time 0 to 1/g∞ after a long time."""
-        rates, weights = self._retardation_rates_and_weights
-        return 1.0 / self.long_term_share - numpy.sum(
-            weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
-        )
-
-    @cached_property
-    def _retardation_rates_and_weights(self) -> tuple[Numbers, Numbers]:
-        """Retardation rates in 1/s and weights of the creep compliance."""
         # strains r of the dashpots: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
         g, tau = self.shares, self.times
         root = numpy.sqrt(g / tau)
         rates, modes = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
-        return rates, (modes.T @ root) ** 2 / rates
+        weights = (modes.T @ root) ** 2 / rates
+        return 1.0 / self.long_term_share - numpy.sum(
+            weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,10 +197,7 @@ class Viscoelastic:
         return force
 
     def _unloading_force(self, weights: Numbers, depth: Numbers, peak_index: int, instant: int) -> float:
-        """Compute the force in N at one instant of unloading, by the method of Ting.
-
-        The force depends on the loading up to the last instant t1 at which the contact had the same edge.
-        """
+        """Compute the force in N at an instant of unloading from the loading up to the same edge (Ting)."""
         strain = numpy.cumsum((weights[:instant] * numpy.diff(depth)[:instant])[::-1])[::-1]
         initial = numpy.flatnonzero(strain[: peak_index + 1] <= 0)
         if len(initial) and initial[0] == 0:

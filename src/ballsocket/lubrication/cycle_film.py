@@ -114,7 +114,21 @@ def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleI
     core = numpy.isfinite(carried) & numpy.isfinite(thickness)
     if drifts:
         thickness = numpy.where(core, carried, thickness)
-    return _summarise(waves, thickness, core, motion, max(change, drift.change), drift, cycles)
+    central = _at_loads(motion, waves, thickness)
+    return CycleFilm(
+        area=mesh.area,
+        thickness=thickness,
+        core=core,
+        central=central,
+        minimum=numpy.array([_smallest(wave, row) for wave, row in zip(waves, thickness, strict=True)]),
+        error=film_errors(waves, thickness, core, central, motion),
+        refreshed_mean_error=refreshed_mean_error(waves, thickness),
+        drift=float(numpy.linalg.norm(motion.net_rotation)),
+        cycles=cycles,
+        change=max(change, drift.change),
+        settled=drift.settled,
+        smallest_settled=drift.smallest_settled,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,24 +207,21 @@ def _carry_once(
 
 def _waves(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant]) -> list[FilmWave]:
     """Make the wave of each instant, with the film around the contacts of the whole cycle."""
-    waves = [FilmWave(contact=_contact(mesh, instant), viscosity=viscosity, spin=instant.spin) for instant in instants]
+    waves = []
+    for instant in instants:
+        area = float(mesh.area[instant.pressure > 0].sum())
+        contact = DryContact(
+            mesh=mesh,
+            pressure=instant.pressure,
+            edge=instant.edge,
+            axis=instant.axis,
+            half_angle=acos(max(1 - area / (2 * pi * mesh.radius**2), -1.0)),  # of a round contact of the same area
+            radius=mesh.radius,
+            continuation=instant.continuation,
+        )
+        waves.append(FilmWave(contact=contact, viscosity=viscosity, spin=instant.spin))
     flood = _FLOODED * max(wave.inlet_film for wave in waves)
     return [replace(wave, flood=flood) for wave in waves]
-
-
-def _contact(mesh: FilmMesh, instant: CycleInstant) -> DryContact:
-    """Make the dry contact of an instant; its half angle is that of a round contact of the same area."""
-    area = float(mesh.area[instant.pressure > 0].sum())
-    half_angle = acos(max(1 - area / (2 * pi * mesh.radius**2), -1.0))
-    return DryContact(
-        mesh=mesh,
-        pressure=instant.pressure,
-        edge=instant.edge,
-        axis=instant.axis,
-        half_angle=half_angle,
-        radius=mesh.radius,
-        continuation=instant.continuation,
-    )
 
 
 def _smallest(wave: FilmWave, film: Numbers) -> float:
@@ -230,29 +241,3 @@ def _at_loads(motion: FilmMotion, waves: Sequence[FilmWave], thickness: Numbers)
     total = weights.sum(axis=1)
     weighted = (weights * numpy.nan_to_num(values)).sum(axis=1)
     return numpy.where(total > 0, weighted / numpy.where(total > 0, total, 1.0), numpy.nan)
-
-
-def _summarise(
-    waves: Sequence[FilmWave],
-    thickness: Numbers,
-    core: Numbers,
-    motion: FilmMotion,
-    change: float,
-    drift: _Drift,
-    cycles: int,
-) -> CycleFilm:
-    central = _at_loads(motion, waves, thickness)
-    return CycleFilm(
-        area=motion.mesh.area,
-        thickness=thickness,
-        core=core,
-        central=central,
-        minimum=numpy.array([_smallest(wave, row) for wave, row in zip(waves, thickness, strict=True)]),
-        error=film_errors(waves, thickness, core, central, motion),
-        refreshed_mean_error=refreshed_mean_error(waves, thickness),
-        drift=float(numpy.linalg.norm(motion.net_rotation)),
-        cycles=cycles,
-        change=change,
-        settled=drift.settled,
-        smallest_settled=drift.smallest_settled,
-    )

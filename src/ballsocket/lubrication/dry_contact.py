@@ -148,27 +148,21 @@ def dry_contact(contact: Contact, width: float) -> DryContact:
     theta = numpy.arccos(numpy.clip(mesh.direction[:, 2], -1.0, 1.0))
     pressure = numpy.where(theta < half_angle, contact.pressure(numpy.minimum(theta, half_angle)), 0.0)
     edge = find_edge(contact)
-    mirrored = contact.pressure(numpy.clip(2 * half_angle - theta, 0.0, half_angle))
+    continuation = None
+    if isinstance(edge, SpringEdge):  # the pressure at a distance -s outside is p(-s) = p(s) - 2 G s, a parabola
+        mirrored = contact.pressure(numpy.clip(2 * half_angle - theta, 0.0, half_angle))
+        outside = radius * (theta - half_angle)
+        continuation = numpy.where(pressure > 0, pressure, numpy.minimum(mirrored - 2 * edge.slope * outside, 0.0))
     return DryContact(
         mesh=mesh,
         pressure=pressure,
-        continuation=_continue_pressure(pressure, mirrored, radius * (theta - half_angle), edge),
+        continuation=continuation,
         edge=edge,
         axis=numpy.array([0.0, 0.0, 1.0]),
         half_angle=half_angle,
         radius=radius,
         rings=rings,
     )
-
-
-def _continue_pressure(pressure: Numbers, mirrored: Numbers, outside: Numbers, edge: Edge) -> Numbers | None:
-    """Continue the pressure (cells,) on springs beyond the edge by a parabola; None for another edge.
-
-    The pressure at a distance -s outside is p(-s) = p(s) - 2 G s.
-    """
-    if not isinstance(edge, SpringEdge):
-        return None
-    return numpy.where(pressure > 0, pressure, numpy.minimum(mirrored - 2 * edge.slope * outside, 0.0))
 
 
 def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: int) -> DryContact:

@@ -127,18 +127,6 @@ class FilmMotion:
         """Numbers of the drift cells in the core, and of two cells around it."""
         return _with_neighbours(self.drift_mesh, self.drifting)
 
-    @cached_property
-    def _pressures(self) -> tuple[Numbers, Numbers]:
-        """Mean and least pressure (drift cells,) in MPa over the cycle on the film near the core, 0 elsewhere."""
-        cells, shape = self._near_core, self.drift_mesh.cells
-        mean, least = numpy.zeros(shape), numpy.zeros(shape)
-        least[cells] = numpy.inf
-        for rotation, instant in zip(self.rotations, self.instants, strict=True):
-            pressure = self._interpolate(instant.signed_pressure, self.drift_mesh.direction[cells] @ rotation.T)
-            mean[cells] += instant.duration / self.duration * pressure
-            least[cells] = numpy.minimum(least[cells], pressure)
-        return mean, least
-
     def _interpolate(self, field: Numbers, directions: Numbers) -> Numbers:
         """Interpolate a field (cells,) in directions (n, 3) with its gradients; exact for quadratic fields."""
         nodes, weights = self.triangles.locate(directions)
@@ -185,7 +173,13 @@ class FilmMotion:
         axis = (mesh.area[:, None] * mesh.direction)[core].sum(axis=0)
         axis /= numpy.linalg.norm(axis)
         half_angle = float(numpy.arccos(numpy.clip((mesh.direction[core] @ axis).min(), -1.0, 1.0)))
-        mean, least = self._pressures
+        # mean and least pressure in MPa over the cycle on the film near the core, 0 elsewhere
+        cells, (mean, least) = self._near_core, numpy.zeros((2, mesh.cells))
+        least[cells] = numpy.inf
+        for rotation, instant in zip(self.rotations, self.instants, strict=True):
+            pressure = self._interpolate(instant.signed_pressure, mesh.direction[cells] @ rotation.T)
+            mean[cells] += instant.duration / self.duration * pressure
+            least[cells] = numpy.minimum(least[cells], pressure)
         slope = 2 * float(mean[core].max()) / (mesh.radius * max(half_angle, 1e-3))
         contact = DryContact(
             mesh=mesh,

@@ -72,10 +72,7 @@ class FilmMesh:
 
     @cached_property
     def _gradients(self) -> tuple[Numbers, tuple[Any, Any]]:
-        """Tangents (cells, 2, 3), and sparse matrices (cells, cells) from a field to its slopes along both.
-
-        The slopes are those of least squares over the neighbours, per rad.
-        """
+        """Tangents (cells, 2, 3), and sparse matrices (cells, cells) to least-squares slopes along both, per rad."""
         from scipy.sparse import csr_matrix, diags_array  # slow to import
 
         tangents = numpy.stack(surface_tangents(self.direction.T)).transpose(2, 0, 1)
@@ -192,10 +189,7 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
 def _ring_faces(
     radius: float, ring_edges: Numbers, theta: Numbers, starts: Numbers, counts: Numbers, inner: int
 ) -> tuple[Numbers, ...]:
-    """Make the faces between a ring and the next one: both cells, width, both distances, axis.
-
-    Rings of different numbers of cells share one face for each piece of the line between them.
-    """
+    """Make the faces between two rings, one for each piece of the line between their cells."""
     outer = inner + 1
     if counts[inner] == counts[outer]:
         marks = numpy.arange(counts[inner] + 1) / counts[inner]

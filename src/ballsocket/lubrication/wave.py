@@ -91,7 +91,12 @@ class FilmWave:
         rise = mesh.normal_rise(pressure, faces)
         distance = (mesh.first_distance + mesh.second_distance)[faces]
         pressed = mesh.width[faces] * rise / (distance * 12 * self.viscosity)
-        return numpy.where(self._near_edge, 0.0, pressed)
+        if not self.contact.edge.prescribed:
+            return pressed
+        # near an elastic edge the film changes the dry pressure
+        speed, depth = numpy.asarray(self.contact.speed(self.spin)), self.contact.edge_distance
+        reach = _EDGE_LENGTHS * float(self.contact.edge.inlet_length(self.viscosity, speed))
+        return numpy.where(numpy.maximum(depth[mesh.first[faces]], depth[mesh.second[faces]]) < reach, 0.0, pressed)
 
     @cached_property
     def _turning(self) -> Numbers:
@@ -131,17 +136,6 @@ class FilmWave:
         return (edge[enters], film[enters]), (edge[~enters], film[~enters])
 
     @cached_property
-    def _near_edge(self) -> Numbers:
-        """Mask of the faces so near an elastic edge that the film changes the dry pressure."""
-        mesh, faces = self.contact.mesh, self._faces
-        if not self.contact.edge.prescribed:
-            return numpy.zeros(len(faces), dtype=bool)
-        speed = numpy.asarray(self.contact.speed(self.spin))
-        reach = _EDGE_LENGTHS * float(self.contact.edge.inlet_length(self.viscosity, speed))
-        depth = self.contact.edge_distance
-        return numpy.maximum(depth[mesh.first[faces]], depth[mesh.second[faces]]) < reach
-
-    @cached_property
     def _inflow(self) -> tuple[Numbers, Numbers]:
         """Numbers of the faces at an elastic inlet, and the flow through each from first to second cell in mm³/s."""
         mesh, faces = self.contact.mesh, self._faces
@@ -157,10 +151,7 @@ class FilmWave:
 
     @cached_property
     def _reconstruction(self) -> tuple[Any, Numbers]:
-        """Matrix from films to their slopes at the faces from both sides, and factors (2, faces) of the slopes.
-
-        The factors are 0 in cells next to the contact's edge, whose slopes are not defined.
-        """
+        """Matrix from films to slopes at the faces from both sides; factors (2, faces), 0 next to the edge."""
         from scipy.sparse import csr_matrix  # slow to import
 
         mesh, faces, interior = self.contact.mesh, self._faces, self.contact.interior
@@ -177,10 +168,7 @@ class FilmWave:
         return slopes, factors
 
     def _at_faces(self, film: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the film on both sides of each face by linear functions in the cells, without new extremes.
-
-        The last film is that around the contact.
-        """
+        """Compute the film on both sides of each face by linear functions in the cells, without new extremes."""
         first, second = self._sides
         slopes, factors = self._reconstruction
         upstream, downstream = film[first], film[second]
@@ -213,10 +201,7 @@ class FilmWave:
         return carried * self._inverse_area, 3 * pressed * self._inverse_area
 
     def _stable_step(self, film: Numbers) -> float:
-        """Compute the largest time step in s in which only a part of the film of any cell leaves it.
-
-        A change of the film leaves a cell at the speed f'(h) across each face.
-        """
+        """Compute the largest time step in s in which only a part of the film of any cell leaves it, at f'(h)."""
         carried, pressed = self._leaving
         fastest = float((carried + pressed * film**2).max())
         return _COURANT / fastest if fastest > 0 else numpy.inf

@@ -177,10 +177,7 @@ class AdhesiveSocket(ClosedForm):
 
 
 def _edge_cosine_and_versine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute cos ε and 1 - cos ε at the edge of the adhering region; cos ε is 0 if the full hemisphere adheres.
-
-    ε is the half angle of the contact, with the springs under tension included.
-    """
+    """Compute cos ε (0 for a full hemisphere) and 1 - cos ε at the edge, with the springs under tension included."""
     e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 

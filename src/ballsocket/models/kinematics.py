@@ -197,10 +197,7 @@ def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
 
 
 def _other_depth_ratio(contact: Any) -> Array:
-    """Compute the other indentation with the same half angle over the smaller of liner and radius; infinite at c = 0.
-
-    The roots e of `circular_indentation_of_versine` have the product R2² - R1².
-    """
+    """Compute the other d of a half angle over the smaller of L and R2; the roots e have the product R2² - R1²."""
     joint = contact.joint
     R2, c, L = joint.socket_radius, joint.clearance, joint.liner_thickness
     other = c * (2 * R2 - c) / safe_divisor(c + contact.indentation) - c

@@ -246,12 +246,7 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
     sources = (Source("hess2021", "(18)"),)
     return Modulus(
-        name="polynomial",
-        title=title,
-        formula=polynomial_formula,
-        constants=constants,
-        sources=sources,
-        source=source,
+        name="polynomial", title=title, formula=polynomial_formula, constants=constants, sources=sources, source=source
     )
 
 

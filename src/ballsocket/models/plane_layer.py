@@ -165,10 +165,7 @@ class LayerSolution:
         return transform, edge, mean, second
 
     def _solve_contact_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
-        """Solve the integral equations of a block of contacts for h1 and h2, and compute their integrals.
-
-        The four arrays are those of `_solution_integrals`.
-        """
+        """Solve the integral equations of a block of contacts; return the arrays of `_solution_integrals`."""
         xp = arrays.namespace(width)
         x, wx, k, _ = self._quadrature_points
         alpha = width[:, None, None]

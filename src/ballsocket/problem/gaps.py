@@ -94,10 +94,25 @@ class CircularGap:
         return _abel_transform(t, lambda w: self._gap_derivatives(w, d)[:2])
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
-        return _abel_transform_slope(t, lambda w: self._gap_derivatives(w, d))
+        sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
+        half = numpy.sin(t / 2)
+        u, u1, u2 = self._gap_derivatives(2 * half**2 * sine**2, d)
+        first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
+        second = 2 * half * numpy.sin(t) ** 2
+        return (
+            -half / 2 * _sine_weighted_mean(u)
+            + first * _sine_weighted_mean(sine**2 * u1)
+            + second * _sine_weighted_mean(sine**4 * u2)
+        )
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
+        def derivatives(w: Numbers) -> tuple[Numbers, Numbers]:  # of ∂u/∂d: none, and by w
+            R1, e = self.socket_radius - self.clearance, self.clearance + d
+            sine = w * (2 - w)
+            root = numpy.sqrt(R1 * R1 - e * e * sine)
+            return 1 - w - e * sine / root, -1 - e * (1 - w) * (2 * R1 * R1 - e * e * sine) / root**3
+
+        return _abel_transform(t, derivatives)
 
     def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
         """Compute the displacement u in mm and its first two derivatives by w = 1 - cos φ; NaN beyond the ball."""
@@ -106,13 +121,6 @@ class CircularGap:
         root = numpy.sqrt(R1 * R1 - dropped)
         tilt = e * e * (1 - w) / root
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
-
-    def _indentation_derivatives(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the derivative ∂u/∂d by the indentation, and the derivative of ∂u/∂d by w = 1 - cos φ."""
-        R1, e = self.socket_radius - self.clearance, self.clearance + d
-        sine = w * (2 - w)
-        root = numpy.sqrt(R1 * R1 - e * e * sine)
-        return 1 - w - e * sine / root, -1 - e * (1 - w) * (2 * R1 * R1 - e * e * sine) / root**3
 
 
 Gap = LinearGap | CircularGap
@@ -249,20 +257,6 @@ def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:
     u, u1 = derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
     return numpy.cos(t / 2) * _sine_weighted_mean(u) + 2 * numpy.sin(t / 2) * numpy.sin(t) * _sine_weighted_mean(
         sine**2 * u1
-    )
-
-
-def _abel_transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
-    """Compute the derivative of the Abel transform of a displacement with respect to t."""
-    sine = _SINES.reshape(-1, *(1 for _ in numpy.shape(t)))
-    u, u1, u2 = derivatives(2 * numpy.sin(t / 2) ** 2 * sine**2)
-    half = numpy.sin(t / 2)
-    first = 2 * numpy.cos(t / 2) * numpy.sin(t) + 2 * half * numpy.cos(t)
-    second = 2 * half * numpy.sin(t) ** 2
-    return (
-        -half / 2 * _sine_weighted_mean(u)
-        + first * _sine_weighted_mean(sine**2 * u1)
-        + second * _sine_weighted_mean(sine**4 * u2)
     )
 
 

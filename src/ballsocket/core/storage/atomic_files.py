@@ -202,19 +202,14 @@ def unpack_arrays(stream: BinaryIO, name: str) -> dict[str, Numbers]:
         with ZipFile(stream) as archive:
             damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
             n_members = len(archive.infolist())
-        if damaged is not None or n_members != _count_zip_members(stream):
+        stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)  # a damaged archive lists fewer members than its end record
+        if damaged is not None or n_members != int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little"):
             raise ValueError(f"{name} is damaged")
         stream.seek(0)
         with numpy.load(stream, allow_pickle=False) as file:
             return {key: file[key] for key in file.files}
     except (BadZipFile, EOFError, KeyError, RuntimeError) as error:
         raise ValueError(f"{name} is damaged") from error
-
-
-def _count_zip_members(stream: BinaryIO) -> int:
-    """Read the number of members from the end record of a zip archive: a damaged archive lists fewer."""
-    stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)
-    return int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little")
 
 
 def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
@@ -230,7 +225,11 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         write_arrays(path, rings=array)
-        _remove_oldest_files(path.parent)
+        size = 0
+        for cached in sorted(path.parent.glob("cup-*"), key=lambda path: path.stat().st_mtime, reverse=True):
+            size += cached.stat().st_size
+            if size > _MAX_CACHE_SIZE:  # the oldest files go
+                cached.unlink(missing_ok=True)
     return array
 
 
@@ -249,13 +248,3 @@ def cache_folder() -> Path:
     if folder:
         return Path(folder)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
-
-
-def _remove_oldest_files(folder: Path) -> None:
-    """Remove the oldest files of the cache until its size is below the limit."""
-    newest_first = sorted(folder.glob("cup-*"), key=lambda path: path.stat().st_mtime, reverse=True)
-    size = 0
-    for path in newest_first:
-        size += path.stat().st_size
-        if size > _MAX_CACHE_SIZE:
-            path.unlink(missing_ok=True)

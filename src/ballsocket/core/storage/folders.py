@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from errno import ENOENT
 from io import BytesIO
@@ -205,9 +205,15 @@ class ArrayPieceStore(PieceStore):
         return arrays
 
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
-        """Load the stored results of some pieces; omit missing and damaged files."""
-        stored = self.folder.names()
-        results = {piece: self._read_piece(piece) for piece in numbers if self._piece_name(piece) in stored}
+        """Load the stored results of some pieces; omit missing and damaged files, and those of other runs."""
+        stored, results = self.folder.names(), {}
+        for piece in numbers:
+            if self._piece_name(piece) not in stored:
+                continue
+            with suppress(OSError, ValueError, TypeError, KeyError):
+                arrays = self.folder.read_arrays(self._piece_name(piece))
+                if str(arrays.pop("identity")) == self.identity:
+                    results[piece] = self.from_arrays(piece, arrays)
         return {piece: result for piece, result in results.items() if result is not None}
 
     def save(self, number: int, result: Any) -> Any:
@@ -217,15 +223,6 @@ class ArrayPieceStore(PieceStore):
 
     def _piece_name(self, piece: int) -> str:
         return f"{self.prefix}_{piece:06d}.npz"
-
-    def _read_piece(self, piece: int) -> Any:
-        """Read the result of a piece; return None if the file is missing, damaged or of another run."""
-        try:
-            arrays = self.folder.read_arrays(self._piece_name(piece))
-            is_of_this_run = str(arrays.pop("identity")) == self.identity
-            return self.from_arrays(piece, arrays) if is_of_this_run else None
-        except (OSError, ValueError, TypeError, KeyError):
-            return None
 
 
 def folder_at(path: str | Path) -> ResultFolder:

@@ -9,6 +9,7 @@ import json
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from hashlib import sha256
@@ -155,8 +156,13 @@ class _ResultFiles(PieceStore):
 
     def load(self, numbers: Sequence[int]) -> dict[int, Any]:
         """Load the results of the pieces whose files are undamaged and have their key."""
-        results = {number: self._read(number) for number in numbers}
-        return {number: result for number, result in results.items() if result is not None}
+        results = {}
+        for number in numbers:
+            with suppress(OSError, ValueError, KeyError, TypeError):  # missing or damaged
+                record = json.loads(self.paths[number].read_text(encoding="utf-8"))
+                if record["key"] == self.keys[number] and record["result"] is not None:
+                    results[number] = record["result"]
+        return results
 
     def save(self, number: int, result: Any) -> Any:
         """Write the result of a piece, and return it.
@@ -169,14 +175,6 @@ class _ResultFiles(PieceStore):
             raise ValueError(f"{self.paths[number].stem} has a number that is missing or infinite") from error
         write_text(self.paths[number], record)
         return result
-
-    def _read(self, number: int) -> Any:
-        """Read the result of a piece; return None if it is missing, damaged or of another run."""
-        try:
-            record = json.loads(self.paths[number].read_text(encoding="utf-8"))
-            return record["result"] if record["key"] == self.keys[number] else None
-        except (OSError, ValueError, KeyError, TypeError):
-            return None
 
 
 @dataclass(frozen=True)

@@ -78,10 +78,7 @@ class FreeFace:
 
     @cached_property
     def _stiffness_matrix(self) -> Numbers:
-        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r, then those of u_φ.
-
-        The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
-        """
+        """Stiffness over 2π, for coefficients of u_r = f(r) P(cos φ), then of u_φ = f(r) sin φ P(cos φ)."""
         r, w, f, slope, layer = self._radial_functions
         young, nu = numpy.array([(shell.young, shell.poisson) for shell in self.socket.shells])[layer].T
         lame, shear = _lame_constants(young, nu)
@@ -107,10 +104,10 @@ class FreeFace:
         return numpy.block([[rr, rp], [rp.T, pp]])
 
     @cached_property
-    def _load_vectors(self) -> Numbers:
-        """Load vectors over 2π per unit of each pressure mode p_n: (functions, modes).
+    def displacement_coefficients(self) -> Numbers:
+        """Coefficients of the additional displacements u_r and u_φ per unit of each pressure mode p_n.
 
-        They are the work of the reversed tractions -t of the equator on each function.
+        The shape is (2, radial functions, polar functions, modes).
         """
         r, w, f, _, _ = self._radial_functions
         n, P = numpy.arange(MODES), numpy.zeros(MODES)  # P_n(0), and slopes P_n'(0)
@@ -121,17 +118,11 @@ class FreeFace:
         fields = self.socket.fields(n, r)
         factor = w * r
         corner = _shifted_legendre(numpy.zeros(1), POLAR_TERMS)[0][0]
+        # work of the reversed tractions -t of the equator on each function, over 2π
         sideways = (slope[:, None] * fields.sigma_rphi * factor) @ f  # dP_n/dφ = -slope
         meridional = -(P[:, None] * fields.sigma_phiphi * factor) @ f
-        return numpy.concatenate([numpy.kron(work, corner) for work in (sideways, meridional)], axis=1).T
-
-    @cached_property
-    def displacement_coefficients(self) -> Numbers:
-        """Coefficients of the additional displacements u_r and u_φ per unit of each pressure mode p_n.
-
-        The shape is (2, radial functions, polar functions, modes).
-        """
-        return numpy.linalg.solve(self._stiffness_matrix, self._load_vectors).reshape(2, -1, POLAR_TERMS, MODES)
+        loads = numpy.concatenate([numpy.kron(work, corner) for work in (sideways, meridional)], axis=1).T
+        return numpy.linalg.solve(self._stiffness_matrix, loads).reshape(2, -1, POLAR_TERMS, MODES)
 
     def liner_stress(self, pressure: Numbers, angle: Numbers) -> Stress:
         """Compute the additional stresses in the liner in MPa from pressure modes: (angles, `liner_radii`)."""

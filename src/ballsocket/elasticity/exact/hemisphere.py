@@ -93,12 +93,17 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
     """Solve contacts on a hemisphere, at the same half angles as contacts on the closed sphere.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
-    reduced-rank extrapolation solve this system.
+    reduced-rank extrapolation, a least-squares fit of differences, solve this system.
     """
-    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
+    displacements = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        iterates.append(low_pressure_modes(_make_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
-    return _make_hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
+        displacements.append(low_pressure_modes(_make_hemisphere_state(closed, displacements[-1])) @ extra_response.T)
+    iterates = numpy.stack(displacements, axis=-1)  # (contacts, modes, iterations)
+    steps = numpy.diff(iterates, axis=-1)
+    steps = steps / (numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300)
+    weights = numpy.linalg.pinv(numpy.diff(steps, axis=-1), rcond=1e-10) @ steps[..., :1]
+    limit = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
+    return _make_hemisphere_state(closed, limit)
 
 
 def low_pressure_modes(state: AbelState) -> Numbers:
@@ -110,10 +115,7 @@ def low_pressure_modes(state: AbelState) -> Numbers:
 
 @lru_cache(maxsize=16)
 def _quadrature_waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
-    """Compute the sines and weights of the quadrature that gives the pressure modes p_n.
-
-    The sines are sin((n + ½) s) at quadrature points s of each contact. The weights include sin s.
-    """
+    """Compute sin((n + ½) s) at quadrature points s of each contact, and the weights with sin s, for modes p_n."""
     y, weight = (numpy.array(part) for part in gauss_legendre(_POINTS))
     angle = numpy.array(angles)[:, None]
     s = angle * numpy.sin(pi / 2 * y)
@@ -135,20 +137,6 @@ def _make_hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
         intervals=closed.intervals,
         closed=closed,
     )
-
-
-def _extrapolate_iterates(iterates: Numbers) -> Numbers:
-    """Extrapolate the iterates of linear fixed-point maps to their limit.
-
-    The method is reduced-rank extrapolation, a least-squares fit of differences. `iterates` has the shape
-    (contacts, terms, iterations).
-    """
-    steps = numpy.diff(iterates, axis=-1)
-    scale = numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300
-    steps = steps / scale
-    bends = numpy.diff(steps, axis=-1)
-    weights = numpy.linalg.pinv(bends, rcond=1e-10) @ steps[..., :1]
-    return iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -224,10 +212,7 @@ class Hemisphere:
         return self._solve_bodies(self._load_curve.knots)
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
-        """Solve the contacts of both bodies around half angles, a few if these are close together.
-
-        The result is None if the hemisphere has too few contacts or the numbers of the joint overflow.
-        """
+        """Solve the contacts of both bodies around half angles; None with too few contacts or overflow."""
         window = knot_window(half_angle)
         try:
             if window is None:

@@ -79,10 +79,7 @@ class LoadCurve:
 
     @cached_property
     def _max_computed_angle(self) -> float:
-        """Widest half angle in rad that is computed: slightly beyond the limit, or just before the perfect fit.
-
-        At the perfect fit the indentation is infinite; wider contacts do not exist.
-        """
+        """Widest half angle in rad that is computed: slightly beyond the limit, or just before the perfect fit."""
         is_contact = _is_contact(self._knot_state)
         if is_contact.all():
             return _MAX_ANGLE

@@ -53,18 +53,13 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     tables = numpy.empty((5, len(depths), len(angles)))
     for halving in sorted(set(halvings.ravel().tolist())):  # numpy.unique imports masked arrays
         band, size = halvings == halving, count >> halving
-        tables[:, band] = _sum_fields(state, modes[:size], depths[band], tuple(wave[:size] for wave in waves))
+        fields = state.kernel.socket.fields(numpy.arange(size), state.gap.socket_radius + depths[band])
+        cosine, cotangent, sine = (wave[:size] for wave in waves)
+        pairs = [(fields.sigma_rr, cosine), (fields.sigma_phiphi, cosine), (fields.sigma_thetatheta, cosine)]
+        pairs += [(fields.sigma_cot, cotangent), (fields.sigma_rphi, sine)]
+        tables[:, band] = [(modes[:size, None] * field).T @ wave for field, wave in pairs]
     radial, meridional, hoop, tilt, shear = tables[:, row.ravel(), column.ravel()].reshape(5, *angle.shape)
     return Stress(radial=radial, meridional=meridional - tilt, hoop=hoop + tilt, shear=shear)
-
-
-def _sum_fields(state: AbelState, modes: Numbers, depths: Numbers, waves: tuple[Numbers, ...]) -> Numbers:
-    """Sum modes times stress fields times waves: σ_rr, σ_φφ and σ_θθ of P, σ_cot and σ_rφ: (5, depths, angles)."""
-    fields = state.kernel.socket.fields(numpy.arange(len(modes)), state.gap.socket_radius + depths)
-    P, cotangent, sine = waves
-    pairs = [(fields.sigma_rr, P), (fields.sigma_phiphi, P), (fields.sigma_thetatheta, P)]
-    pairs += [(fields.sigma_cot, cotangent), (fields.sigma_rphi, sine)]
-    return numpy.array([(modes[:, None] * field).T @ wave for field, wave in pairs])
 
 
 def find_peak_stress(state: AbelState, thickness: float) -> Peak:
@@ -236,11 +231,6 @@ class StressCurve:
     points: int
     _cached_ratios: dict[int, float] = field(default_factory=dict, init=False, repr=False)  # by index of the half angle
 
-    @cached_property
-    def _widest_coordinate(self) -> float:
-        """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest_angle, self.curve.ratio))
-
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
         start, step = self._first_coordinate_and_step
@@ -251,11 +241,11 @@ class StressCurve:
         low, high = numpy.array([self._solve_stress_ratio(int(i)) for i in unique])[which.reshape(2, -1)]
         return low + fraction * (high - low)
 
-    @property
+    @cached_property
     def _first_coordinate_and_step(self) -> tuple[float, float]:
         """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
-        first = min(float(angle_root(_NARROWEST, self.curve.ratio)), self._widest_coordinate)
-        return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
+        first, last = (float(angle_root(a, self.curve.ratio)) for a in (_NARROWEST, self.curve.widest_angle))
+        return min(first, last), max(last - first, 0.0) / _STRESS_INTERVALS
 
     def _solve_stress_ratio(self, number: int) -> float:
         """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""

@@ -30,10 +30,9 @@ from ...core.arrays import Numbers
 from ...core.checks import require
 from ...core.display import ascii_text, finite_or_none
 from ...problem.gaps import LinearGap, select_gap
-from ...problem.hardening import Hardening
 from ...version import __version__
 from .calculix import InputDeck, contact_lines, material_lines, node_set_lines, step_lines
-from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap
+from .deck_bodies import TYPES, DeckBodies, faceting_gap
 from .model import MeshedContact
 
 MAX_STEPS = 1000  # largest number of steps of a deck; the expected result of each is computed
@@ -110,17 +109,14 @@ class Deck(InputDeck):
         for number, row in enumerate(zip(*self.expected.values(), strict=True), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
         yield from mesh_lines(bodies)
-        yield from material_lines(bodies.materials, self._hardening)
+        curve, hardening = self.contact.joint.liner.yield_curve, {}
+        if self.contact.yields and curve:  # at scaled stresses and strains
+            hardening = {"LINER": curve.scaled(self.scale, self.scale)}
+        yield from material_lines(bodies.materials, hardening)
         yield from contact_lines(*touching_faces(bodies), self.contact_penalty)
         yield from support_lines(bodies)
         for depth in self._indentations:
             yield from step_lines([(2, -self.scale * depth)], _STEP_OUTPUT)
-
-    @property
-    def _hardening(self) -> dict[str, Hardening]:
-        """Hardening of the liner at scaled stresses and strains, if it yields."""
-        curve = self.contact.joint.liner.yield_curve
-        return {"LINER": curve.scaled(self.scale, self.scale)} if self.contact.yields and curve else {}
 
     @cached_property
     def _bodies(self) -> DeckBodies:
@@ -231,7 +227,18 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     seated, rolling = socket.fixed_directions & ~socket.fixed_nodes & ~socket.axis_nodes
     pushed = ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes)
     yield from node_set_lines("PUSHED", ball.node_numbers(pushed))
-    yield from _polar_lines(socket, seated | rolling)
+    inner, outer = socket.sliding
+    polar = seated | rolling
+    polar[inner] = polar[outer] = True
+    numbers = socket.node_numbers(polar & ~socket.axis_nodes)
+    if numbers:
+        yield from node_set_lines("POLAR", numbers)
+        yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
+    if len(inner):
+        yield "*EQUATION"
+    for first, second in zip(inner, outer, strict=True):
+        direction = 2 if socket.axis_nodes[first] else 1
+        yield from ("2", f"{socket.number[first]}, {direction}, 1., {socket.number[second]}, {direction}, -1.")
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),
         ("FIXED", "1, 2", socket.node_numbers(socket.fixed_nodes)),
@@ -241,18 +248,3 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
         if nodes:
             yield from node_set_lines(name, nodes)
             yield from ("*BOUNDARY", f"{name}, {directions}")
-
-
-def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
-    inner, outer = socket.sliding
-    polar = fixed_directions.copy()
-    polar[inner] = polar[outer] = True
-    numbers = socket.node_numbers(polar & ~socket.axis_nodes)
-    if numbers:
-        yield from node_set_lines("POLAR", numbers)
-        yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
-    if len(inner):
-        yield "*EQUATION"
-    for inner_node, outer_node in zip(inner, outer, strict=True):
-        direction = 2 if socket.axis_nodes[inner_node] else 1
-        yield from ("2", f"{socket.number[inner_node]}, {direction}, 1., {socket.number[outer_node]}, {direction}, -1.")

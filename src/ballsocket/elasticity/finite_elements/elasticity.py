@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi
 
 import numpy
@@ -76,30 +76,29 @@ class ElasticBlock:
         return self.young / (2 * (1 + self.poisson)), self.young / (3 * (1 - 2 * self.poisson))
 
     def stiffness_matrix(self) -> csc_matrix:
-        """Assemble the stiffness matrix, from displacements to forces on full rings."""
+        """Assemble the stiffness matrix, from displacements to forces on full rings.
+
+        The energy density 2G (|ε|² - tr²/3) + K tr² is integrated over elements; in its last term tr is projected.
+        """
         count = self.element_unknowns.shape[1]
         K = numpy.empty((len(self.element_unknowns), count, count))
-        elements = numpy.arange(len(self.element_unknowns))
+        elements, (points, weights) = numpy.arange(len(self.element_unknowns)), element_quadrature(self.block.order)
         for chunk in self.chunks(elements):
-            K[chunk] = self._element_stiffness(elements[chunk])
+            strains = self.strains(elements[chunk], points)
+            volume = strains.volume * weights
+            shear, bulk = (modulus[self.block.layers[chunk]][:, None] * volume for modulus in self.moduli)
+            rows = strains.strain * (_SCALE * numpy.sqrt(shear)[..., None, None])
+            rows = rows.reshape(len(rows), -1, rows.shape[-1])
+            trace = strains.trace * numpy.sqrt(2 / 3 * shear)[..., None]
+            swelling = strains.swelling * numpy.sqrt(bulk)[..., None]
+            energy = rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace
+            K[chunk] = energy + swelling.swapaxes(1, 2) @ swelling
         return assemble(K, self.element_unknowns, 2 * self.block.number.size)
 
     def chunks(self, elements: Numbers) -> Iterator[slice]:
         """Yield slices of a list of elements, each small enough for the cache."""
         for first in range(0, len(elements), _CHUNK):
             yield slice(first, first + _CHUNK)
-
-    def _element_stiffness(self, element_indices: Numbers) -> Numbers:
-        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements; in its last term tr is projected."""
-        points, weights = element_quadrature(self.block.order)
-        strains = self.strains(element_indices, points)
-        volume = strains.volume * weights
-        shear, bulk = (modulus[self.block.layers[element_indices]][:, None] * volume for modulus in self.moduli)
-        rows = strains.strain * (_SCALE * numpy.sqrt(shear)[..., None, None])
-        rows = rows.reshape(len(rows), -1, rows.shape[-1])
-        trace = strains.trace * numpy.sqrt(2 / 3 * shear)[..., None]
-        swelling = strains.swelling * numpy.sqrt(bulk)[..., None]
-        return rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace + swelling.swapaxes(1, 2) @ swelling
 
     def strains(self, element_indices: Numbers, points: Numbers) -> Strains:
         """Compute the strains and projected changes of volume per unknown of some elements.
@@ -132,10 +131,7 @@ class ElasticBlock:
         return target @ numpy.linalg.solve(weighted @ Q, weighted @ trace)
 
     def _volume_polynomials(self, element_indices: Numbers, coordinates: Numbers) -> Numbers:
-        """Evaluate the polynomials of the volume change in elements: (elements, points, polynomials).
-
-        They are 1 for order 1; 1, ρ and z about the middle of the element for order 2.
-        """
+        """Evaluate 1, and for order 2 also ρ and z about the middle, in elements: (elements, points, polynomials)."""
         constant = numpy.ones((*coordinates.shape[1:], 1))
         if self.block.order == 1:
             return constant
@@ -191,14 +187,11 @@ def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:
     return numpy.stack([function[0] for function in functions]), numpy.stack([function[1] for function in functions])
 
 
-_RULES: dict[int, tuple[Numbers, Numbers]] = {}
-
-
+@cache
 def element_quadrature(order: int) -> tuple[Numbers, Numbers]:
     """Return the quadrature points (2, points) and weights (points,) of an element's energy, 2 by 2 or 3 by 3."""
-    if order not in _RULES:
-        from skfem import ElementQuad1
-        from skfem.quadrature import get_quadrature
+    from skfem import ElementQuad1
+    from skfem.quadrature import get_quadrature
 
-        _RULES[order] = get_quadrature(ElementQuad1().refdom, 2 * order + 1)
-    return _RULES[order]
+    points, weights = get_quadrature(ElementQuad1().refdom, 2 * order + 1)
+    return points, weights

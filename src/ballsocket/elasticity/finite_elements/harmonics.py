@@ -54,25 +54,29 @@ class Harmonics:
         mφ dφ/2π, for a bore of radius 1 and a liner of Young's modulus 1. The edges (rings + 1,) are polar angles
         between rings in rad, among the corners of the elements.
         """
-        loads = self._ring_loads(edges)
-        return numpy.stack([self._harmonic_compliance(m, loads) for m in degrees])
+        loads, matrices = self._ring_loads(edges), []
+        for m in degrees:
+            _, count, stiffness = self._ordered_systems[min(m, 2)]
+            lower, upper = last_factors(factorize(_sum_powers(stiffness, m)), count)
+            normal_loads = loads[-count:]
+            compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
+            matrices.append((compliance + compliance.T) / 2)
+        return numpy.stack(matrices)
 
     def ring_compliance_slopes(self, edges: Numbers, degrees: Iterable[int], slopes: list[StiffnessPowers]) -> Numbers:
         """Compute the derivatives of `ring_compliance` from those of the stiffness: (slopes, degrees, rings, rings).
 
         With the displacements U under the loads, the derivative of the compliance is -Uᵀ dK U.
         """
-        loads = self._ring_loads(edges)
-        return numpy.stack([self._harmonic_slopes(m, loads, slopes) for m in degrees], axis=1)
-
-    def _harmonic_slopes(self, m: int, loads: Numbers, slopes: list[StiffnessPowers]) -> Numbers:
-        """Compute the derivatives of the compliance matrix between rings for one harmonic: (slopes, rings, rings)."""
-        order, count, stiffness = self._ordered_systems[min(m, 2)]
-        load = numpy.zeros((len(order), loads.shape[1]))
-        load[-count:] = loads[-count:]
-        displacements = factorize(_sum_powers(stiffness, m)).solve(load)
-        forces = [_sum_powers(slope, m)[order][:, order] @ displacements for slope in slopes]
-        return numpy.stack([-displacements.T @ force for force in forces])
+        loads, matrices = self._ring_loads(edges), []
+        for m in degrees:
+            order, count, stiffness = self._ordered_systems[min(m, 2)]
+            load = numpy.zeros((len(order), loads.shape[1]))
+            load[-count:] = loads[-count:]
+            displacements = factorize(_sum_powers(stiffness, m)).solve(load)
+            forces = [_sum_powers(slope, m)[order][:, order] @ displacements for slope in slopes]
+            matrices.append(numpy.stack([-displacements.T @ force for force in forces]))
+        return numpy.stack(matrices, axis=1)
 
     def _ring_loads(self, edges: Numbers) -> Numbers:
         """Compute the nodal forces on the bore by unit pressure on each ring: (nodes, rings)."""
@@ -83,14 +87,6 @@ class Harmonics:
         weights = (width * _WEIGHTS).ravel() * 2 * numpy.pi * numpy.sin(angle)
         inside = (angle[:, None] > low) & (angle[:, None] < high)
         return lagrange(corners, self._block.order, angle).T @ (inside * weights[:, None])
-
-    def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
-        """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
-        _, count, stiffness = self._ordered_systems[min(m, 2)]
-        lower, upper = last_factors(factorize(_sum_powers(stiffness, m)), count)
-        normal_loads = loads[-count:]
-        compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
-        return (compliance + compliance.T) / 2
 
     @cached_property
     def _ordered_systems(self) -> tuple[tuple[Numbers, int, StiffnessPowers], ...]:
@@ -139,13 +135,10 @@ class Harmonics:
 
     @cached_property
     def stiffness_powers(self) -> StiffnessPowers:
-        """Stiffness matrices K0, K1 and K2 of the powers of m."""
-        size = 3 * self._block.number.size
-        constant, linear, quadratic = (assemble(K, self._element_unknowns, size) for K in self._element_matrices())
-        return constant, linear, quadratic
+        """Stiffness matrices K0, K1 and K2 of the powers of m.
 
-    def _element_matrices(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Integrate the energy density 2G (|ε|² - tr²/3) + K tr² of elements, for the powers 0, 1 and 2 of m."""
+        They integrate the energy density 2G (|ε|² - tr²/3) + K tr² over elements.
+        """
         elements = numpy.arange(self._block.elements.shape[1])
         points, weights = element_quadrature(self._block.order)
         gradients = self.elastic.gradients(elements, points)
@@ -160,12 +153,13 @@ class Harmonics:
         swells = [projection * numpy.sqrt(bulk)[..., None] for projection in swelling]
 
         def multiply_strains(i: int, j: int) -> Numbers:
-            products = (factors[i].swapaxes(1, 2) @ factors[j] for factors in (rows, swells, drops))
-            strain, swell, drop = products
+            strain, swell, drop = (factors[i].swapaxes(1, 2) @ factors[j] for factors in (rows, swells, drops))
             return strain + swell - drop
 
-        mixed = multiply_strains(0, 1)
-        return multiply_strains(0, 0), mixed + mixed.swapaxes(1, 2), multiply_strains(1, 1)
+        mixed, size = multiply_strains(0, 1), 3 * self._block.number.size
+        powers = multiply_strains(0, 0), mixed + mixed.swapaxes(1, 2), multiply_strains(1, 1)
+        constant, linear, quadratic = (assemble(K, self._element_unknowns, size) for K in powers)
+        return constant, linear, quadratic
 
     def _harmonic_strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and terms per unit of m.

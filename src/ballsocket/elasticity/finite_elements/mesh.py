@@ -229,11 +229,7 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
         outer += float(thickness) / R2
         layers.append((outer, float(material.young) / float(joint.liner.young), float(material.poisson)))
     return SocketShape(
-        layers=tuple(layers),
-        rim=cup.rim,
-        chamfer=cup.chamfer / R2,
-        interface=cup.interface,
-        support=joint.support,
+        layers=tuple(layers), rim=cup.rim, chamfer=cup.chamfer / R2, interface=cup.interface, support=joint.support
     )
 
 

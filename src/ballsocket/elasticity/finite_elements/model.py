@@ -13,7 +13,7 @@ import numpy
 from ...contact import Contact, Model
 from ...contact.assembly import SolverResult
 from ...contact.law import ForceLaw
-from ...contact.per_joint import JointContacts, Solve, SolvedContact, joint_at, solve_per_joint
+from ...contact.per_joint import JointContacts, SolvedContact, joint_at, solve_per_joint
 from ...contact.roots import bisect
 from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
@@ -22,7 +22,7 @@ from ...core.checks import needs, require
 from ...core.sources import Source
 from ...core.stress import Peak
 from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, Status, body_remarks, largest_poisson
-from ...problem import Joint, Material
+from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
 from .plasticity import SHAKEDOWN_WORK
@@ -364,7 +364,22 @@ class FiniteElement(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")
-        solve = self._plastic_solver(joint.liner, kind) if self.plastic else self._elastic_solver(kind)
+        hardening = joint.liner.yield_curve
+        if self.plastic and hardening is None:
+            raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
+        if self.plastic and kind == "half_angle":
+            raise ValueError("a yielding liner is pressed by force or indentation, not by half_angle")
+
+        def solve(single: Joint, loads: Numbers) -> JointContacts:
+            from .plastic_curve import plastic_curve_of  # slow to import
+            from .solver import load_curve_of
+
+            gap: Any = select_gap(self.gap, single)
+            spacings = self.spacing, self.ball_spacing or self.spacing
+            inputs = single, self.cup, spacings, self.element.value, self.meshes, gap
+            if self.plastic and hardening is not None:
+                return self._plastic_contacts(plastic_curve_of(*inputs, hardening), kind, loads)
+            return load_curve_of(*inputs).press(kind, loads)
 
         solution = solve_per_joint(self, joint, load, solve)
         return SolverResult(
@@ -376,37 +391,6 @@ class FiniteElement(Model):
                 Status.NOT_ROUND: solution.combine(lambda piece: piece.state.not_round) == 1,
             },
         )
-
-    @property
-    def _spacings(self) -> tuple[Spacing, Spacing]:
-        return self.spacing, self.ball_spacing or self.spacing
-
-    def _elastic_solver(self, kind: str) -> Solve:
-        from .solver import load_curve_of  # slow to import
-
-        def solve(joint: Joint, loads: Numbers) -> JointContacts:
-            gap: Any = select_gap(self.gap, joint)
-            return load_curve_of(joint, self.cup, self._spacings, self.element.value, self.meshes, gap).press(
-                kind, loads
-            )
-
-        return solve
-
-    def _plastic_solver(self, liner: Material, kind: str) -> Solve:
-        from .plastic_curve import plastic_curve_of  # slow to import
-
-        hardening = liner.yield_curve
-        if hardening is None:
-            raise ValueError("a liner that yields needs hardening or yield_stress in its material, one number each")
-        if kind == "half_angle":
-            raise ValueError("a yielding liner is pressed by force or indentation, not by half_angle")
-
-        def solve(joint: Joint, loads: Numbers) -> JointContacts:
-            gap: Any = select_gap(self.gap, joint)
-            curve = plastic_curve_of(joint, self.cup, self._spacings, self.element.value, self.meshes, gap, hardening)
-            return self._plastic_contacts(curve, kind, loads)
-
-        return solve
 
     def _plastic_contacts(self, curve: PlasticLoadCurve, kind: str, loads: Numbers) -> JointContacts:
         return curve.press(kind, loads)

@@ -130,11 +130,7 @@ class PartialContact(PairContact):
 
     @cached_property
     def _bordered_blocks(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Blocks that solve the compliance matrix with the two edge functions appended.
-
-        They are the leading block of W, the border columns multiplied by it, and the Schur complement of the edge
-        functions.
-        """
+        """Leading block of W, the border columns multiplied by it, and the Schur complement of the edge functions."""
         tail, _ = self._edge_moments
         W = self.pair.whitening[: self.last, : self.last]
         border = W @ tail[:, :-2].T

@@ -165,13 +165,7 @@ class PlasticLoadCurve:
 
 @lru_cache(maxsize=16)
 def plastic_curve_of(
-    joint: Joint,
-    cup: Cup,
-    spacings: tuple[Spacing, Spacing],
-    order: int,
-    meshes: int,
-    kind: Any,
-    hardening: Hardening,
+    joint: Joint, cup: Cup, spacings: tuple[Spacing, Spacing], order: int, meshes: int, kind: Any, hardening: Hardening
 ) -> PlasticLoadCurve:
     """Return the curve of a joint of plain numbers whose liner yields; see `solver.load_curve_of`.
 

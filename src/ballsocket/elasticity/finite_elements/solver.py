@@ -101,10 +101,7 @@ class MeshedLoadCurve:
 
 
 def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> FullContact:
-    """Solve the contact that fills the socket under a load, by the secant method.
-
-    The force increases with the indentation. For the linear gap one step suffices.
-    """
+    """Solve the contact that fills the socket under a load, by the secant method: one step for the linear gap."""
     contact = FullContact(pair=pair, gap=gap, indentation=load if kind == "indentation" else 1e-3 * pair.radius)
     if kind == "indentation":
         return contact

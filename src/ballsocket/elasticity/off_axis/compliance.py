@@ -82,10 +82,7 @@ class Compliance:
 
 
 def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
-    """Make a compliance from its matrices, with an inverse in single precision.
-
-    The inverse only guides the iteration; the compliance decides when it ends.
-    """
+    """Make a compliance from its matrices, with an inverse in single precision, which only guides the iteration."""
     inverse = numpy.linalg.inv(matrices).astype(numpy.float32)
     softness, stiffness = (AxisymmetricOperator(matrices=operator) for operator in (matrices, inverse))
     return Compliance(grid=grid, softness=softness, stiffness=stiffness)

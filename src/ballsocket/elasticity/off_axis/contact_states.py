@@ -330,20 +330,13 @@ def estimate_errors(states: ContactStates | ContactSummaries, load_kind: str) ->
     errors = {name: _MIN_ERROR + factor * square for name, factor in _PRESSURE_ERRORS.items()}
     errors["half_angle"] = _MIN_ERROR + _HALF_ANGLE_ERROR * numpy.sqrt(square)
     if load_kind == "half_angle":
-        exponents = _angle_exponents(states.half_angle)
+        # logarithmic derivatives by the half angle on springs, where the indentation grows as 1/cos ε - 1
+        angle = numpy.minimum(states.half_angle, 1.5)
+        x = numpy.cos(angle)
+        growth = angle / numpy.tan(angle / 2) / x
+        exponents = dict.fromkeys(QUANTITIES, growth)
+        exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
+        exponents |= {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
         return {name: errors[name] + exponent * errors[load_kind] for name, exponent in exponents.items()}
     errors[load_kind] = 0.0 * square
     return {name: errors[name] for name in QUANTITIES}
-
-
-def _angle_exponents(half_angle: Numbers) -> dict[str, Numbers]:
-    """Compute the logarithmic derivative of each quantity by the half angle, for a contact on springs.
-
-    On springs the indentation grows as 1/cos ε - 1.
-    """
-    angle = numpy.minimum(half_angle, 1.5)
-    x = numpy.cos(angle)
-    growth = angle / numpy.tan(angle / 2) / x
-    exponents = dict.fromkeys(QUANTITIES, growth)
-    exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
-    return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}

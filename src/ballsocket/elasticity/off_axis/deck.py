@@ -100,10 +100,7 @@ class SphericalBlock:
 
 
 def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
-    """Return the indices of an element's nodes in CalculiX's order.
-
-    The order is corners and middles at the inner and outer face, then the middles of the radial edges.
-    """
+    """Return the nodes of an element: corners and middles at inner and outer face, then middles of the radial edges."""
     rows = [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)]
     return [(a, b, c) for row, c in rows for a, b in row]
 
@@ -203,7 +200,13 @@ class TiltedDeck(InputDeck):
         layers = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(shells)}
         yield from material_lines({**layers, "SKIN": (1e3 * liner, 0.3)})
         yield from contact_lines(lined, pressed, penalty)
-        yield from self._support_lines()
+        for name, nodes in (  # of the symmetry plane, the fixed ones, and the ball's skin
+            ("MIRROR", self.socket.number[:, [0, -1]]),
+            ("OUTSIDE", self.socket.number[:, :, -1]),
+            ("PUSHED", self.ball.number),
+        ):
+            yield from node_set_lines(name, numpy.unique(nodes[nodes > 0]))
+        yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
         yield from step_lines([(1, x), (3, z)])
 
     def expected_record(self) -> dict[str, Any]:
@@ -219,17 +222,6 @@ class TiltedDeck(InputDeck):
             "force_vector": [float(component) for component in contact.force_vector],
             "max_pressure": float(contact.max_pressure),
         }
-
-    def _support_lines(self) -> Iterator[str]:
-        """Yield the lines of the symmetry plane, of the fixed nodes, and of the ball's skin, which is displaced."""
-        number = self.socket.number
-        for name, nodes in (
-            ("MIRROR", number[:, [0, -1]]),
-            ("OUTSIDE", number[:, :, -1]),
-            ("PUSHED", self.ball.number),
-        ):
-            yield from node_set_lines(name, numpy.unique(nodes[nodes > 0]))
-        yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:

@@ -44,10 +44,19 @@ def differentiable_search() -> Any:
     in mm, and the tolerance. It returns displacements (3, loads) and pressures (meridians, rings, loads).
     """
     import jax
+    import jax.numpy as xp
 
     @jax.custom_jvp
     def solve(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-        return _search(grids, load, gap, start, tolerance)
+        scale = xp.sqrt(xp.sum(load * load, axis=0))
+        fine = grids.fine._replace(gap=gap)
+        coarse = grids.coarse._replace(gap=_coarsen(fine, gap))
+        rough, predictor = _search_wide_cells(coarse, search.start_coarse(coarse, load, scale, start))
+        pressure = search.refine_fields(fine, rough.pressure)
+        predictor = search.make_predictor(search.refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
+        lanes = search.start_lanes(fine, load, scale, rough.displacement, pressure)
+        lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
+        return lanes.displacement, lanes.pressure
 
     @solve.defjvp
     def differentiate(primals: Any, tangents: Any) -> Any:
@@ -85,20 +94,6 @@ def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overla
     step = xp.sum(xp.linalg.inv(sensitivity.tangent).transpose(1, 2, 0) * missing, axis=1)
     moved = sum(part * step[axis] for axis, part in enumerate(xp.split(sensitivity.pressure, 3, axis=-1)))
     return step, fixed + moved
-
-
-def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-    import jax.numpy as xp
-
-    scale = xp.sqrt(xp.sum(load * load, axis=0))
-    fine = grids.fine._replace(gap=gap)
-    coarse = grids.coarse._replace(gap=_coarsen(fine, gap))
-    rough, predictor = _search_wide_cells(coarse, search.start_coarse(coarse, load, scale, start))
-    pressure = search.refine_fields(fine, rough.pressure)
-    predictor = search.make_predictor(search.refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
-    lanes = search.start_lanes(fine, load, scale, rough.displacement, pressure)
-    lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
-    return lanes.displacement, lanes.pressure
 
 
 def _coarsen(bore: BoreArrays, gap: Array) -> Array:

@@ -17,7 +17,7 @@ from .contact_states import ContactStates, ContactSummaries, LoadSolver, summari
 from .directions import TILT_TOLERANCE, polar_angle, unit_vectors
 from .equilibrium import solve_force
 from .lane_solver import coarser_lanes
-from .rim_curve import cached_rim_points, force_curve, indentation_curve
+from .rim_curve import RimCurve, cached_rim_points, force_curve, indentation_curve
 from .surfaces import EdgeRelation, initial_displacement
 
 _MAX_FREE_DISPLACEMENT = 0.5
@@ -111,7 +111,11 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
         ratio = _spring_indentation(bore, target) / numpy.maximum(_spring_indentation(bore, angle), 1e-9 * d)
         guess = d * numpy.clip(ratio, 0.1, 10.0)
         active, guess = active[unsolved], guess[unsolved]
-        indentation[active] = _limit_to_bracket(guess, low[active], high[active], limit)
+        below, above = low[active], high[active]
+        middle = numpy.where(below > 0, numpy.sqrt(below * above), above / 10)
+        inside = numpy.where((guess > below) & (guess < above), guess, middle)
+        # just below a limit that was never computed
+        indentation[active] = numpy.where((guess >= limit) & (above >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
     states = _solve_indentations(bore, indentation, axes, edges)
     deficit = half_angle - states.half_angle
     converged = states.equilibrium.converged & (abs(deficit) <= _MAX_ANGLE_JUMP * width)
@@ -120,19 +124,9 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
 
 
 def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
-    """Compute the indentation in mm at which a contact on springs has a half angle in rad.
-
-    Without clearance it is only proportional to that indentation.
-    """
+    """Compute the indentation in mm of a half angle in rad on springs; without clearance only proportional to it."""
     versine = versine_of(half_angle)
     return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
-
-
-def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
-    """Return an estimate inside its bracket, else another point there, just below a limit that was never computed."""
-    middle = numpy.where(low > 0, numpy.sqrt(low * high), high / 10)
-    inside: Numbers = numpy.where((guess > low) & (guess < high), guess, middle)
-    return numpy.where((guess >= limit) & (high >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
 
 
 LOAD_SOLVERS = {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}
@@ -193,11 +187,7 @@ _MIN_NODE_DISTANCE = 1e-3  # difference of ln load below which two loads need no
 def _interpolate_rim_contact(
     states: ContactStates | ContactSummaries, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
 ) -> Numbers:
-    """Find the tilts in rad at first rim contact by a spline in ln load through a few of them.
-
-    See `_solve_rim_contact` for the arguments. Loads that fill the bore along its axis have no such tilt; then all are
-    solved.
-    """
+    """Find the tilts of `_solve_rim_contact` by a spline in ln load; all are solved if some fill the bore."""
     positions, nodes = numpy.log(load), sorted({0, len(load) - 1})
     while len(nodes) < min(_MAX_RIM_NODES, len(load)):  # add the load that is farthest from the nearest node
         distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
@@ -210,10 +200,7 @@ def _interpolate_rim_contact(
         return solved
     if not (solved > 0).all():
         return _solve_rim_contact(states, load, azimuth, high, high_level)
-    from scipy.interpolate import make_interp_spline  # slow to import
-
-    spline = make_interp_spline(positions[nodes], solved, k=min(3, len(nodes) - 1))
-    return spline(positions)
+    return RimCurve(log_load=positions[nodes], tilt=solved).interpolate(load)
 
 
 def _solve_rim_contact(

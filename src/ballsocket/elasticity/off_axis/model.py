@@ -293,7 +293,15 @@ class Sphere(Model):
         components = [in_cup[..., axis] for axis in range(3)]
 
         def solve(single: Joint, loads: Numbers, *axis: Numbers) -> JointContacts:
-            return self._solve_joint(single, kind, loads, numpy.stack(axis, axis=-1))
+            from .contact_states import estimate_errors  # slow to import
+            from .load_cases import KEEP_FUNCTIONS, LOAD_SOLVERS
+
+            touching = loads > (0 if single.clearance >= 0 else -1)  # a preloaded joint touches without a load
+            bore, axes = self.bore_contact(single), numpy.stack(axis, axis=-1)[touching]
+            edges = self.surface.edges(single, self.cup, bore.compliance.grid)
+            state = KEEP_FUNCTIONS[self.keep](LOAD_SOLVERS[kind], bore, loads[touching], axes, edges)
+            errors = estimate_errors(state, kind)
+            return JointContacts(load=loads, touching=touching, state=state, reached=state.reachable, error=errors)
 
         solution = solve_per_joint(self, joint, load, solve, *components)
         return SolverResult(
@@ -305,17 +313,6 @@ class Sphere(Model):
                 Status.NOT_CONVERGED: solution.combine(lambda piece: piece.state.unconverged) == 1,
             },
         )
-
-    def _solve_joint(self, joint: Joint, kind: str, loads: Numbers, axes: Numbers) -> JointContacts:
-        from .contact_states import estimate_errors  # slow to import
-        from .load_cases import KEEP_FUNCTIONS, LOAD_SOLVERS
-
-        touching = loads > (0 if joint.clearance >= 0 else -1)  # a preloaded joint touches without a load
-        bore = self.bore_contact(joint)
-        edges = self.surface.edges(joint, self.cup, bore.compliance.grid)
-        state = KEEP_FUNCTIONS[self.keep](LOAD_SOLVERS[kind], bore, loads[touching], axes[touching], edges)
-        errors = estimate_errors(state, kind)
-        return JointContacts(load=loads, touching=touching, state=state, reached=state.reachable, error=errors)
 
     def bore_contact(self, joint: Joint) -> BoreContact:
         """Return ball and bore of one joint: compliance and gap of every cell."""

@@ -170,23 +170,19 @@ class _RimSearch:
     def approach_rim(self, targets: tuple[float, ...], iterations: int) -> None:
         """Change the indentations towards margins in ring widths, one after the other."""
         ratio = self.first_ratio
-        for number, target in enumerate(targets):
-            self.previous, self.points = self.points, self._press(iterations)
-            if number:
-                ratio = self._step_ratio()
-            step = ratio * (self.points.margin - target * self.cells.grid.width)
-            self.log_indentation = self.log_indentation + numpy.clip(step, -_MAX_STEP, _MAX_STEP)
-
-    def _step_ratio(self) -> Numbers:
-        """Compute the increase of ln indentation by decrease of the margin from the last two contacts."""
-        change = self.points.log_indentation - self.previous.log_indentation
-        decrease = self.previous.margin - self.points.margin
-        factor = numpy.where(decrease == 0, 1.0, change / decrease / self.first_ratio)
-        lowest = numpy.minimum(self.previous.margin, self.points.margin)
         # size of a negative margin from which it no longer changes
         max_overlap = 0.9 * _NEGATIVE_FACTOR * float(self.cells.edge_nodes[-1] - self.cells.edge_nodes[-2])
-        factor = numpy.where(lowest > -max_overlap, factor, 1.0)
-        return self.first_ratio * numpy.clip(factor, _MIN_FACTOR, _MAX_FACTOR)
+        for number, target in enumerate(targets):
+            self.previous, self.points = self.points, self._press(iterations)
+            if number:  # increase of ln indentation by decrease of the margin from the last two contacts
+                change = self.points.log_indentation - self.previous.log_indentation
+                decrease = self.previous.margin - self.points.margin
+                factor = numpy.where(decrease == 0, 1.0, change / decrease / self.first_ratio)
+                lowest = numpy.minimum(self.previous.margin, self.points.margin)
+                factor = numpy.where(lowest > -max_overlap, factor, 1.0)
+                ratio = self.first_ratio * numpy.clip(factor, _MIN_FACTOR, _MAX_FACTOR)
+            step = ratio * (self.points.margin - target * self.cells.grid.width)
+            self.log_indentation = self.log_indentation + numpy.clip(step, -_MAX_STEP, _MAX_STEP)
 
     def _press(self, iterations: int) -> RimPoints:
         """Solve the contacts of the displaced balls with the last ring open."""

@@ -20,7 +20,7 @@ from ...problem.cup import Cup
 from ..finite_elements.mesh import SocketShape, socket_shape
 
 if TYPE_CHECKING:
-    from ..finite_elements.harmonics import Harmonics, StiffnessPowers
+    from ..finite_elements.harmonics import Harmonics
     from .grid import Grid
 
 
@@ -42,22 +42,17 @@ def interpolate_harmonics(compute: Callable[[Numbers], Numbers], max_harmonic: i
     """
     from scipy.interpolate import make_interp_spline  # slow to import
 
-    nodes = _harmonic_nodes(max_harmonic)
+    orders, step = list(range(min(_MAX_CONSECUTIVE_HARMONIC, max_harmonic) + 1)), 1.0
+    while orders[-1] < max_harmonic:  # high ones at growing steps
+        step *= _STEP_GROWTH
+        orders.append(min(max_harmonic, orders[-1] + max(1, round(step))))
+    nodes = numpy.array(orders)
     exact = compute(nodes)
     harmonics = numpy.arange(max_harmonic + 1)
     scaled = exact[2:] * (nodes[2:] + 1.0)[:, None, None]  # compliances fall like 1/m
     spline = make_interp_spline(numpy.log(nodes[2:] + 1.0), scaled, k=5)
     interpolated = spline(numpy.log(harmonics[2:] + 1.0)) / (harmonics[2:] + 1.0)[:, None, None]
     return numpy.concatenate([exact[:2], interpolated])
-
-
-def _harmonic_nodes(max_harmonic: int) -> Numbers:
-    """Choose the harmonics to compute: all low ones, and high ones at growing steps."""
-    nodes, step = list(range(min(_MAX_CONSECUTIVE_HARMONIC, max_harmonic) + 1)), 1.0
-    while nodes[-1] < max_harmonic:
-        step *= _STEP_GROWTH
-        nodes.append(min(max_harmonic, nodes[-1] + max(1, round(step))))
-    return numpy.array(nodes)
 
 
 def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
@@ -85,23 +80,20 @@ def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
     measure = (width * weights).ravel() * numpy.sin(angle)
     integrals = numpy.zeros((len(m), grid.rings, max_degree + 1))
     previous, current = numpy.zeros((2, len(m), angle.size))
+    order, cosine = m[:, None], numpy.cos(angle)
     start, rows = numpy.sqrt(0.5) * numpy.ones(angle.size), {int(order): i for i, order in enumerate(m)}
     for n in range(max_degree + 1):
-        previous, current = current, _next_legendre(n, m[:, None], previous, current, numpy.cos(angle))
+        below = order < n
+        square = numpy.where(below, n * n - order * order, 1)
+        rise = numpy.sqrt(numpy.where(below, (4 * n * n - 1) / square, 0.0))
+        fall = (2 * n + 1) * numpy.maximum((n - 1) ** 2 - order * order, 0) / square
+        drop = numpy.sqrt(numpy.where(below, fall, 0.0)) / numpy.sqrt(max(2 * n - 3, 1))
+        previous, current = current, rise * cosine * current - drop * previous
         if n in rows:
             current[rows[n]] = start
         start = start * numpy.sqrt((2 * n + 3) / (2 * n + 2)) * numpy.sin(angle)
         integrals[..., n] = (current * measure).reshape(len(m), grid.rings, _POINTS_PER_RING).sum(axis=-1)
     return integrals
-
-
-def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: Numbers) -> Numbers:
-    """Compute the associated Legendre functions of degree n from those of n - 2 and n - 1; 0 where m is not below n."""
-    low = m < n
-    square = numpy.where(low, n * n - m * m, 1)
-    rise = numpy.sqrt(numpy.where(low, (4 * n * n - 1) / square, 0.0))
-    drop = numpy.sqrt(numpy.where(low, (2 * n + 1) * numpy.maximum((n - 1) ** 2 - m * m, 0) / square, 0.0))
-    return rise * x * last - drop / numpy.sqrt(max(2 * n - 3, 1)) * before_last
 
 
 def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
@@ -197,7 +189,12 @@ def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     middle, stiffness_slopes = mesh(socket_shape(joint, cup)), []
     for step, *joints in liner_steps(joint):
         low, high = (mesh(socket_shape(varied, cup)) for varied in joints)
-        stiffness_slopes.append(_difference_stiffness({-step: low, 0.0: middle, step: high}))
+        meridians = {-step: low, 0.0: middle, step: high}
+        alike = {at: meridian for at, meridian in meridians.items() if meridian.has_mesh_of(middle)}
+        (first, before), *_, (last, after) = alike.items()
+        pairs = zip(before.stiffness_powers, after.stiffness_powers, strict=True)
+        constant, linear, quadratic = ((above - below) / (last - first) for below, above in pairs)
+        stiffness_slopes.append((constant, linear, quadratic))
     rings = grid.rings
 
     def compute_slopes(m: Numbers) -> Numbers:  # one below the other: (m, 3 rings, rings)
@@ -208,14 +205,3 @@ def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     slopes = by_harmonic.reshape(-1, 3, rings, rings).swapaxes(0, 1) * _bore_scale(joint)
     slopes[0] -= cup_rings(joint, cup, grid) / float(joint.liner.young)
     return slopes
-
-
-def _difference_stiffness(meridians: dict[float, Harmonics]) -> StiffnessPowers:
-    """Compute the derivative of the stiffness from meridians at steps; a mesh with other elements is left out."""
-    alike = {step: meridian for step, meridian in meridians.items() if meridian.has_mesh_of(meridians[0.0])}
-    (first, low), *_, (last, high) = alike.items()
-    constant, linear, quadratic = (
-        (after - before) / (last - first)
-        for before, after in zip(low.stiffness_powers, high.stiffness_powers, strict=True)
-    )
-    return constant, linear, quadratic

@@ -18,13 +18,7 @@ from ....contact.coordinates import LIMIT, angle_root, half_angle_at
 from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
 from ....core.arrays import Array, Numbers, convert_like, exp, log, where
-from ....core.chebyshev import (
-    Pair,
-    chebyshev_coefficients,
-    chebyshev_points,
-    multiply_factors,
-    series_values,
-)
+from ....core.chebyshev import Pair, chebyshev_coefficients, chebyshev_points, multiply_factors, series_values
 from .chebyshev import load_tables, thickness_ratio_at
 from .curves import (
     ONE,
@@ -133,20 +127,14 @@ def _start_table(file: str, kind: str) -> Numbers:
 
 
 def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the relative indentation d/c at a trial half angle, and its slope by ln ε.
-
-    The residual is ln d/(c + d) minus that of the load.
-    """
+    """Compute the residual ln d/(c + d), minus that of the load d/c, at a trial half angle, and its slope by ln ε."""
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     sigma, rate = opening(angle, evaluate_table_functions(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the dimensionless force q at a trial half angle, and its slope by ln ε.
-
-    The residual is ln(σ + h/q), which is 0 for q = h/(1 - σ).
-    """
+    """Compute the residual ln(σ + h/q), 0 for the force q = h/(1 - σ), at a trial half angle, and its slope by ln ε."""
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)

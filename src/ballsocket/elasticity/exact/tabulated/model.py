@@ -83,10 +83,7 @@ class TableSolution:
 
     @cached_property
     def _profile_correction(self) -> tuple[Array, Array]:
-        """Corrections a and b of the pressure profile, so that it is 1 at the pole and has the force F.
-
-        The corrected pressure is p = p0 sqrt(1 - v) [q(v) + a + b v].
-        """
+        """Corrections a and b of p = p0 sqrt(1 - v) [q(v) + a + b v], which is 1 at the pole and has the force F."""
         q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
         F, p0 = self.force, self.pole_pressure
         height = sin(safe_divisor(self.half_angle) / 2) ** 2
@@ -127,10 +124,7 @@ def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
 
 
 def _integrate_work(curves: JointCurves, angle: Array) -> tuple[Array]:
-    """Compute the work ∫ F dd in N mm by quadrature over the half angle.
-
-    The substitution ε' = ε sin²(πy/2) removes the singularities at both ends.
-    """
+    """Compute the work ∫ F dd in N mm; with half angles ε sin²(πy/2) the integrand has no singular ends."""
     nodes, weights = (numpy.array(numbers) for numbers in gauss_legendre(32))
     shares, factors = numpy.sin(pi / 2 * nodes) ** 2, pi * weights / numpy.tan(pi / 2 * nodes)
     if arrays.all_true(angle == angle) is None:  # all nodes at once, which compiles in a tenth of the time
