@@ -31,35 +31,17 @@ def fenced(text, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
-SLOW = [
-    "clusters",
-    "cup",
-    "deck",
-    "export",
-    "film",
-    "finite_elements",
-    "gradients",
-    "hip",
-    "hip_validation",
-    "identify",
-    "law",
-    "many",
-    "notebook",
-    "off_axis",
-    "patients",
-    "plasticity",
-    "preloaded",
-    "programs",
-    "sensitivity",
-    "study",
-]
+SLOW = """
+clusters cup deck export film finite_elements gradients hip hip_validation identify law many notebook off_axis
+patients plasticity preloaded programs sensitivity study
+"""
 """Pages whose examples compute for half a second to four seconds each; they run with `--long`."""
 
 
 def quick_pages(language, mark):
     """List the pages with examples; slow ones only for `--long`."""
     paths = [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
-    return [path for path in paths if extent.whole or path.stem not in SLOW]
+    return [path for path in paths if extent.whole or path.stem not in SLOW.split()]
 
 
 def check_examples(test):
