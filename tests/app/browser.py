@@ -157,18 +157,6 @@ class User:
         self.page.locator(f"text={words}").first.wait_for()
         return True
 
-    def drags(self, handle, *moves):
-        """Drag a handle from its middle over some points, each relative to the one before."""
-        box = self.page.locator(handle).bounding_box()
-        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-        self.page.mouse.move(x, y)
-        self.page.mouse.down()
-        for across, down in moves:
-            x, y = x + across, y + down
-            self.page.mouse.move(x, y, steps=4)
-        self.page.mouse.up()
-        return self.answered()
-
     def link(self):
         query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
         return {name: values[0] for name, values in query.items()}
