@@ -1,25 +1,18 @@
 """Page on clusters: the manifest of Kubernetes."""
 
-import re
-
 import pytest
 
 from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.file import read_study
 
-from .places import ROOT
+from .places import ROOT, fenced
 
-HOW_TO = ROOT / "docs" / "how-to"
-
-
-def blocks(page, language):
-    text = (HOW_TO / page).read_text("utf-8")
-    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+PAGE = ROOT / "docs" / "how-to" / "clusters.md"
 
 
 def test_the_manifest_of_kubernetes_is_complete(tmp_path):
     yaml = pytest.importorskip("yaml")
-    parts = list(yaml.safe_load_all(blocks("clusters.md", "yaml")[0]))
+    parts = list(yaml.safe_load_all(fenced(PAGE, "yaml")[0]))
     kinds = {(part["kind"], part["metadata"]["name"]): part for part in parts}
     deployments = {("Deployment", "scheduler"), ("Deployment", "worker")}
     assert set(kinds) == {("PersistentVolumeClaim", "hips"), ("Service", "scheduler"), ("Job", "study"), *deployments}
@@ -34,7 +27,7 @@ def test_the_manifest_of_kubernetes_is_complete(tmp_path):
         mounts = {mount["name"]: mount["mountPath"] for mount in pods[name]["containers"][0]["volumeMounts"]}
         assert mounts["hips"] == "/hips"
     file = tmp_path / "study.toml"
-    file.write_text(blocks("clusters.md", "toml")[0], encoding="utf-8")
+    file.write_text(fenced(PAGE, "toml")[0], encoding="utf-8")
     port = kinds["Service", "scheduler"]["spec"]["ports"][0]["port"]
     assert read_study(file).engine == Distributed(address=f"tcp://scheduler:{port}")
     assert f"tcp://scheduler:{port}" in pods["Deployment", "worker"]["containers"][0]["command"]
@@ -44,7 +37,7 @@ def test_the_manifest_of_kubernetes_is_complete(tmp_path):
 def test_dask_has_the_options_of_the_manifest(role):
     yaml = pytest.importorskip("yaml")
     module = pytest.importorskip(f"distributed.cli.dask_{role}")
-    parts = yaml.safe_load_all(blocks("clusters.md", "yaml")[0])
+    parts = yaml.safe_load_all(fenced(PAGE, "yaml")[0])
     specs = [part["spec"]["template"]["spec"] for part in parts if part["kind"] == "Deployment"]
     command = next(words for spec in specs if (words := spec["containers"][0]["command"])[:2] == ["dask", role])
     options = {option for parameter in module.main.params for option in (*parameter.opts, *parameter.secondary_opts)}

@@ -14,15 +14,14 @@ import pytest
 
 import ballsocket as bs
 
-from .places import CONTRIBUTING, ROOT
+from .places import CONTRIBUTING, ROOT, fenced
 
 pytestmark = pytest.mark.long
 
 
 def page_code(page):
     """List the blocks of Python of a page of docs/contributing."""
-    text = (CONTRIBUTING / f"{page}.md").read_text("utf-8")
-    return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    return fenced(CONTRIBUTING / f"{page}.md", "python")
 
 
 def extend_package(folder, files, changes):

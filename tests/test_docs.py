@@ -17,7 +17,7 @@ from ballsocket.reports.press_plots import MAX_CURVES
 
 from . import extent
 from .cli.command import run
-from .places import ROOT
+from .places import ROOT, fenced
 from .printed import Checker, with_numbers_of
 
 DOCS = ROOT / "docs"
@@ -27,39 +27,17 @@ PAGES = sorted(path for path in FILES if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
-def fenced(text, language):
-    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
-
-
-SLOW = [
-    "clusters",
-    "cup",
-    "deck",
-    "export",
-    "film",
-    "finite_elements",
-    "gradients",
-    "hip",
-    "hip_validation",
-    "identify",
-    "law",
-    "many",
-    "notebook",
-    "off_axis",
-    "patients",
-    "plasticity",
-    "preloaded",
-    "programs",
-    "sensitivity",
-    "study",
-]
+SLOW = """
+clusters cup deck export film finite_elements gradients hip hip_validation identify law many notebook off_axis
+patients plasticity preloaded programs sensitivity study
+"""
 """Pages whose examples compute for half a second to four seconds each; they run with `--long`."""
 
 
 def quick_pages(language, mark):
     """List the pages with examples; slow ones only for `--long`."""
-    paths = [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
-    return [path for path in paths if extent.whole or path.stem not in SLOW]
+    paths = [path for path in PAGES if any(mark in block for block in fenced(path, language))]
+    return [path for path in paths if extent.whole or path.stem not in SLOW.split()]
 
 
 def check_examples(test):
@@ -84,7 +62,7 @@ def test_python_examples_of_a_page_have_the_output_shown(path, folder):
     for library in ("jax", "torch"):
         if f"import {library}" in text and find_spec(library) is None:
             pytest.skip(f"{library} is not installed")
-    code = "\n".join(fenced(text, "python"))
+    code = "\n".join(fenced(path, "python"))
     assert check_examples(doctest.DocTestParser().get_doctest(code, {}, path.name, str(path), 0)) > 0
 
 
@@ -110,7 +88,7 @@ def test_examples_of_docstrings_have_the_output_shown(path, tmp_path, monkeypatc
 
 @pytest.mark.parametrize("path", quick_pages("console", "$ "), ids=lambda path: path.stem)
 def test_commands_of_a_page_print_the_output_shown(path, folder):
-    for block in fenced(path.read_text("utf-8"), "console"):
+    for block in fenced(path, "console"):
         command, _, shown = block.partition("\n")
         program, *words = shlex.split(command.removeprefix("$ "))
         assert program == "ballsocket"
@@ -126,7 +104,7 @@ def test_commands_of_a_page_print_the_output_shown(path, folder):
 
 def test_python_blocks_of_a_page_are_examples_with_output():
     for path in PAGES:
-        for block in fenced(path.read_text("utf-8"), "python"):
+        for block in fenced(path, "python"):
             assert block.startswith(">>> "), f"{path.name}: {block[:60]!r} is not an example with its output"
 
 

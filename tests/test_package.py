@@ -15,7 +15,7 @@ from ballsocket.paper.claims import table
 from .cli.command import run
 from .extent import some
 from .joints import HIP
-from .places import ROOT
+from .places import ROOT, fenced
 from .printed import with_numbers_of
 
 
@@ -60,7 +60,7 @@ def test_examples_run(path, monkeypatch, tmp_path):
 
 def test_the_readme_shows_the_output_of_its_command():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    shown = re.search(r"^```text\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL).group(1)
+    shown = fenced(ROOT / "README.md", "text")[0]
     command = re.search(r"^pip install .* && ballsocket (press .*)$", text, flags=re.MULTILINE).group(1)
     printed = "\n".join(line.rstrip() for line in run(*command.split(), folder=ROOT).stdout.splitlines())
     assert with_numbers_of(shown, printed).splitlines() == shown.splitlines()

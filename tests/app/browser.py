@@ -4,8 +4,10 @@ import asyncio
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
+import time
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from threading import Event, Thread
@@ -155,18 +157,6 @@ class User:
         self.page.locator(f"text={words}").first.wait_for()
         return True
 
-    def drags(self, handle, *moves):
-        """Drag a handle from its middle over some points, each relative to the one before."""
-        box = self.page.locator(handle).bounding_box()
-        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-        self.page.mouse.move(x, y)
-        self.page.mouse.down()
-        for across, down in moves:
-            x, y = x + across, y + down
-            self.page.mouse.move(x, y, steps=4)
-        self.page.mouse.up()
-        return self.answered()
-
     def link(self):
         query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
         return {name: values[0] for name, values in query.items()}
@@ -192,85 +182,65 @@ AT_REST = """async () => {
 
 
 class Proxy:
-    """Proxy on its own port, in a thread of its own; `delay` is the latency in s towards the browser."""
+    """Proxy on its own port, with threads of its own; `delay` is the latency in s towards the browser."""
 
     def __init__(self, target):
-        self._target, self._ready = target, Event()
-        self._lines, self._tasks = set(), set()
-        self.delay = 0.0
-        self._thread = Thread(target=lambda: asyncio.run(self._serve()))
-        self._thread.start()
-        self._ready.wait()
-
-    async def _serve(self):
-        self._loop = asyncio.get_running_loop()
-        self._open, self._end = asyncio.Event(), asyncio.Event()
+        self._target, self._lines, self.delay = target, set(), 0.0
+        self._open = Event()
         self._open.set()
-        server = await asyncio.start_server(self._connect, "127.0.0.1", 0)
-        self.address = f"http://127.0.0.1:{server.sockets[0].getsockname()[1]}/"
-        self._ready.set()
-        await self._end.wait()
-        server.close()
-        for line in self._lines:
-            line.transport.abort()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._port = socket.create_server(("127.0.0.1", 0))
+        self.address = f"http://127.0.0.1:{self._port.getsockname()[1]}/"
+        Thread(target=self._accept, daemon=True).start()
 
-    def _connect(self, reader, writer):
-        task = asyncio.ensure_future(self._relay(reader, writer))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+    def _accept(self):
+        with suppress(OSError):  # at its end
+            while True:
+                Thread(target=self._connect, args=self._port.accept()[:1], daemon=True).start()
 
-    async def _relay(self, reader, writer):
-        await self._open.wait()
+    def _connect(self, browser):
+        self._open.wait()
         try:
-            server_reader, server_writer = await asyncio.open_connection("127.0.0.1", self._target)
+            server = socket.create_connection(("127.0.0.1", self._target))
         except OSError:
-            writer.close()
+            browser.close()
             return
-        lines = {writer, server_writer}
-        self._lines |= lines
+        self._lines |= {browser, server}
+        Thread(target=self._copy, args=(browser, server, False), daemon=True).start()
+        self._copy(server, browser, True)
+
+    def _copy(self, source, sink, late):
+        with suppress(OSError):  # of a line that is cut
+            while data := source.recv(65536):
+                time.sleep(late * self.delay)
+                self._open.wait()
+                sink.sendall(data)
+        self._shut(sink)
+
+    @staticmethod
+    def _shut(line):
         with suppress(OSError):
-            await asyncio.gather(self._copy(reader, server_writer), self._copy(server_reader, writer, late=True))
-        self._lines -= lines
-
-    async def _copy(self, reader, writer, late=False):
-        """Copy in order; each piece of data to the browser waits for the delay."""
-        waiting = asyncio.Queue()
-
-        async def send():
-            while (item := await waiting.get()) is not None:
-                moment, data = item
-                await asyncio.sleep(max(0.0, moment - self._loop.time()))
-                await self._open.wait()
-                writer.write(data)
-                await writer.drain()
-            writer.close()
-
-        sender = asyncio.ensure_future(send())
-        while data := await reader.read(65536):
-            waiting.put_nowait((self._loop.time() + late * self.delay, data))
-        waiting.put_nowait(None)
-        await sender
+            line.shutdown(socket.SHUT_RDWR)
 
     def stop(self):
         """Stop all data without closing a connection, as a network without signal does."""
-        self._loop.call_soon_threadsafe(self._open.clear)
+        self._open.clear()
 
     def go_on(self):
-        self._loop.call_soon_threadsafe(self._open.set)
+        self._open.set()
 
     def cut(self):
         """Close all connections; new ones wait until `go_on`."""
         self.stop()
         for line in list(self._lines):
-            self._loop.call_soon_threadsafe(line.transport.abort)
+            self._shut(line)
 
     def end(self):
         """Close the port and all connections."""
-        self._loop.call_soon_threadsafe(self._end.set)
-        self._thread.join()
+        self._shut(self._port)
+        self.cut()
+        self.go_on()
+        for line in (self._port, *self._lines):
+            line.close()
 
 
 @contextmanager
@@ -280,3 +250,12 @@ def opened_proxy(address):
         yield proxy
     finally:
         proxy.end()
+
+
+@contextmanager
+def opened_line(browser, address):
+    """Somebody with an open page, behind a proxy of their own; the page has no error."""
+    with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
+        user = User(profile, proxy.address).open()
+        yield proxy, user
+        assert not user.errors

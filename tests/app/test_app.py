@@ -266,20 +266,6 @@ def test_everything_on_the_map_is_done_by_keys(user):
     expect(user.page.locator(".limit-rows input")).to_have_value("29")
 
 
-def test_a_limit_is_dragged_and_undone_as_one_step(user):
-    user.open(MAP)
-    spot(user, 0, 0)
-    user.drags("#map-picture .square", (-36, 34), (-30, 20))
-    user.until("!location.search.includes('%3D26.0')")
-    user.answered()
-    assert 15 < float(user.page.locator(".limit-rows input").input_value()) < 25.5
-    assert user.page.locator("#map-point table").count() == 0  # it was no click
-    user.page.go_back()
-    user.until("location.search.includes('%3D26.0')")
-    user.answered()
-    expect(user.page.locator(".limit-rows input")).to_have_value("26")
-
-
 def share_of_colours(pixels):
     """Share of pixels with the colours of a pressure: the cup and the page are nearly grey."""
     return float((pixels.max(axis=2) - pixels.min(axis=2) > 90).mean())

@@ -2,21 +2,18 @@
 
 import asyncio
 import gzip
-import itertools
 import json
 import os
-import socket
-import struct
-from contextlib import ExitStack, closing, contextmanager, suppress
+from contextlib import closing, suppress
 from functools import partial, wraps
 from http.client import HTTPConnection
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event
 from urllib.parse import quote, urlsplit
 
 import pytest
 from tornado.httpclient import HTTPRequest
-from tornado.websocket import websocket_connect
+from tornado.websocket import WebSocketClosedError, websocket_connect
 
 from ballsocket.app import server as serve
 from ballsocket.app.channel import Channel
@@ -24,90 +21,81 @@ from ballsocket.app.jobs import PageThread, run_in_thread
 from ballsocket.app.server import HostNames
 from ballsocket.app.state.screen import VIEWS
 
-from ..processes import PATIENCE, wait_until
+from ..processes import PATIENCE
 from .browser import User, explorer_process, opened_profile
 
-_HANDSHAKE = (
-    "GET /socket HTTP/1.1\r\nHost: {0}\r\nOrigin: {1}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-    "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
-)
-TEXT, BINARY, CLOSE = 1, 2, 8
+LINES = []
+"""Open connections of a test."""
 
 
-class Wire:
-    """Connection to the socket of an explorer."""
+def in_loop(test):
+    """Run a test in the loop of the server, and close the connections of its users."""
 
-    def __init__(self, address, origin=None):
-        parts = urlsplit(address)
-        self._line = socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE)
-        words = _HANDSHAKE.format(parts.netloc, origin or f"http://{parts.netloc}")
-        self._line.sendall(words.encode())
-        head = b""
-        while not head.endswith(b"\r\n\r\n") and (byte := self._line.recv(1)):
-            head += byte
-        self.status = int(head.split()[1])
+    @wraps(test)
+    def run(served, **fixtures):
+        try:
+            served.io_loop.run_sync(partial(test, served, **fixtures), timeout=PATIENCE)
+        finally:
+            while LINES:
+                served.io_loop.run_sync(partial(close, LINES.pop()), timeout=PATIENCE)
 
-    def send(self, content, kind=TEXT):
-        size = len(content)
-        length = bytes([0x80 | size]) if size < 126 else b"\xff" + struct.pack(">Q", size)
-        self._line.sendall(bytes([0x80 | kind]) + length + bytes(4) + content)
+    return run
 
-    def ask(self, number, action, **words):
-        self.send(json.dumps({"n": number, "do": action, **words}).encode())
 
-    def receive(self):
-        """Return kind and content of the next frame; None at the end of the connection."""
-        head = self._read(2)
-        if head is None:
-            return None
-        size = head[1] & 127
-        if size > 125:
-            size = int.from_bytes(self._read(2 if size == 126 else 8), "big")
-        return head[0] & 15, self._read(size)
+class Someone:
+    """One user of a server, as the script of the page would be."""
 
-    def answer(self, number):
-        """Read messages until one answers a request; return all that they say, as one."""
+    def __init__(self, served):
+        self.address, self.number = f"127.0.0.1:{served.port}", 0
+
+    async def connect(self):
+        headers = {"Origin": f"http://{self.address}"}
+        self.line = await websocket_connect(HTTPRequest(f"ws://{self.address}/socket", headers=headers))
+        LINES.append(self.line)
+        return self
+
+    async def open(self):
+        await self.connect()
+        return await self.asks("open", query="")
+
+    async def opened(self):
+        await self.open()
+        return self
+
+    async def says(self, what, **words):
+        self.number += 1
+        await self.line.write_message(json.dumps({"n": self.number, "do": what, **words}))
+
+    async def hears(self):
+        text = await asyncio.wait_for(self.line.read_message(), PATIENCE)
+        assert text is not None, "the server closed the connection"
+        return json.loads(text)
+
+    async def asks(self, what, **words):
+        """Send a request, and return all that the server says until its answer, as one."""
+        await self.says(what, **words)
         answer = {}
-        while answer.get("n", 0) < number:
-            frame = self.receive()
-            assert frame is not None, "the server closed the connection"
-            assert frame[0] != CLOSE, frame[1]
-            if frame[0] == TEXT:  # not a ping
-                answer |= json.loads(frame[1])
+        while answer.get("n") != self.number:
+            answer |= await self.hears()
         return answer
 
-    def is_closed(self):
-        """Read until the server closes the connection."""
-        with suppress(OSError):
-            while (frame := self.receive()) is not None and frame[0] != CLOSE:
-                pass
-        return True
-
-    def _read(self, size):
-        content = b""
-        while len(content) < size:
-            if not (part := self._line.recv(size - len(content))):
-                return None
-            content += part
-        return content
-
-    def shut(self):
-        """End the connection in both directions, also for a thread that waits for it."""
-        with suppress(OSError):
-            self._line.shutdown(socket.SHUT_RDWR)
-
-    def close(self):
-        self.shut()
-        self._line.close()
+    async def moves_load(self):
+        """Whether the page takes an edit."""
+        return (await self.asks("edit", name="load", value=2900))["=load"]["value"] == 2900
 
 
-@contextmanager
-def opened_wire(address, query=""):
-    with closing(Wire(address)) as wire:
-        assert wire.status == 101
-        wire.ask(1, "open", query=query)
-        wire.answer(1)
-        yield wire
+async def close(line):
+    """Close a connection, and wait until its socket is closed; one that a test has closed has no protocol."""
+    if line.protocol is not None:
+        stream = line.protocol.stream
+        line.close()
+        await until(stream.closed)
+
+
+async def until(condition):
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            await asyncio.sleep(0.01)
 
 
 STRICT = {
@@ -195,8 +183,10 @@ STRANGERS = "http://evil.example http://127.0.0.1:1 https://hips.example.org nul
 
 @pytest.mark.parametrize("origin", [None, "https://hips.example.org:8443", *STRANGERS.split()])
 def test_a_page_of_another_server_opens_no_socket(address, origin):
-    with closing(Wire(address, origin)) as wire:
-        assert wire.status == (403 if origin in STRANGERS.split() else 101)
+    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Origin": origin or address.rstrip("/")}
+    upgrade |= {"Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA=="}
+    status = answer(address, "/socket", **upgrade)[0].status
+    assert status == (403 if origin in STRANGERS.split() else 101)
 
 
 HOSTS = "hips.example.org", "any.example", "hips.example.com", "a.b.example.org"
@@ -207,12 +197,6 @@ def test_a_star_stands_for_any_part_of_a_name(name, count):
     for host in HOSTS:
         assert HostNames([name]).answer_to(host) == (host in HOSTS[:count])
         assert HostNames([name]).trust(f"http://{host}", "127.0.0.1") == (host in HOSTS[:count])
-
-
-def moves_load(wire, number=2):
-    """Whether a page takes an edit."""
-    wire.ask(number, "edit", name="load", value=2900)
-    return wire.answer(number)["=load"]["value"] == 2900
 
 
 @pytest.mark.parametrize(
@@ -227,27 +211,30 @@ def moves_load(wire, number=2):
     ],
     ids=lambda content: content[:22].decode(),
 )
-@pytest.mark.parametrize("kind", [TEXT, BINARY])
-def test_what_is_no_request_is_ignored(address, content, kind):
-    with opened_wire(address) as wire:
-        wire.send(content, kind)
-        assert moves_load(wire)
+@pytest.mark.parametrize("binary", [False, True])
+@in_loop
+async def test_what_is_no_request_is_ignored(served, content, binary):
+    user = await Someone(served).opened()
+    await user.line.write_message(content, binary)
+    assert await user.moves_load()
 
 
-def test_requests_before_the_first_page_are_ignored(address):
-    with closing(Wire(address)) as wire:
-        wire.ask(1, "edit", name="load", value=2900)
-        wire.ask(2, "open", query="")
-        assert wire.answer(2)["=load"]["value"] == 3000
+@in_loop
+async def test_requests_before_the_first_page_are_ignored(served):
+    user = await Someone(served).connect()
+    await user.says("edit", name="load", value=2900)
+    assert (await user.asks("open", query=""))["=load"]["value"] == 3000
 
 
 @pytest.mark.parametrize("content", [b'"' + b"x" * 500_000 + b'"', b"{" + b" " * 3_000_000, b"\xff\xfe\xfd"])
-def test_a_message_that_is_too_large_or_no_text_ends_its_own_connection(address, content):
-    with opened_wire(address) as wire, opened_wire(address) as other:
-        with suppress(OSError):  # closed while it is sent
-            wire.send(content)
-        assert wire.is_closed()
-        assert moves_load(other)
+@in_loop
+async def test_a_message_that_is_too_large_or_no_text_ends_its_own_connection(served, content):
+    user, other = await Someone(served).opened(), await Someone(served).opened()
+    with suppress(WebSocketClosedError):  # closed while it is sent
+        await user.line.protocol._write_frame(True, 1, content)  # as text, which need not be UTF-8
+    while await asyncio.wait_for(user.line.read_message(), PATIENCE) is not None:
+        pass
+    assert await other.moves_load()
 
 
 @pytest.mark.parametrize(
@@ -275,15 +262,15 @@ def test_a_message_that_is_too_large_or_no_text_ends_its_own_connection(address,
     ],
     ids=lambda words: f"{words['do']} {str(words.get('name', ''))[:12]}",
 )
-def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(address, words):
-    with opened_wire(address) as wire:
-        wire.send(json.dumps({"n": 2, **words}).encode())
-        texts = wire.answer(2)
-        while not (sentence := texts.get("#trouble") or texts.get("=load", {}).get("error")):
-            texts |= json.loads(wire.receive()[1])
-        assert "<p" in sentence or "stays in use" in sentence
-        assert not any(word in sentence for word in ("Traceback", ".py", "site-packages"))
-        assert moves_load(wire, 3)
+@in_loop
+async def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(served, words):
+    user = await Someone(served).opened()
+    texts = await user.asks(words["do"], **{name: value for name, value in words.items() if name != "do"})
+    while not (sentence := texts.get("#trouble") or texts.get("=load", {}).get("error")):
+        texts |= await user.hears()
+    assert "<p" in sentence or "stays in use" in sentence
+    assert not any(word in sentence for word in ("Traceback", ".py", "site-packages"))
+    assert await user.moves_load()
 
 
 def megabytes(process="self"):
@@ -294,46 +281,43 @@ def megabytes(process="self"):
 @needs_proc
 def test_a_client_that_never_reads_does_not_grow_the_server():
     """Answers of the edits are many times the memory that the server may gain, and another user goes on."""
-    sent = []
+    with explorer_process() as (address, process):
+        try:
+            asyncio.run(edit_without_reading(urlsplit(address), process.pid))
+        finally:
+            LINES.clear()  # they end with this loop
 
-    def edit(wire, number):
-        wire.ask(number, "edit", name="clearance", value=0.05 + 0.001 * (number % 100))
 
-    def edit_often():
-        with suppress(OSError):  # the connection ends
-            for number in range(2, 3002):
-                edit(deaf, number)
-                sent.append(number)
+async def edit_without_reading(parts, process):
+    user, deaf, sent = await Someone(parts).opened(), await Someone(parts).opened(), []
 
-    def edit_with_answers(numbers):
-        for number in numbers:
-            edit(user, number)
-            user.answer(number)
+    async def edit_often():
+        for number in range(3000):
+            await deaf.says("edit", name="clearance", value=0.05 + 0.001 * (number % 100))
+            sent.append(number)
 
-    def takes_no_more():
-        """Whether none of the edits was taken while another user had ten answers."""
-        before, first = len(sent), next(tens)
-        edit_with_answers(range(first, first + 10))
-        return before == len(sent) > 0
+    async def taken_during_ten_answers():
+        before = len(sent)
+        for number in range(10):
+            await user.asks("edit", name="clearance", value=0.05 + 0.001 * number)
+        return len(sent) - before
 
-    with explorer_process() as (address, process), opened_wire(address) as user, opened_wire(address) as deaf:
-        edit_with_answers(range(2, 102))  # caches fill first
-        before, tens = megabytes(process.pid), itertools.count(102, 10)
-        sender = Thread(target=edit_often)
-        sender.start()
-        wait_until(takes_no_more)
-        assert moves_load(user, next(tens))
-        assert megabytes(process.pid) - before < 15
-        deaf.shut()
-        sender.join()
+    for _ in range(10):
+        await taken_during_ten_answers()  # caches fill first
+    before, sender = megabytes(process), asyncio.ensure_future(edit_often())
+    while not sent or await taken_during_ten_answers():
+        await asyncio.sleep(0)
+    assert await user.moves_load()
+    assert megabytes(process) - before < 15
+    sender.cancel()
 
 
 @pytest.mark.long
-def test_a_thousand_idle_connections_leave_room_for_a_user(address):
-    with ExitStack() as stack:
-        for _ in range(1000):
-            stack.callback(Wire(address).close)
-        assert moves_load(stack.enter_context(opened_wire(address)))
+@in_loop
+async def test_a_thousand_idle_connections_leave_room_for_a_user(served):
+    for _ in range(1000):
+        await Someone(served).connect()
+    assert await (await Someone(served).opened()).moves_load()
 
 
 _SCRIPT = "<img src=x onerror='window.ran=1'><script>window.ran=1</script>"
@@ -348,68 +332,6 @@ def test_script_in_names_is_text_in_every_view(browser, address, view):
         user = User(profile, address).open(f"?view={view}&{joint}&{other}")
         assert user.page.evaluate("window.ran") is None
         assert user.page.locator("img[src=x]").count() == 0
-
-
-LINES = []
-"""Open connections of a test."""
-
-
-def in_loop(test):
-    """Run a test in the loop of the server, and close the connections of its users."""
-
-    @wraps(test)
-    def run(served, **fixtures):
-        try:
-            served.io_loop.run_sync(partial(test, served, **fixtures), timeout=PATIENCE)
-        finally:
-            while LINES:
-                served.io_loop.run_sync(partial(close, LINES.pop()), timeout=PATIENCE)
-
-    return run
-
-
-class Someone:
-    """One user, as the script of the page would be."""
-
-    def __init__(self, served):
-        self.address, self.number = f"127.0.0.1:{served.port}", 0
-
-    async def connect(self):
-        headers = {"Origin": f"http://{self.address}"}
-        self.line = await websocket_connect(HTTPRequest(f"ws://{self.address}/socket", headers=headers))
-        LINES.append(self.line)
-        return self
-
-    async def open(self):
-        await self.connect()
-        return await self.asks("open", query="")
-
-    async def says(self, what, **words):
-        self.number += 1
-        await self.line.write_message(json.dumps({"n": self.number, "do": what, **words}))
-
-    async def asks(self, what, **words):
-        await self.says(what, **words)
-        while True:
-            text = await asyncio.wait_for(self.line.read_message(), PATIENCE)
-            assert text is not None, "the server closed the connection"
-            message = json.loads(text)
-            if message.get("n") == self.number:
-                return message
-
-
-async def close(line):
-    """Close a connection, and wait until its socket is closed; one that a test has closed has no protocol."""
-    if line.protocol is not None:
-        stream = line.protocol.stream
-        line.close()
-        await until(stream.closed)
-
-
-async def until(condition):
-    async with asyncio.timeout(PATIENCE):
-        while not condition():
-            await asyncio.sleep(0.01)
 
 
 @in_loop

@@ -1,22 +1,14 @@
 """Late, silent and cut lines in a browser: a loss is seen and heals, and unmarked numbers belong to their inputs."""
 
-from contextlib import contextmanager
 from functools import lru_cache
 from itertools import pairwise
 from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import User, explorer_process, opened_profile, opened_proxy, pressure
+from .browser import User, explorer_process, opened_line, opened_profile, opened_proxy, pressure
 
 pytestmark = pytest.mark.long
-
-
-@contextmanager
-def opened_line(browser, address):
-    """Somebody with an open page, behind a proxy of their own."""
-    with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
-        yield proxy, User(profile, proxy.address).open()
 
 
 @lru_cache
@@ -90,7 +82,6 @@ def test_a_line_that_is_cut_or_silent_heals_and_never_contradicts(browser, addre
             assert user.page.url == url.replace("3000", "3050")
             assert not user.page.locator("#lost").inner_text()
             assert never_contradicts(user.page)
-            assert not user.errors
 
 
 _HELD_CLOCK = "performance.now = ((now) => () => window.moment ?? now())(performance.now.bind(performance))"
@@ -179,8 +170,7 @@ def test_a_server_that_is_killed_and_started_again_heals(browser):
 
 
 def test_a_load_slider_is_answered_from_the_curve_of_the_joint_until_the_server_confirms(browser, address):
-    with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
-        user = User(profile, proxy.address).open()
+    with opened_line(browser, address) as (proxy, user):
         user.page.locator("#press-charts svg").first.wait_for()  # the curve comes with them
         numbers = user.page.locator("#press-numbers")
         cell = numbers.locator("dd[data-name=max_pressure]")
@@ -198,4 +188,3 @@ def test_a_load_slider_is_answered_from_the_curve_of_the_joint_until_the_server_
         proxy.go_on()
         assert user.answered().shows("max_pressure", pressure(force=3200.0, clearance=0.105))
         assert numbers.get_attribute("data-quick") is None
-        assert not user.errors

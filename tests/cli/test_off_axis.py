@@ -86,14 +86,8 @@ def test_orient_maps_edge_distance_and_pressure(tmp_path):
 
 
 @pytest.mark.long
-def test_orient_prints_every_orientation_and_the_limits():
+def test_orient_checks_limits_over_a_range_of_an_angle_in_steps():
     words = ("orient", "hip-36", "--force", "2.5 kN", "--ring-width", "6 deg", "--limit", "edge_distance>=1 mm")
-    printed = run(*words, "--inclination", "30..70", "--anteversion", "20 deg", columns=60).stdout
-    for angle in range(30, 71, 5):
-        assert len(re.findall(rf"(?<= ){angle}°(?= |\n)", printed)) >= 2  # in the heads of both tables
-    assert printed.count("\n20°") >= 2
-    end = r"at 20° anteversion the limit is kept for certain up to \d\d° inclination \(steps of 5°\)"
-    assert re.search(end, " ".join(printed.split()))
     alone = refusal(*words, "--inclination", "45", "--anteversion", "20", "--figure", "a.png")
     assert "--figure needs a range of an angle" in alone
     said = answer(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20")

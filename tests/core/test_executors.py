@@ -6,7 +6,6 @@ import subprocess
 import sys
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
 from datetime import datetime
 from importlib import import_module
 from ipaddress import ip_address
@@ -66,17 +65,11 @@ def work(tmp_path, monkeypatch):
 def test_every_executor_computes_every_piece_once_and_raises_its_error(work):
     expected = [(number, number * number) for number in range(20)]
     assert list(Serial().run(work.square, range(20))) == expected
+    assert list(Processes(workers=2).run(work.square, [])) == []
     assert sorted(Processes(workers=2).run(work.square, range(20))) == expected
     for executor in (Serial(), Processes(workers=1)):
         with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
             list(executor.run(work.fail, [5]))
-
-
-def test_no_pieces_start_no_worker(work, monkeypatch):
-    monkeypatch.setattr(module, "ProcessPoolExecutor", None)
-    monkeypatch.setattr(Distributed, "_connect_client", None)
-    for executor in (Serial(), Processes(workers=2), Distributed(workers=2)):
-        assert list(executor.run(work.square, [])) == []
 
 
 def test_a_killed_process_costs_an_attempt_and_has_one_thread(tmp_path, work, monkeypatch):
@@ -268,26 +261,14 @@ def test_tls_needs_the_certificates(tmp_path):
     assert {client.status for client in clients} <= {"closed", "newly-created"}  # a start under way would wait for them
 
 
-def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatch):
-    import dask
-
-    distributed = pytest.importorskip("distributed")
-    started = {}
-
-    @contextmanager
-    def cluster(**options):
-        failures = dask.config.get("distributed.scheduler.allowed-failures")
-        trim = dask.config.get("distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_")
-        started.update(options, failures=failures, trim=trim)
-        yield
-        started["stopped"] = True
-
-    monkeypatch.setattr(distributed, "LocalCluster", cluster)
-    with local_cluster(3, retries=2):
-        assert (started["n_workers"], started["threads_per_worker"], started["host"]) == (3, 1, "127.0.0.1")
-        assert (started["failures"], started["trim"], started["dashboard_address"]) == (2, None, "127.0.0.1:0")
-        assert started["silence_logs"] == 40  # errors only
-    assert started["stopped"]
+def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable():
+    pytest.importorskip("distributed")
+    with local_cluster(2, retries=2) as cluster:
+        workers = cluster.scheduler_info["workers"]
+        assert [worker["nthreads"] for worker in workers.values()] == [1, 1]
+        for address in (cluster.scheduler_address, cluster.dashboard_link.partition("//")[2], *workers):
+            assert address.removeprefix("tcp://").startswith("127.0.0.1:")
+        assert cluster.scheduler.allowed_failures == 2
 
 
 def test_a_scheduler_that_cannot_be_reached_is_an_error_of_one_sentence(monkeypatch):

@@ -12,14 +12,14 @@ from operator import getitem
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
-from ballsocket.cli.root import app
 from ballsocket.evidence import comparison
 from ballsocket.evidence.comparison import compare
 from ballsocket.evidence.credibility import assess
 from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SIGNATURES, SUMS, digest
+
+from ..cli.command import answer, refusal, run
 
 
 @pytest.fixture
@@ -147,29 +147,26 @@ def test_a_folder_without_a_pack_is_refused(out, name, content, message):
         compare(out)
 
 
-def run(*words):
-    return CliRunner().invoke(app, ["evidence", *map(str, words)])
-
-
 @pytest.mark.long
 def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, out):
     for path in out.iterdir():
         path.unlink()
     shutil.copytree(pack[2] / "data", out / "data")
-    result = run(pack[2] / "asked.toml", "--out", out)
+    words = "evidence", str(pack[2] / "asked.toml"), "--out", str(out)
+    result = run(*words)
     stored = len(list((pack[2] / "data").rglob("*.json")))
     assert f"{stored} results of an earlier, stopped run not computed but read" in result.stdout
     assert result.stdout.startswith("largest pressure at most 15 MPa: exceeded: ")
     assert sorted(path.name for path in out.iterdir()) == sorted([PAGE, RECORD, SUMS, QUESTION])
     for name in (PAGE, RECORD, SUMS):
         assert (out / name).read_bytes() == (pack[2] / "out" / name).read_bytes()  # the same bytes, drawn again
-    answer = json.loads(run("--check", out, "--json").stdout)
-    assert answer["digest"] in result.stdout
-    assert (answer["valid"], answer["differences"], answer["notes"]) == (True, [], [])
-    strict = run("--check", out, "--strict")
-    assert (strict.exit_code, "largest pressure at most 15 MPa: exceeded: " in strict.stdout) == (1, True)
+    check = "evidence", "--check", str(out)
+    said = answer(*check)
+    assert said["digest"] in result.stdout
+    assert (said["valid"], said["differences"], said["notes"]) == (True, [], [])
+    strict = run(*check, "--strict")
+    assert (strict.returncode, "largest pressure at most 15 MPa: exceeded: " in strict.stdout) == (1, True)
     (out / "notes.txt").touch()
-    changed = run("--check", out)
-    assert (changed.exit_code, "notes.txt: does not belong to the pack" in changed.stdout) == (3, True)
-    refused = run(pack[2] / "asked.toml", "--out", out)
-    assert "holds other files ('notes.txt'): a pack needs an empty folder" in str(refused.exception)
+    changed = run(*check)
+    assert (changed.returncode, "notes.txt: does not belong to the pack" in changed.stdout) == (3, True)
+    assert "holds other files ('notes.txt'): a pack needs an empty folder" in refusal(*words)

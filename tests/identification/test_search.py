@@ -168,18 +168,6 @@ def test_differences_are_the_derivatives_of_the_results_and_one_sided_at_the_end
         np.testing.assert_allclose(slope[:, 0], (near - at_end) / step, rtol=1e-3)
 
 
-def test_differences_omit_a_neighbour_without_a_result():
-    class Edge(LinearForward):
-        def results_at(self, values, load_perturbation=0.0):
-            return np.where(values[:, :1] > TRUTH[0] + 1e-9, np.nan, values @ self.matrix.T)
-
-    linear = linear_misfit()
-    theta = linear.transform.to_theta(TRUTH)
-    results, slopes = by_differences(Edge(linear.forward.data, MATRIX), linear.transform, theta)
-    np.testing.assert_allclose(results, MATRIX @ TRUTH, rtol=1e-12)
-    np.testing.assert_allclose(slopes, MATRIX * [unknown(name).prior_deviation for name in NAMES], rtol=1e-7)
-
-
 @pytest.mark.parametrize("z", [-1.5, -0.3, 0.6, 20.0])
 @pytest.mark.parametrize("scatter", [NormalScatter(), HeavyTailed()], ids=["normal", "heavy-tailed"])
 def test_the_information_of_lower_bounds_is_the_curvature_of_the_cost(scatter, z):

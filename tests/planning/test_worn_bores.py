@@ -5,8 +5,6 @@ import re
 import numpy as np
 import pytest
 
-from ballsocket.core.kinds import MILLIMETRES
-from ballsocket.core.unit_systems import Sentence, with_error
 from ballsocket.planning import PointCloud, measure_wear, read_points
 
 from ..cli.command import answer, printed, refusal
@@ -139,10 +137,3 @@ def test_a_measured_head_acts_or_the_notes_say_that_it_does_not():
     for bore in (equal, same):
         assert "changes no number" in bore.head_note
     assert "a diameter of 4 mm less than the bore" in same.head_note
-
-
-def test_a_printed_number_has_the_digits_of_its_error():
-    assert [str(Sentence("{} ± {}", *with_error(*pair, MILLIMETRES))) for pair in ((91.63, 5.1), (1234.5, 120.0))] == [
-        "91.6 mm ± 5.1 mm",
-        "1230 mm ± 120 mm",
-    ]
