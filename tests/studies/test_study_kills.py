@@ -97,7 +97,12 @@ def equal_to_undisturbed(store):
 def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
     """A real failure of the system's: no file may be larger than 20 kB."""
     pytest.importorskip("resource", reason="no limits of resources")
-    limited = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000)); {MAIN}"
+    limited = f"""
+import resource, sys
+sys.dont_write_bytecode = True  # Python would keep compiled modules that end at the limit
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+{MAIN}
+"""
     words = {"model": "hess-forsbach", "clearances": 100, "radii": 100, "engine": "serial"}
     process = start(code=limited, **words)
     _, errors = process.communicate(timeout=PATIENCE)
