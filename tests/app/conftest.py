@@ -6,7 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import User, explorer_process, opened_browser, opened_profile
+from .browser import WIDE, User, explorer_process, opened_browser, opened_profile
 
 _LOOP = pytest.StashKey()
 
@@ -56,6 +56,36 @@ def user(profile, address):
     if someone.requests:
         someone.page.evaluate("localStorage.clear()")
     someone.page.close()
+
+
+def each_in_turn(user):
+    """One page for several tests that need no history: a page of its own costs a process of the browser."""
+    user.page.set_viewport_size({"width": WIDE, "height": 900})
+    yield user
+    assert not user.errors
+    user.page.evaluate("localStorage.clear()")
+
+
+@pytest.fixture(scope="session")
+def open_page(profile, address):
+    return User(profile, address)
+
+
+@pytest.fixture
+def reader(open_page):
+    yield from each_in_turn(open_page)
+
+
+@pytest.fixture(scope="session")
+def examined_page(browser, address):
+    """Scripts of a test run in it, against the policy of the page."""
+    with opened_profile(browser, address, bypass_csp=True) as profile:
+        yield User(profile, address)
+
+
+@pytest.fixture
+def examiner(examined_page):
+    yield from each_in_turn(examined_page)
 
 
 @pytest.fixture

@@ -28,19 +28,17 @@ def violations(user):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("view", "looks"), list(zip(VIEWS, cycle(_LOOKS), strict=False)))
-def test_a_page_fits_and_axe_finds_no_violation(browser, address, view, looks):
-    with opened_profile(browser, address, bypass_csp=True) as profile:
-        user = User(profile, address).open(f"?view={view}&beside1.preset=hip-36&use.cycle=iso-14242-1")
-        user.page.locator(".side").evaluate("(side) => { side.open = true; }")
-        for width, theme in looks:
-            user.page.set_viewport_size({"width": width, "height": 900})
-            if not user.page.locator(f".app.{theme}").count():
-                user.page.get_by_role("button", name="Light or dark").click()
-            assert user.page.evaluate(AT_REST) == width
-            if PICTURES:
-                user.page.screenshot(path=Path(PICTURES) / f"{view}_{width}_{theme}.png", full_page=True)
-            assert violations(user) == [], (width, theme)
-        assert not user.errors
+def test_a_page_fits_and_axe_finds_no_violation(examiner, view, looks):
+    page = examiner.open(f"?view={view}&beside1.preset=hip-36&use.cycle=iso-14242-1").page
+    page.locator(".side").evaluate("(side) => { side.open = true; }")
+    for width, theme in looks:
+        page.set_viewport_size({"width": width, "height": 900})
+        if not page.locator(f".app.{theme}").count():
+            page.get_by_role("button", name="Light or dark").click()
+        assert page.evaluate(AT_REST) == width
+        if PICTURES:
+            page.screenshot(path=Path(PICTURES) / f"{view}_{width}_{theme}.png", full_page=True)
+        assert violations(examiner) == [], (width, theme)
 
 
 _REACH = """() => {
@@ -81,20 +79,20 @@ def reach_all(user):
 
 @pytest.mark.long
 @pytest.mark.parametrize("view", VIEWS)
-def test_everything_that_a_pointer_can_do_has_a_key(user, view):
+def test_everything_that_a_pointer_can_do_has_a_key(reader, view):
     """Each element to click or drag is a stop of Tab, or has a twin that is; an arrow key moves each handle."""
-    user.open(f"?view={view}&beside1.preset=hip-36&limit=outer_diameter<=52")
-    reach_all(user)
-    assert user.page.locator("[data-reached]").first.text_content() == "Go to the results"
-    assert user.page.locator("[data-reached]").count() > 10
-    assert user.page.evaluate(_UNREACHED) == []
-    handles = user.page.locator("[data-drag][tabindex]:visible")
+    reader.open(f"?view={view}&beside1.preset=hip-36&limit=outer_diameter<=52")
+    reach_all(reader)
+    assert reader.page.locator("[data-reached]").first.text_content() == "Go to the results"
+    assert reader.page.locator("[data-reached]").count() > 10
+    assert reader.page.evaluate(_UNREACHED) == []
+    handles = reader.page.locator("[data-drag][tabindex]:visible")
     for name in dict.fromkeys(handle.get_attribute("data-drag") for handle in handles.all()):
-        before = user.page.url
-        user.page.locator(f"[data-drag='{name}'][tabindex]:visible").first.focus()
-        user.page.keyboard.press("ArrowUp")
-        user.answered()
-        assert user.page.url != before, name
+        before = reader.page.url
+        reader.page.locator(f"[data-drag='{name}'][tabindex]:visible").first.focus()
+        reader.page.keyboard.press("ArrowUp")
+        reader.answered()
+        assert reader.page.url != before, name
 
 
 def test_a_slider_moves_the_answer_and_a_link_brings_it_back_on_a_page_for_all(browser, address):

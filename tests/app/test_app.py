@@ -84,19 +84,19 @@ def test_a_typed_number_is_marked_counts_as_it_stands_and_is_undone_from_its_box
     expect(user.page.locator("#redo")).to_be_enabled()
 
 
-def test_a_link_with_a_mistake_keeps_its_address_and_greys_the_rest(user):
+def test_a_link_with_a_mistake_keeps_its_address_and_greys_the_rest(reader):
     wrong = "?joint.ball_radius=abc&load.force=3000"
-    page = user.open(wrong).page
-    assert user.says("ball_radius = 'abc'")
+    page = reader.open(wrong).page
+    assert reader.says("ball_radius = 'abc'")
     page.locator("[data-unread]").wait_for()
     assert page.url.endswith(wrong)
-    user.enters("load", "2000")
-    user.until("location.search.includes('load.force=2000')")
+    reader.enters("load", "2000")
+    reader.until("location.search.includes('load.force=2000')")
     assert page.locator("[data-unread]").count() == 0
 
 
-def test_a_border_that_is_held_follows_the_pointer_and_does_not_run_away(user):
-    page = user.open().page
+def test_a_border_that_is_held_follows_the_pointer_and_does_not_run_away(reader):
+    page = reader.open().page
     field = page.locator("[data-name=liner_thickness] input[type=text]")
     x, y = page.locator("[data-drag=liner_thickness]").evaluate("""(arc) => {
       const { x, y } = arc.getPointAtLength(arc.getTotalLength() / 2).matrixTransform(arc.getScreenCTM());
@@ -105,11 +105,11 @@ def test_a_border_that_is_held_follows_the_pointer_and_does_not_run_away(user):
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x, y + 11)
-    user.answered()
+    reader.answered()
     thicknesses = []
     for down in (12, 11) * 4:
         page.mouse.move(x, y + down)
-        user.answered()
+        reader.answered()
         thicknesses.append(float(field.input_value()))
     page.mouse.up()
     assert min(thicknesses) > 5.0
@@ -192,22 +192,22 @@ def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_pat
     assert user.link()["name"] == "hip 36 a"
 
 
-def test_a_refused_number_stays_in_its_box_with_the_reason(user):
-    page, box = user.open().page, user.types("ball_radius", "-5")
+def test_a_refused_number_stays_in_its_box_with_the_reason(reader):
+    page, box = reader.open().page, reader.types("ball_radius", "-5")
     error = page.locator("#error-ball_radius")
     error.wait_for()
     assert error.text_content() == "Head diameter must be positive, got -5 mm; 28 mm stays in use"
-    user.enters("clearance", "0,3")
+    reader.enters("clearance", "0,3")
     assert box.input_value() == "-5"
     assert (box.get_attribute("aria-invalid"), box.get_attribute("aria-describedby")) == ("true", "error-ball_radius")
-    assert user.link()["joint.ball_radius"] == "14.0"
+    assert reader.link()["joint.ball_radius"] == "14.0"
     box.fill("")
     box.press("Enter")
     error.wait_for(state="hidden")
     assert box.input_value() == "28"
     box.press("ArrowUp")
-    user.answered()
-    assert user.link()["joint.ball_radius"] == "14.1"
+    reader.answered()
+    assert reader.link()["joint.ball_radius"] == "14.1"
     sliders = page.locator(".side input[type=range]:visible")
     assert {slider.get_attribute("tabindex") for slider in sliders.all()} == {"-1"}
 
@@ -239,10 +239,10 @@ def test_a_click_on_the_map_shows_a_design_that_is_used_in_one_step(user):
     expect(user.page.locator("[data-name=ball_radius] input[type=text]")).to_have_value("28")
 
 
-def test_everything_on_the_map_is_done_by_keys(user):
-    user.open(MAP)
-    user.page.mouse.move(*spot(user, 0.25, 0.75))
-    cursor = user.page.locator("#map-picture .cursor")
+def test_everything_on_the_map_is_done_by_keys(reader):
+    reader.open(MAP)
+    reader.page.mouse.move(*spot(reader, 0.25, 0.75))
+    cursor = reader.page.locator("#map-picture .cursor")
     head, liner = map(float, re.findall(r"([\d.]+) mm", cursor.locator("text").first.text_content()))
     assert (head, liner) == pytest.approx((28.0, 12.0), abs=0.1)
     cursor.focus()
@@ -252,18 +252,18 @@ def test_everything_on_the_map_is_done_by_keys(user):
     assert numbers[:2] == pytest.approx([head + 2.4, liner - 0.24], abs=0.02)
     assert numbers[2] == pytest.approx(pressure(ball_radius=numbers[0] / 2, liner_thickness=numbers[1]), rel=0.01)
     cursor.press("Enter")
-    user.page.locator("#map-point table").wait_for()
-    user.answered()
+    reader.page.locator("#map-point table").wait_for()
+    reader.answered()
     expect(cursor).to_be_focused()
-    square = user.page.locator("#map-picture [data-limit]")
+    square = reader.page.locator("#map-picture [data-limit]")
     square.focus()
     for _ in range(3):
         square.press("ArrowUp")
-        user.answered()
-    user.until("location.search.includes('limit=outer_radius%3C%3D29.0')")
-    user.answered()
+        reader.answered()
+    reader.until("location.search.includes('limit=outer_radius%3C%3D29.0')")
+    reader.answered()
     expect(square).to_be_focused()
-    expect(user.page.locator(".limit-rows input")).to_have_value("29")
+    expect(reader.page.locator(".limit-rows input")).to_have_value("29")
 
 
 def share_of_colours(pixels):
@@ -291,9 +291,9 @@ def seen(canvas, condition):
     return pictures[-1]
 
 
-def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):
-    user.open(f"?view=cup&{CUP}")
-    viewer = user.page.locator("#cup-viewer .viewer")
+def test_the_cup_turns_and_a_place_on_the_map_is_taken(reader):
+    reader.open(f"?view=cup&{CUP}")
+    viewer = reader.page.locator("#cup-viewer .viewer")
     canvas = viewer.locator("canvas")
     canvas.wait_for()
     before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)  # the contact is seen at first
@@ -307,10 +307,10 @@ def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):
     viewer.get_by_text("Show the contact").click()
     straight = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
     box = canvas.bounding_box()
-    user.page.mouse.move(box["x"] + 100, box["y"] + 100)
-    user.page.mouse.down()
-    user.page.mouse.move(box["x"] + 180, box["y"] + 120)
-    user.page.mouse.up()
+    reader.page.mouse.move(box["x"] + 100, box["y"] + 100)
+    reader.page.mouse.down()
+    reader.page.mouse.move(box["x"] + 180, box["y"] + 120)
+    reader.page.mouse.up()
     turned = seen(canvas, lambda pixels: difference(pixels, straight) > 3)
     canvas.press("+")
     seen(canvas, lambda pixels: difference(pixels, turned) > 3)
@@ -322,35 +322,36 @@ def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):
     cut = seen(canvas, lambda pixels: share_of_colours(pixels) < few)
     viewer.get_by_label("Ball").check()
     seen(canvas, lambda pixels: difference(pixels, cut) > 3)
-    stood = user.page.locator("#cup-stood svg")
+    stood = reader.page.locator("#cup-stood svg")
     stood.scroll_into_view_if_needed()
     place = stood.bounding_box()
-    user.page.mouse.click(place["x"] + 0.5 * place["width"], place["y"] + 0.4 * place["height"])
-    user.until("!location.search.includes('cup.inclination=45.0')")
-    user.answered()
-    inclination = float(user.page.locator("[data-field='cup.inclination'] input[type=text]").input_value())
+    reader.page.mouse.click(place["x"] + 0.5 * place["width"], place["y"] + 0.4 * place["height"])
+    reader.until("!location.search.includes('cup.inclination=45.0')")
+    reader.answered()
+    inclination = float(reader.page.locator("[data-field='cup.inclination'] input[type=text]").input_value())
     assert 40 < inclination < 46
 
 
-def test_a_cycle_is_played_and_stops_where_it_is(user):
-    user.open(f"?view=gait&{CUP}")
-    button = user.page.locator(".transport button")
+def test_a_cycle_is_played_and_stops_where_it_is(reader):
+    reader.open(f"?view=gait&{CUP}")
+    button = reader.page.locator(".transport button")
     button.wait_for()
-    output, canvas = user.page.locator(".player output"), user.page.locator(".player canvas")
+    output, canvas = reader.page.locator(".player output"), reader.page.locator(".player canvas")
     few = 0.7 * share_of_colours(seen(canvas, lambda pixels: share_of_colours(pixels) > 0))
-    bar = user.page.locator(".transport input")
+    bar = reader.page.locator(".transport input")
     button.click()
-    user.until("document.querySelector('.transport input').value > 9")
+    reader.until("document.querySelector('.transport input').value > 9")
     button.click()
-    user.until(f"location.search.includes('use.instant={bar.input_value()}')")
+    reader.until(f"location.search.includes('use.instant={bar.input_value()}')")
     bar.fill("160")  # of 200: the leg swings
     seen(canvas, lambda pixels: share_of_colours(pixels) < few)  # and presses less
     bar.focus()
     bar.press("Home")
     assert output.inner_text().startswith("0.5 % of the cycle: load ")
-    user.until("location.search.includes('use.instant=0')")
-    user.page.locator(".player .spot").nth(5).wait_for()  # the film follows: load, pressure, distance, two films and λ
-    smallest = user.page.evaluate("""() => Math.min(...[...document.querySelectorAll('.courses text')].map((text) =>
+    reader.until("location.search.includes('use.instant=0')")
+    # the film follows: load, pressure, distance, two films and λ
+    reader.page.locator(".player .spot").nth(5).wait_for()
+    smallest = reader.page.evaluate("""() => Math.min(...[...document.querySelectorAll('.courses text')].map((text) =>
         parseFloat(getComputedStyle(text).fontSize) *
         Math.hypot(text.getScreenCTM().a, text.getScreenCTM().b)))""")
     assert smallest >= 11.5
@@ -367,9 +368,9 @@ def test_a_browser_without_webgl_is_shown_the_flat_view(user):
     assert "from the rim" in user.page.locator("#cup-map svg").get_attribute("aria-label")
 
 
-def test_a_lost_context_is_restored(user):
-    user.open(f"?view=cup&{CUP}")
-    canvas = user.page.locator("#cup-viewer canvas")
+def test_a_lost_context_is_restored(reader):
+    reader.open(f"?view=cup&{CUP}")
+    canvas = reader.page.locator("#cup-viewer canvas")
     canvas.wait_for()
     before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
     lose = "canvas => (window.lost = canvas.getContext('webgl2').getExtension('WEBGL_lose_context')).loseContext()"
@@ -377,5 +378,5 @@ def test_a_lost_context_is_restored(user):
     seen(canvas, lambda pixels: share_of_colours(pixels) < 0.01)
     canvas.press("ArrowLeft")  # nothing breaks
     canvas.press("ArrowRight")
-    user.page.evaluate("window.lost.restoreContext()")
+    reader.page.evaluate("window.lost.restoreContext()")
     seen(canvas, lambda pixels: difference(pixels, before) < 0.5)

@@ -22,7 +22,7 @@ from ballsocket.app.server import HostNames
 from ballsocket.app.state.screen import VIEWS
 
 from ..processes import PATIENCE
-from .browser import User, explorer_process, opened_profile
+from .browser import explorer_process
 
 LINES = []
 """Open connections of a test."""
@@ -325,13 +325,12 @@ _SCRIPT = "<img src=x onerror='window.ran=1'><script>window.ran=1</script>"
 
 @pytest.mark.long
 @pytest.mark.parametrize("view", VIEWS)
-def test_script_in_names_is_text_in_every_view(browser, address, view):
+def test_script_in_names_is_text_in_every_view(examiner, view):
     joint = f"name={quote(_SCRIPT)}&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=pom"
     other = "&".join(f"beside1.{part}" for part in joint.split("&"))
-    with opened_profile(browser, address, bypass_csp=True) as profile:
-        user = User(profile, address).open(f"?view={view}&{joint}&{other}")
-        assert user.page.evaluate("window.ran") is None
-        assert user.page.locator("img[src=x]").count() == 0
+    page = examiner.open(f"?view={view}&{joint}&{other}").page
+    assert page.evaluate("window.ran") is None
+    assert page.locator("img[src=x]").count() == 0
 
 
 @in_loop

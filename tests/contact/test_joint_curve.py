@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.contact import joint_curve
 from ballsocket.contact.octave_curve import derivatives_at, derivatives_of_array, fit_octave_curve
 
-from ..extent import either, some
+from ..extent import either
 from ..joints import HIP
 
 MODELS = [bs.Tabulated(), bs.Refined(), bs.ExactCurve()]
@@ -50,7 +50,7 @@ def check_against_single_solutions(model, joint, kind):
 
 @EVERY
 def test_many_loads_on_one_joint_equal_few_of_them_to_the_stated_error(model):
-    for joint in JOINTS if isinstance(model, bs.Tabulated) else some(JOINTS, either(quick=4, long=60)):
+    for joint in JOINTS[:: 1 if isinstance(model, bs.Tabulated) else 5]:
         for kind in ("force", "indentation"):
             check_against_single_solutions(model, joint, kind)
 
