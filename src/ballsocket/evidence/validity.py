@@ -6,7 +6,7 @@ promise of the model, and the largest error is at most 1.3 times the promise.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import log, radians
 from typing import Any
@@ -80,9 +80,9 @@ def _log_uniform(rng: numpy.random.Generator, low: float, high: float, size: int
     return numpy.exp(rng.uniform(log(low), log(high), size))
 
 
-def models_with_promise(models: Iterable[Model] = tuple(catalogue.values())) -> Iterator[Model]:
-    """Yield the models whose promise can be compared with the reference solution."""
-    return (model for model in models if model.promise is not None and model.name != TRUTH.name)
+def models_with_promise() -> Iterator[Model]:
+    """Yield the models of the catalogue whose promise can be compared with the reference solution."""
+    return (model for model in catalogue.values() if model.promise is not None and model.name != TRUTH.name)
 
 
 def measure(model: Model, size: int = 20_000, seed: int = 1) -> MeasuredValidity:

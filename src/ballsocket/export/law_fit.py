@@ -152,8 +152,21 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
-    else:
-        fit = _fit_exponential_law(element, fitted_depth, c or 1e-3 * R2, lengths)
+    else:  # a power of the indentation times the exponential of a polynomial
+        length = c or 1e-3 * R2
+        t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (fitted_depth / (fitted_depth + length)) ** 0.5
+        fitted = length * t * t / (1.0 - t * t)
+        _, force, stiffness = element.potential(fitted)
+        power = round(2.0 * float(stiffness[0] * fitted[0] / force[0])) / 2.0
+        coefficients = numpy.polynomial.Polynomial.fit(t, numpy.log(force / fitted**power), _DEGREE).convert().coef
+        fit = ExpressionFit(
+            scale=float(numpy.exp(coefficients[0])) * 1e3**power,
+            length=1e-3 * length,
+            power=power,
+            power_beyond=float(stiffness[-1] * fitted[-1] / force[-1]),
+            coefficients=tuple(map(float, coefficients[1:])),
+            **lengths,
+        )
     deeper = numpy.linspace(fitted_depth, max(min(2.0 * fitted_depth, element.wall), fitted_depth), 100)
     return replace(
         fit, error=_largest_force_error(fit, element, d), error_beyond=_largest_force_error(fit, element, deeper)
@@ -164,25 +177,6 @@ def _largest_force_error(fit: ExpressionFit, element: ForceElement, depths: Numb
     """Compute the largest relative error of the fitted force at indentations in mm."""
     forces = element.potential(depths)[1]
     return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + depths)) / forces - 1.0)))
-
-
-def _fit_exponential_law(
-    element: ForceElement, depth: float, transition_depth: float, lengths: dict[str, float]
-) -> ExpressionFit:
-    """Fit the force by a power of the indentation times the exponential of a polynomial, up to a depth in mm."""
-    t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (depth / (depth + transition_depth)) ** 0.5
-    d = transition_depth * t * t / (1.0 - t * t)
-    _, force, stiffness = element.potential(d)
-    power = round(2.0 * float(stiffness[0] * d[0] / force[0])) / 2.0
-    polynomial_coefficients = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
-    return ExpressionFit(
-        scale=float(numpy.exp(polynomial_coefficients[0])) * 1e3**power,
-        length=1e-3 * transition_depth,
-        power=power,
-        power_beyond=float(stiffness[-1] * d[-1] / force[-1]),
-        coefficients=tuple(map(float, polynomial_coefficients[1:])),
-        **lengths,
-    )
 
 
 def fit_depth(element: ForceElement | PreloadedElement, load: dict[str, float]) -> float:

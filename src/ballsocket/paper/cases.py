@@ -149,13 +149,13 @@ def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
     yield from zip(symbols, series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
-def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numbers, Numbers, Joint]:
+def outline(heads: int = 5, liners: int = 3) -> tuple[Numbers, Numbers, Joint]:
     """Return head radii and liner thicknesses in mm over the range of Table 1, and their joints with c 0.1 mm."""
     radius = numpy.linspace(*RANGES["ball_radius"], heads)[:, None] + numpy.zeros(liners)
     thinnest, thickest = (numpy.clip(outer - radius - 0.1, *THICKNESS) for outer in (OUTER_RADII[0], OUTER_RADII[1]))
     thickness = thinnest + (thickest - thinnest) * numpy.linspace(0.0, 1.0, liners)
     radius, thickness = radius.ravel(), thickness.ravel()
-    return radius, thickness, joint(head_radius=radius, liner_thickness=thickness, poisson=poisson)
+    return radius, thickness, joint(head_radius=radius, liner_thickness=thickness)
 
 
 def scaled_modulus(contact_pressure: Numbers, indentation: Numbers, socket_radius: Numbers) -> Numbers:
