@@ -30,8 +30,16 @@ from ..studies.sensitivity_answer import describe_sensitivity, index_table, sens
 from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
-from .model_file import requested_model
-from .options import GapName, JointName, JointOptions, ModelName, OutputOptions, expand_groups, needed_load
+from .options import (
+    GapName,
+    JointName,
+    JointOptions,
+    ModelName,
+    OutputOptions,
+    expand_groups,
+    needed_load,
+    requested_model,
+)
 from .root import app, print_message
 
 _POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."

@@ -30,8 +30,7 @@ from ..reports.accuracy_results import describe_rival, describe_tilted_rival
 from ..reports.terminal import print_answer
 from ..studies.run import default_model
 from .elasticity_options import MeshTable, Yielding, solver_progress
-from .model_file import requested_model
-from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load
+from .options import GapName, JointName, JointOptions, ModelName, expand_groups, needed_load, requested_model
 from .root import app, echo_path, print_message
 
 _RING_WIDTH = radians(3.0)  # width of the rings that tabulate a preloaded joint, in rad

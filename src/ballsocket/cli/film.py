@@ -24,8 +24,7 @@ from ..model_catalogue import with_gap
 from ..question import PressQuestion
 from ..reports.film_results import film_figure
 from .elasticity_options import ModelNames, RingTable
-from .model_file import requested_model
-from .options import GapName, JointName, JointOptions, OutputOptions, expand_groups, needed_load
+from .options import GapName, JointName, JointOptions, OutputOptions, expand_groups, needed_load, requested_model
 from .root import app, fail
 
 

@@ -17,7 +17,7 @@ from ..contact import Model
 from ..core.checks import shown
 from ..core.input_files import is_restricted
 from ..core.validity import OutsideDomainError
-from ..model_catalogue import named_model, named_models
+from ..model_catalogue import named_models
 from ..models.foundation import RadialFoundation
 from ..models.modulus import Modulus
 from ..problem.presets import joints
@@ -37,27 +37,13 @@ _FOLDERS: set[Path] = set()
 """Their folders, which are part of `sys.path` for worker processes and for other modules of the user."""
 
 
-def is_model_file(text: str) -> bool:
-    """Return True if a value of `--model` names an object of a Python file."""
-    return _FORM.fullmatch(text) is not None or text.endswith(".py")
-
-
-def requested_model(text: str) -> Model:
-    """Return the model of an option `--model`: a name, or FILE.py:NAME.
-
-    Raises ValueError: an unknown name; a model file that does not exist, fails, or has no such model; a model file in a
-    process that serves others.
-    """
-    return load_model(text) if is_model_file(text) else named_model(text)
-
-
 def load_model(text: str) -> Model:
     """Import a Python file, and return the model with a name in it, after one trial press.
 
     The name belongs to a model, to a class or function that makes one without arguments, to a foundation modulus, or
     to a function that computes the modulus K in MPa/mm of a joint.
 
-    Raises ValueError: see `requested_model`.
+    Raises ValueError: a model file that does not exist, fails, or has no such model; a process that serves others.
     """
     if is_restricted():
         raise ValueError(f"model {shown(text)} is not allowed: only the command line of a user runs a model file")

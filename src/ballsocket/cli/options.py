@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
+from ..contact import Model
 from ..core.answers import Answer
 from ..core.quantities import LOADS
 from ..core.unit_systems import Units
@@ -18,7 +19,7 @@ from ..files.joint_file import JointFile, joint_of, named_joint, varied
 from ..files.joint_options import ORIENTATION, PARTS, inputs_in
 from ..files.schema import FileTable
 from ..files.tables import read_table
-from ..model_catalogue import listed_models
+from ..model_catalogue import listed_models, named_model
 from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
 from ..reports.style import in_units
@@ -29,6 +30,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..core.executors.processes import Engine
+
+
+def is_model_file(text: str) -> bool:
+    """Return True if a value of `--model` names an object of a Python file."""
+    return text.endswith(".py") or ".py:" in text
+
+
+def requested_model(text: str) -> Model:
+    """Return the model of an option `--model`: a name, or FILE.py:NAME.
+
+    Raises ValueError: an unknown name; a model file that is refused, see `load_model`.
+    """
+    if not is_model_file(text):
+        return named_model(text)
+    from .model_file import load_model
+
+    return load_model(text)
 
 
 def complete_model(start: str) -> list[str]:

@@ -38,7 +38,6 @@ from .elasticity_options import (
     solver_progress,
 )
 from .json_answers import echo_json, several_joints
-from .model_file import is_model_file, requested_model
 from .options import (
     AsJson,
     GapName,
@@ -47,8 +46,10 @@ from .options import (
     JointOptions,
     UnitSystem,
     expand_groups,
+    is_model_file,
     needed_load,
     print_result,
+    requested_model,
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import app, fail

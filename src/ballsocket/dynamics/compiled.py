@@ -95,7 +95,7 @@ class CompiledElement:
     @property
     def march(self) -> Any:
         """Compiled function that advances a ball over all time steps of `simulate`."""
-        return _MARCH
+        return _compiled_march()
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
         """Compute force and moment on the ball, energy and tangent stiffness for an array of states.
@@ -166,8 +166,6 @@ def load_from_contact(centre, contact, velocity, spin, constants):  # type: igno
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
-_MARCH = njit(error_model="numpy")(stepping.march)
-
 _BLOCK_SIZE = 256  # number of states in a block, whose loads one loop of vector instructions computes
 _OPTIONAL = ("smoothing", "time", "static", "viscous", "rim", "film_damping")  # constants that are 0 without an effect
 
@@ -212,6 +210,11 @@ def _compiled_batch_loop(absent: tuple[int, ...]) -> Any:
                     tangent[first + i, component] = results[7 + component, i]
 
     return compute_batch
+
+
+@cache
+def _compiled_march() -> Any:
+    return njit(error_model="numpy")(stepping.march)
 
 
 for _formula in (
