@@ -22,7 +22,6 @@ from ..files.tables import read_table
 from ..model_catalogue import listed_models, named_model
 from ..problem.dimensions import fit_beside
 from ..reports.figure_files import check_format, save
-from ..reports.style import in_units
 from ..reports.terminal import print_answer
 from .json_answers import echo_json
 
@@ -153,6 +152,8 @@ def print_result(
 def write_figure(path: Path | None, draw: Callable[[], Figure], units: Units) -> None:
     """Draw and write a figure if there is a file for it."""
     if path is not None:
+        from ..reports.style import in_units
+
         save(in_units(draw(), units), path)
 
 

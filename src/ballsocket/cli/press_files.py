@@ -17,7 +17,7 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import JUDGE, OFF_AXIS, reference
 from ..question import PressAnswer
 from ..reports.figure_files import check_format, save
-from ..reports.style import in_units
+from .options import write_figure
 from .root import print_message
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class FigureOptions:
         if _can_write(self.section, meshed):
             from ..reports.section_plots import section_figure
 
-            save(in_units(section_figure(meshed, contacts.get(reference.name)), units), self.section)
+            write_figure(self.section, lambda: section_figure(meshed, contacts.get(reference.name)), units)
         if _can_write(self.view, tilted):
             from ..reports.cup_plots import save_view
 
