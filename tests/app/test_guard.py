@@ -3,14 +3,13 @@
 import asyncio
 import gzip
 import json
-import os
 from contextlib import closing, suppress
 from functools import partial, wraps
 from http.client import HTTPConnection
-from pathlib import Path
 from threading import Event
 from urllib.parse import quote, urlsplit
 
+import psutil
 import pytest
 from tornado.httpclient import HTTPRequest
 from tornado.websocket import WebSocketClosedError, websocket_connect
@@ -105,7 +104,6 @@ STRICT = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-cache",
 }
-needs_proc = pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")
 
 
 def answer(address, path="/", method="GET", host=None, **headers):
@@ -273,12 +271,11 @@ async def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(serv
     assert await user.moves_load()
 
 
-def megabytes(process="self"):
-    return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+def megabytes(process=None):
+    return psutil.Process(process).memory_info().rss / 1e6
 
 
 @pytest.mark.long
-@needs_proc
 def test_a_client_that_never_reads_does_not_grow_the_server():
     """Answers of the edits are many times the memory that the server may gain, and another user goes on."""
     with explorer_process() as (address, process):
@@ -437,7 +434,6 @@ async def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch
 
 
 @pytest.mark.long
-@needs_proc
 @in_loop
 async def test_further_pages_take_little_memory(served):
     """300 pages may take at most 100 MB more than the first."""

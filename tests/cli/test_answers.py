@@ -165,6 +165,15 @@ def test_gap_of_the_command_line_reaches_the_exact_solution(command):
     assert 0.003 < last / first - 1 < 0.007
 
 
+def test_the_last_point_of_a_curve_equals_a_press():
+    said = answer("curve", "hip-36", "--force", "3 kN", "--points", "4", "--model", "hertz")
+    assert said["force"] == [0.0, 1000.0, 2000.0, 3000.0]
+    assert said["valid"] is all(said["valid_at"]) is False
+    last = answer("press", "hip-36", "--force", "3 kN", "--model", "hertz")["results"][0]
+    assert said["max_pressure"][-1] == pytest.approx(last["max_pressure"], rel=1e-12)
+    assert "Hertz 1882" in [each["text"] for each in said["sources"]]
+
+
 @pytest.mark.long
 def test_several_joints_have_an_answer_and_next_steps_each():
     names = ("hip-32", "hip-36")

@@ -6,9 +6,7 @@ import subprocess
 import sys
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from datetime import datetime
 from importlib import import_module
-from ipaddress import ip_address
 
 import numpy as np
 import pytest
@@ -224,29 +222,11 @@ def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
     assert warning.startswith(f"the Dask scheduler at {cluster.scheduler_address} has no workers")
 
 
-def write_certificate(folder):
-    """Write a self-made certificate of this machine and its key, and return the options of Dask."""
-    x509 = pytest.importorskip("cryptography.x509")
-    from cryptography.hazmat.primitives import hashes, serialization
-    from cryptography.hazmat.primitives.asymmetric import ec
-
-    key, name = ec.generate_private_key(ec.SECP256R1()), x509.Name([])
-    dates = datetime(2000, 1, 1), datetime(2100, 1, 1)
-    builder = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number(), *dates)
-    names = x509.SubjectAlternativeName([x509.IPAddress(ip_address("127.0.0.1"))])
-    certificate = builder.add_extension(names, critical=False).sign(key, hashes.SHA256())
-    private = serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
-    (folder / "key.pem").write_bytes(key.private_bytes(serialization.Encoding.PEM, *private))
-    (folder / "certificate.pem").write_bytes(certificate.public_bytes(serialization.Encoding.PEM))
-    files = {"cert": str(folder / "certificate.pem"), "key": str(folder / "key.pem")}
-    roles = {f"tls_{role}_{part}": path for role in ("client", "scheduler", "worker") for part, path in files.items()}
-    return {"tls_ca_file": files["cert"], "require_encryption": True, **roles}
-
-
 @pytest.mark.long
-def test_tls_needs_the_certificates(tmp_path):
+def test_tls_needs_the_certificates():
     dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
-    security = distributed.Security(**write_certificate(tmp_path))
+    pytest.importorskip("cryptography")
+    security = distributed.Security.temporary()
     with distributed.LocalCluster(n_workers=1, security=security, protocol="tls", **CLUSTER) as cluster:
         address = cluster.scheduler_address
         assert address.startswith("tls://")

@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ballsocket.evidence import hip_wear
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, make_hip, patients, ratios, simulators
 from ballsocket.hip.simulator_cycles import iso_14242_1
+from ballsocket.hip.variability import RESULT_COLUMNS, RESULT_UNITS
 
 from ..extent import some
 from ..places import ROOT
@@ -59,6 +61,41 @@ def test_page_has_the_bands_of_the_laws(predictions, count, tolerance):
         assert low < float(middle) < high
         assert band.median == pytest.approx(float(middle), rel=tolerance)
         assert low * 0.9 <= band.low < band.high <= high * 1.1
+
+
+@pytest.fixture
+def simulated(monkeypatch):
+    """Replace the simulation of patients by a table of known numbers; return the arguments of its calls."""
+    calls = []
+
+    def population(variability, counts, patients):
+        calls.append(SimpleNamespace(hip=variability.use, spreads=variability.distributions, counts=counts, n=patients))
+        table = np.zeros((101, len(counts), len(RESULT_UNITS)))
+        ranks = np.arange(101.0)
+        for name, slope in (("volume", 2.0), ("penetration", 3.0)):
+            growth = np.array([1.0, 3.0, 7.0, 19.0][: len(counts)])
+            table[:, :, RESULT_COLUMNS[name]] = slope * ranks[:, None] * growth
+        return None, SimpleNamespace(cohort=SimpleNamespace(table=table))
+
+    monkeypatch.setattr(hip_wear, "population", population)
+    return calls
+
+
+def test_rates_are_volumes_from_one_to_three_million_cycles_and_penetrations_a_year(simulated):
+    bands = {band.name: band for band in simulators(5)}
+    assert list(bands) == ["clarke-22", "clarke-28", "ali-45", "ali-65", "ali-45-off", "ali-65-off"]
+    for band in bands.values():
+        assert (band.low, band.median, band.high) == pytest.approx((5.0, 100.0, 195.0))
+    assert np.degrees([call.hip.cup.inclination for call in simulated]) == pytest.approx([0, 0, 30, 50, 30, 50])
+    medians = {band.name: band.median for band in patients(7)}
+    first = ("rsa-bedding", "rsa-bedding-linked", "mccalden-linked")
+    later = ("rsa-rate", "rsa-rate-linked", "teeter", "callary", "lachiewicz")
+    expected = dict.fromkeys(first, 150.0) | {"lachiewicz-volume": 100.0 * 7 / 5}
+    assert medians == pytest.approx(expected | dict.fromkeys(later, 150.0 * 18 / 9.75))
+    assert [(call.counts, call.n) for call in simulated[6:]] == [([3.75e5, 1.5e6, 7.5e6, 1.5e7], 7)] * 2
+    for call in simulated:
+        coefficient = call.spreads["coefficient"]
+        assert (coefficient.median, coefficient.factor) == (call.hip.wear.coefficient, 1.5)
 
 
 def page_column(label):

@@ -2,6 +2,7 @@
 
 import sys
 from types import SimpleNamespace
+from unittest.mock import PropertyMock
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 import ballsocket as bs
 from ballsocket.core.unit_systems import from_json
+from ballsocket.evidence import worst_case
 from ballsocket.evidence.question import Question
 from ballsocket.evidence.worst_case import compare_methods, largest_deviation, propagate_tolerances, solve_with_calculix
 from ballsocket.studies.variance_shares import sensitivity
@@ -119,3 +121,13 @@ def test_calculix_solves_the_deck_of_the_case_or_its_failure_is_noted(pack, tmp_
     (result,) = solve_with_calculix(question, CASE)
     assert (result.name, result.valid) == ("CalculiX", True)
     assert result.numbers == {"indentation": 7.0, "force": 7.0, "half_angle": 7.0, "max_pressure": 9.0}
+
+
+def test_hips_without_a_contact_have_no_wear_rate(monkeypatch, pack):
+    first = PropertyMock(side_effect=ValueError("no contact"))
+    monkeypatch.setattr(worst_case, "read_hip", lambda path: None)
+    monkeypatch.setattr(worst_case, "_simulation", lambda *arguments: type("Hip", (), {"first": first})())
+    question = SimpleNamespace(hip="hip.toml")
+    cases = [{"clearance": 0.1, "force": 1.0}, {"clearance": 0.1, "force": 2.0}, {"clearance": 0.2, "force": 1.0}]
+    assert worst_case.wear_rates(question, cases) == [None, None, None]
+    assert first.call_count == 2  # cases that differ only in their load are computed once

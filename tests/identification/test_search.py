@@ -116,6 +116,18 @@ def test_a_perturbation_changes_every_load_by_its_fraction():
         np.testing.assert_allclose(row, getattr(MODEL.press(JOINTS[0], **load), result), rtol=1e-12)
 
 
+@pytest.mark.parametrize("quantity", ["force", "area"])
+def test_loads_read_by_a_compliant_machine_are_corrected_exactly(quantity):
+    """Newton's method finds the force whose reading is the measured indentation."""
+    machine = Machine(compliance=8e-6, offset=-0.004, drift=3e-4)
+    contact = MODEL.press(JOINTS[0], force=FORCE)
+    reading = contact.indentation + 8e-6 * FORCE - 0.004 + 3e-4 * np.arange(3.0)
+    values = 1.1 * getattr(contact, quantity)  # a measured force is the start of the iterations
+    data = Measured(quantity=quantity, values=values, uncertainty=1.0, indentation=reading, machine=machine)
+    tolerance = 3e-8 if quantity == "force" else 3e-5
+    np.testing.assert_allclose(forward(data).results_at(VALUES[:1])[0], getattr(contact, quantity), rtol=tolerance)
+
+
 @pytest.mark.parametrize(("quantity", "compliance"), [("force", 0.0), ("area", 1e-6)])
 def test_a_value_of_zero_is_read_below_the_zero_of_the_machine(quantity, compliance):
     machine = Machine(offset=0.002, compliance=compliance)

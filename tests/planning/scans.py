@@ -7,6 +7,7 @@ import json
 import struct
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ..places import EXAMPLES
 
@@ -16,11 +17,7 @@ NAMES = ("right ASIS", "left ASIS", "pubic symphysis")
 
 def rotated(pitch=0.0, roll=0.0, yaw=0.0):
     """Return the matrix of a pelvis in the scanner, by angles in degrees; pitch moves its top to the front."""
-    p, r, y = np.radians([pitch, roll, yaw])
-    about_x = np.array([[1, 0, 0], [0, np.cos(p), np.sin(p)], [0, -np.sin(p), np.cos(p)]])
-    about_y = np.array([[np.cos(r), 0, -np.sin(r)], [0, 1, 0], [np.sin(r), 0, np.cos(r)]])
-    about_z = np.array([[np.cos(y), -np.sin(y), 0], [np.sin(y), np.cos(y), 0], [0, 0, 1]])
-    return about_z @ about_y @ about_x
+    return Rotation.from_euler("xyz", [-pitch, -roll, yaw], degrees=True).as_matrix()
 
 
 def axis(inclination, anteversion, side="right"):
