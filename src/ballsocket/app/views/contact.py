@@ -20,10 +20,9 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..pictures.chart import plain_numbers, swatch
 from ..pictures.section import LinerStresses, first_view, key, liner_stresses, painted_stresses
-from ..pressing import fine_curves, is_waiting, load_curve, press_charts, pressed
+from ..pressing import effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
@@ -227,18 +226,12 @@ class Press(RealCupView):
             return cup_document(screen, lambda contact: _rows(_with_real(contact, comparison), screen))
         by, file = comparison.contacts.get(screen.answered_by), screen.file
         drawn = _drawn(comparison, screen)
-
-        def effects() -> LocalUncertainty | None:
-            """Compute the effect of one percent of each number; None without a load."""
-            pressing = any(float(load) > 0 for load in file.load.values())
-            return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
-
         return Document(
             picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
             rows=lambda: _rows(comparison, screen),
-            sections=lambda: press_sections(comparison, units, surroundings=effects()),
+            sections=lambda: press_sections(comparison, units, surroundings=effects_of(file)),
             lede=lambda: "" if by is None else press_lede(by, file.cup, units),
             contact=by,
         )
