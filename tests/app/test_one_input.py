@@ -9,6 +9,7 @@ from math import degrees
 import pytest
 
 import ballsocket as bs
+from ballsocket.studies.derivatives import local_uncertainty
 
 from .asking import does, opened, saved, told
 
@@ -31,6 +32,8 @@ def test_a_result_over_one_input_is_that_of_the_model_and_red_where_a_limit_is_e
     step = curve["x"][1] - curve["x"][0]
     crossing = next(x for x, y in zip(curve["x"], curve["y"], strict=True) if y < 16.0)
     assert end == pytest.approx(crossing, abs=step)
+    effects = local_uncertainty(HIP, bs.Cup(), {"force": 3000.0}, {}).changes["max_pressure"]
+    assert f"<td>{effects['force']:.2f}</td>" in told(page, "curve-effects")
     assert saved(page, "CSV").startswith(b"head_diameter_mm,")
 
 

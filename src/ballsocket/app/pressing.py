@@ -18,11 +18,12 @@ from ..files.joint_file import JointFile
 from ..model_catalogue import catalogue
 from ..problem import Joint
 from ..problem.cup import Cup
-from ..question import complete
+from ..question import complete, real_cup_reason
 from ..reports.joint_drawing import profile
 from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from ..reports.svg import rounded_up
+from ..studies.derivatives import LocalUncertainty, local_uncertainty
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
 from .widgets.reading import Reading
@@ -63,6 +64,12 @@ def is_waiting(file: JointFile, name: str) -> bool:
 @lru_cache(maxsize=1024)
 def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, Any], ...], name: str) -> Comparison:
     return compare(joint, models={name: catalogue[name]}, cup=cup, **dict(load))
+
+
+def effects_of(file: JointFile) -> LocalUncertainty | None:
+    """Compute the effect of one percent of each number of a joint; None without a load along the cup's axis."""
+    pressing = any(float(load) > 0 for load in file.load.values()) and not real_cup_reason(file)
+    return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
 
 
 _DEFAULT_LOADS = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}

@@ -45,7 +45,7 @@ class Page:
         self._origin = origin
         self._views: dict[str, View] = {}
         self._actions: dict[str, Reader] = {
-            "designs.save": self._save_designs,
+            "designs.save": lambda links: self.send_file("designs.toml", session_text(_links(links)).encode("utf-8")),
             "designs.compare": self._compare_designs,
         }
         self._timers: set[TimerHandle] = set()
@@ -201,10 +201,6 @@ class Page:
         self.channel.once("designs", [screen.link for screen in screens])
         self.refuse("")
         self._change(screens[0])
-
-    def _save_designs(self, links: Any) -> None:
-        """Save designs as a session file."""
-        self.send_file("designs.toml", session_text(_links(links)).encode("utf-8"))
 
     def _compare_designs(self, links: Any) -> Changes:
         """Compare designs with the one on the screen."""

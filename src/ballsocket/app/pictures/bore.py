@@ -65,19 +65,14 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
         cup=contact.model.cup,
     )
     edge = svg.closed(*_project(reach, contact.outline))
-    marks = [f'<path class="patch" d="{edge}"/>', *_load_cross(reach, contact.force_vector / (contact.force or 1.0))]
+    marks = [f'<path class="patch" d="{edge}"/>']
     if numpy.isfinite(contact.max_pressure):
         x, y = map(float, _project(reach, contact.max_pressure_at))
         marks.append(f'<circle class="most" cx="{x:.1f}" cy="{y:.1f}" r="5"/>')
     highest = reading.with_unit(FIELD["pressure"], shown_maximum(contact))
     distance = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
     label = f"pressure on the cup seen from its opening, up to {highest}; the contact ends {distance} from the rim"
-    return bore_map(label, field, marks)
-
-
-def load_bore(field: BoreField, label: str, load: numpy.ndarray) -> str:
-    """Draw a field on a bore, with a cross at the direction of the load (3,), if it is not zero."""
-    return bore_map(label, field, _load_cross(field.reach, load))
+    return bore_map(label, field, contact.force_vector / (contact.force or 1.0), marks)
 
 
 def grid_field(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], numpy.ndarray]:
@@ -105,8 +100,11 @@ def node_field(nodes: numpy.ndarray, reach: float) -> Callable[[numpy.ndarray], 
     return at
 
 
-def bore_map(label: str, field: BoreField, marks: list[str]) -> str:
-    """Draw a field on a bore with rings every 30°, the rim, body directions and marks on top."""
+def bore_map(label: str, field: BoreField, load: numpy.ndarray, further_marks: Iterable[str] = ()) -> str:
+    """Draw a field on a bore with rings every 30°, the rim, body directions and marks.
+
+    A cross is at the direction of the load (3,), if that is not zero.
+    """
     line = numpy.linspace(-1.0, 1.0, _POINTS)
     right, up = numpy.meshgrid(line, line)
     values = field.at(from_page(2 * sin(field.reach / 2) * right, 2 * sin(field.reach / 2) * up, field.reach))
@@ -115,7 +113,9 @@ def bore_map(label: str, field: BoreField, marks: list[str]) -> str:
     name, bands = f"bore-{field.name}", contours.bands([field.least * field.highest, *levels[1:]])
     clip = f'<clipPath id="{name}"><circle {_RIM}/></clipPath><g clip-path="url(#{name})">{"".join(bands)}</g>'
     scale_bar = scale(levels, field.label, 60, _MAP_HEIGHT - 34, _MAP_WIDTH - 120)
-    return _bore_picture(label, field.cup, field.reach, clip, [*marks, *scale_bar])
+    return _bore_picture(
+        label, field.cup, field.reach, clip, [*_load_cross(field.reach, load), *further_marks, *scale_bar]
+    )
 
 
 def bare_bore(cup: Cup, reach: float) -> str:

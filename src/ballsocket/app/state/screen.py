@@ -196,7 +196,9 @@ def link_of(screen: Screen) -> str:
     if screen.picked is not None:
         pairs.append(("picked", ",".join(map(repr, screen.picked))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
-    pairs += [*in_use.use_pairs(screen.use), *question_pairs(screen.asked)]
+    pairs += in_use.use_pairs(screen.use)
+    asked = vars(screen.asked).items()
+    pairs += [(f"ask.{name}", value) for name, value in asked if value != getattr(DEFAULT_QUESTION, name)]
     pairs += flat(_tables(screen.file))
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += flat(_tables(file), f"{prefix}.")
@@ -222,7 +224,10 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     words: dict[str, Any] = {name: pairs[name][0] for name in _KNOWN if name in pairs}
     if "shown" in words:
         words["shown"] = tuple(dict.fromkeys(name for name in words["shown"].split(",") if name))
-    words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
+    for name in ("across", "up"):
+        if name in pairs:
+            axis, low, high = parse_range(pairs[name][0])
+            words[name] = MapAxis(name=axis, low=low, high=high)
     if "picked" in pairs:
         text = pairs["picked"][0]
         try:
@@ -233,7 +238,9 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
             ) from error
         words["picked"] = x, y
     words["use"] = in_use.use_of(_part(pairs, "use"))
-    words["asked"] = question_of(_part(pairs, "ask"))
+    question = _part(pairs, "ask")
+    check_names(question, [entry.name for entry in fields(EvidenceQuestion)], "of a question in the link")
+    words["asked"] = EvidenceQuestion(**question)
     words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
     further = [_part(pairs, prefix) for prefix in _PREFIXES]
@@ -244,11 +251,6 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
 
 def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
     return {name[len(prefix) + 1 :]: values[0] for name, values in pairs.items() if name.startswith(f"{prefix}.")}
-
-
-def _axis(phrase: str) -> MapAxis:
-    name, low, high = parse_range(phrase)
-    return MapAxis(name=name, low=low, high=high)
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:
@@ -316,14 +318,3 @@ def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> li
     """Write each end of a limit as text that `parse_limit` reads."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
-
-
-def question_pairs(inputs: EvidenceQuestion) -> list[tuple[str, str]]:
-    """List the differences from `DEFAULT_QUESTION` as pairs of a link."""
-    return [(f"ask.{name}", value) for name, value in vars(inputs).items() if value != getattr(DEFAULT_QUESTION, name)]
-
-
-def question_of(pairs: Mapping[str, str]) -> EvidenceQuestion:
-    """Read a question from pairs of a link, without their prefix."""
-    check_names(pairs, [entry.name for entry in fields(EvidenceQuestion)], "of a question in the link")
-    return EvidenceQuestion(**pairs)

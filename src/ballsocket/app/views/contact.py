@@ -20,18 +20,15 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ...studies.derivatives import LocalUncertainty, local_uncertainty
-from ..long_view import LongView
 from ..pictures.chart import plain_numbers, swatch
 from ..pictures.section import LinerStresses, first_view, key, liner_stresses, painted_stresses
-from ..pressing import fine_curves, is_waiting, load_curve, press_charts, pressed
-from ..running import Work
+from ..pressing import effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
 from ..widgets.controls import MODEL_LABELS, Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
-from .real_cup import bore_of, cup_document, is_prepared, pressed_in_cup, set_up
+from .real_cup import RealCupView, bore_of, cup_document, is_prepared, pressed_in_cup
 
 _STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
 """Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
@@ -44,11 +41,10 @@ _AXIAL_CURVES = "<p class='quiet'>Curves: for loads along the axis of a full sph
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
-class Press(LongView):
+class Press(RealCupView):
     """View of a press: numbers and drawing at once, then the curves and the table of all models."""
 
     name, title, run_label = "press", "Contact", "Compute the real cup"
-    automatic, result_kind = True, "cup"
     body = """
 <div class="first-view">
   <div>
@@ -89,12 +85,6 @@ class Press(LongView):
                 lambda names: {"shown": tuple(names)},
             ),
         ]
-
-    def question_of(self, screen: Screen) -> Hashable:
-        return bore_of(screen.file)
-
-    def work(self, screen: Screen) -> Work:
-        return partial(set_up, *bore_of(screen.file))
 
     def show(self, screen: Screen) -> None:
         self._real = None
@@ -236,18 +226,12 @@ class Press(LongView):
             return cup_document(screen, lambda contact: _rows(_with_real(contact, comparison), screen))
         by, file = comparison.contacts.get(screen.answered_by), screen.file
         drawn = _drawn(comparison, screen)
-
-        def effects() -> LocalUncertainty | None:
-            """Compute the effect of one percent of each number; None without a load."""
-            pressing = any(float(load) > 0 for load in file.load.values())
-            return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
-
         return Document(
             picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
             rows=lambda: _rows(comparison, screen),
-            sections=lambda: press_sections(comparison, units, surroundings=effects()),
+            sections=lambda: press_sections(comparison, units, surroundings=effects_of(file)),
             lede=lambda: "" if by is None else press_lede(by, file.cup, units),
             contact=by,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -20,10 +20,9 @@ from ...problem.cup import Cup
 from ...reports import svg
 from ...reports.pages import picture
 from ...reports.press_report import rim_sentence
-from ..long_view import LongView, LongWork, long_body
+from ..long_view import LongWork, long_body
 from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
-from ..running import Work
 from ..state.screen import STANDINGS, Screen
 from ..view import Document, field_places
 from ..widgets.controls import Changes, Control, by_name, capital, chosen, segments
@@ -33,13 +32,12 @@ from ..widgets.words import VERDICT_KINDS, checked, column_of, quantity_cell, tr
 from .real_cup import (
     LEWINNEK,
     OrientationMap,
-    bore_of,
+    RealCupView,
     cup_document,
     is_prepared,
     map_orientations,
     orientation_key,
     pressed_in_cup,
-    set_up,
 )
 
 _FIELDS = ("inclination", "anteversion", "tilt", "inwards", "forwards", "arc_of_cover", "chamfer", "aim", "side")
@@ -52,10 +50,10 @@ _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="
 _MIN_POINTS, _FINE_POINTS = 4, 61  # values an axis: least for a cubic spline, and of a smooth contour
 
 
-class CupView(LongView):
+class CupView(RealCupView):
     """View of the load in the present cup, followed by a map over orientations."""
 
-    name, title, run_label, automatic = "cup", "Cup", "Prepare the cup", True
+    name, title, run_label = "cup", "Cup", "Prepare the cup"
     body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
@@ -75,17 +73,14 @@ class CupView(LongView):
             automatic=True,
         )
         self.orientations = self.add(work)
-        self.actions |= {"cup.usual": lambda value: self._set_angles(**_TYPICAL), "cup.pick": self._pick}
+        self.actions |= {
+            "cup.usual": lambda value: self._set_angles(_TYPICAL.values()),
+            "cup.pick": lambda point: self._set_angles(round(angle, 1) for angle in read_point(point, 2)),
+        }
 
     def controls(self, screen: Screen) -> list[Control]:
         titles = [(name, QUANTITIES[name].title) for name in STANDINGS]
         return [*cup_controls(screen), chosen(screen, "standing", "Map of", titles, segments, "show")]
-
-    def question_of(self, screen: Screen) -> Hashable:
-        return bore_of(screen.file)
-
-    def work(self, screen: Screen) -> Work:
-        return partial(set_up, *bore_of(screen.file))
 
     def show(self, screen: Screen) -> None:
         is_prepared(screen.file)
@@ -105,14 +100,10 @@ class CupView(LongView):
         else:
             self.orientations.show(screen)
 
-    def _pick(self, point: Any) -> Changes:
-        inclination, anteversion = (round(angle, 1) for angle in read_point(point, 2))
-        return self._set_angles(inclination=inclination, anteversion=anteversion)
-
-    def _set_angles(self, **angles: float) -> Changes:
-        """Change angles of the cup, in degrees."""
+    def _set_angles(self, angles: Iterable[float]) -> Changes:
+        """Change inclination and anteversion, in degrees."""
         screen = self.page.screen
-        for name, angle in angles.items():
+        for name, angle in zip(_TYPICAL, angles, strict=True):
             screen = replace(screen, **by_name(cup_controls(screen))[name].read(f"{angle} deg"))
         return {"file": screen.file}
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy
 
-from ...core.checks import shown
+from ...core.checks import check_whole_number, shown
 from ...core.kinds import Unit
 from ...core.quantities import CONTACT, DERIVED, FIELD, Quantity
 from ...files.joint_file import JointFile
@@ -24,7 +24,7 @@ from ...reports.pages import picture, table
 from ...reports.style import BLUE, INK, LineStyle
 from ...reports.svg import attribute, levels_between
 from ..long_view import LongView, LongWork, long_body
-from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, colour_scale, load_bore, node_field, shape_of, viewer
+from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, bore_map, colour_scale, node_field, shape_of, viewer
 from ..pictures.chart import Curve, chart, legend, plain_numbers, spans
 from ..pressing import axis_end
 from ..running import Work
@@ -84,7 +84,9 @@ class Gait(LongView):
             "gait.own": self._take_upload,
             "gait.units": lambda yes: self._with_table(self._doubtful),
             "gait.sample": self._save_sample,
-            "gait.instant": self._take_instant,
+            "gait.instant": lambda value: changed(
+                self.page.screen, "use.instant", check_whole_number("instant", value)
+            ),
         }
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -173,11 +175,6 @@ class Gait(LongView):
         weight = use.body_weight if CYCLES[use.cycle].per_body_weight else None
         text = sample_table(named_cycle(use.cycle, body_weight=weight))
         self.page.send_file(f"{use.cycle}.csv", text.encode("utf-8"))
-
-    def _take_instant(self, value: Any) -> Changes:
-        if not isinstance(value, int) or isinstance(value, bool):
-            raise ValueError("an instant of a cycle is a whole number")
-        return changed(self.page.screen, "use.instant", value)
 
     def document(self, screen: Screen) -> Document:
         result, film, reading = self.result(screen), self.film.result(screen), screen.reading
@@ -390,4 +387,4 @@ def flat_bore(result: GaitResult, film: GaitFilm | None, file: JointFile, readin
     )
     phase, highest = result.phase[instant], number_text(nodes.max())
     words = f"{label} at {phase:.1f} % of the cycle, seen from the opening, up to {highest}"
-    return load_bore(field, words, result.load[instant])
+    return bore_map(words, field, result.load[instant])

@@ -13,13 +13,15 @@ from ...reports.pages import answer_table
 from ...reports.study_plots import result_figure
 from ...reports.style import INK, VERMILLION, LineStyle
 from ...studies.limits import verdicts
+from ...studies.sensitivity_answer import uncertainty_tables
 from ...studies.study_answer import describe_study
 from ..pictures.chart import Curve, chart, legend, spans
-from ..pressing import axis_end
+from ..pressing import axis_end, effects_of
 from ..state.screen import MAPPED, Screen
 from ..view import Document, View, field_places
 from ..widgets.controls import Control, chosen
 from ..widgets.limit_rows import limit_text, present_value
+from ..widgets.words import alert
 from .design_map import axis_control, checked, end_control, limits_input, study_rows
 from .map_study import limits_of, models_of, swept
 
@@ -36,6 +38,8 @@ class OneInput(View):
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <figure id="curve-chart"></figure>
+<h3>Effect of one percent of each number</h3>
+<div id="curve-effects"></div>
 """
 
     def controls(self, screen: Screen) -> list[Control]:
@@ -52,8 +56,9 @@ class OneInput(View):
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#curve-chart"):
             self.put(chart="<p class='quiet'>Preparing the curve …</p>")
-        self.expect("chart")
+        self.expect("chart", "effects")
         self.compute(lambda: result_chart(swept(screen), screen), lambda html: self.put(trouble="", chart=html))
+        self.compute(lambda: _effects(screen), lambda html: self.put(effects=html))
 
     def document(self, screen: Screen) -> Document:
         results, units = swept(screen), screen.reading.units
@@ -64,6 +69,18 @@ class OneInput(View):
             rows=lambda: study_rows(results, screen.reading),
             sections=lambda: {"curve": ("Results over one input", answer_table(table, units))},
         )
+
+
+def _effects(screen: Screen) -> str:
+    """Tabulate the effect of one percent of each number on each result."""
+    try:
+        effects = effects_of(screen.file)
+    except ValueError as error:
+        return alert(str(error))
+    if effects is None:
+        return "<p class='quiet'>Computed for loads above 0 along the axis of the cup.</p>"
+    changes, *_ = uncertainty_tables(effects)
+    return answer_table(changes, screen.reading.units)
 
 
 def result_chart(results: Any, screen: Screen) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import radians
 from types import MappingProxyType
 from typing import Any
@@ -29,8 +29,9 @@ from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.orientation_plots import orientation_figure
 from ...reports.press_report import press_lede, press_sections
+from ..long_view import LongView
 from ..results import RESULTS, without_name
-from ..running import Reached, Report
+from ..running import Reached, Report, Work
 from ..state.screen import Screen
 from ..view import Document
 
@@ -100,6 +101,18 @@ def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
     report(Reached(share=0.1, words="Preparing the real cup ..."))
     Sphere(cup=cup).press(joint, force=1.0)
     return True
+
+
+class RealCupView(LongView):
+    """View that prepares the bore of the real cup by itself; its views share the result."""
+
+    automatic, result_kind = True, "cup"
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return bore_of(screen.file)
+
+    def work(self, screen: Screen) -> Work:
+        return partial(set_up, *bore_of(screen.file))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -20,7 +20,7 @@ from ...problem.presets import joints
 from ...reports.pages import picture, table
 from ...reports.style import BLUE, VERMILLION, LineStyle
 from ..long_view import LongView, long_body
-from ..pictures.bore import CELLS_EDGE, METRIC, BoreField, grid_field, load_bore
+from ..pictures.bore import CELLS_EDGE, METRIC, BoreField, bore_map, grid_field
 from ..pictures.chart import Curve, chart, legend
 from ..pressing import axis_end
 from ..results import RESULTS
@@ -290,6 +290,6 @@ def depth_maps(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> 
             least=CELLS_EDGE,
         )
         label = f"worn depth of {name} seen from its opening, up to {reading.with_unit(_DEPTH, deepest[name])}"
-        bore = load_bore(field, label, worn.load)
+        bore = bore_map(label, field, worn.load)
         figures.append(f"<figure><figcaption>{escape(name)}</figcaption>{bore}</figure>")
     return "".join(figures)
