@@ -19,8 +19,10 @@ from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
 from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
+from ...core.kinds import MEGAPASCALS
 from ...core.sources import Source
 from ...core.stress import Peak
+from ...core.unit_systems import Amount, Sentence
 from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, Status, body_remarks, largest_poisson
 from ...problem import Joint, Material
 from ...problem.cup import AXIAL_TILT, Cup
@@ -166,12 +168,22 @@ def _hardening_modulus_ratio(contact: Any) -> Array:
     return liner.young / measured if measured else 1.0 + 0.0 * liner.young
 
 
-_OTHER_MODULUS = Remark(
+class _OtherModulus(Remark):
+    """Liners with another Young's modulus than their hardening curve, by more than 5 %."""
+
+    def note(self, contact: Any) -> str:
+        """Note with both moduli."""
+        liner = contact.joint.liner
+        moduli = float(to_numpy(liner.young)[~to_numpy(self.holds(contact))].flat[0]), liner.hardening.young
+        amounts = (Amount(young, MEGAPASCALS) for young in moduli)
+        return Sentence(f"E {{}} of the liner is not E {{}} of its hardening curve: {self.why}", *amounts)
+
+
+_OTHER_MODULUS = _OtherModulus(
     quantity=_hardening_modulus_ratio,
     low=0.95,
     high=1.05,
-    why="the liner's Young's modulus is not that of its hardening curve: its strains under a stress differ from the "
-    "measured ones",
+    why="strains under a stress differ from the measured ones",
 )
 
 
