@@ -130,7 +130,7 @@ class Sphere(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus",
         ),
-        Range(quantity="joint.thickness_ratio", high=60.0, why="a thinner liner is not meshed in rings: use fem"),
+        Range(quantity="joint.thickness_ratio", high=250.0, why="a thinner liner is not meshed in rings"),
     )
 
     @property
