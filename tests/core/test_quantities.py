@@ -76,6 +76,7 @@ def test_names_symbols_and_titles_are_unique():
     groups = [CONTACT, BEARING, JOINT, FIT, STRESS_LIMITS, DERIVED, quantities.MATERIAL, quantities.PARTS]
     groups += [
         quantities.PLASTIC,
+        quantities.YIELD_LIMITS,
         quantities.SHELL,
         quantities.LAYER,
         quantities.CUP,

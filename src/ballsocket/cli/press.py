@@ -23,7 +23,7 @@ from ..core.validity import Status
 from ..design_checks import assess_strength
 from ..files.inputs import PARTS
 from ..files.joint_file import JointFile
-from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
+from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, reference, with_gap, with_yielding
 from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_press
@@ -186,12 +186,13 @@ class PressedJoint:
 
 
 def _strength_summary(contact: Contact | None) -> dict[str, Any]:
-    """Return the verdict on the strengths with its reason, and the bar of the utilisation; empty without a contact."""
+    """Return the verdict on the strengths, the bar of the utilisation, a collapse load; empty without a contact."""
     if contact is None:
         return {}
     strength, bar = assess_strength(contact), map(to_list, error_bar(contact, "utilisation")[1:])
     ends = dict(zip(("utilisation_low", "utilisation_high"), bar, strict=True))
-    return {**ends, "strength_verdict": strength.verdict.word, "strength_reason": strength.words}
+    limits = {"collapse_load": to_list(contact.collapse_load)} if contact.yields else {}
+    return {**ends, **limits, "strength_verdict": strength.verdict.word, "strength_reason": strength.words}
 
 
 @app.command()
@@ -285,8 +286,14 @@ def curve(
     *,
     joint: JointName = None,
     joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
-    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
+    model: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Name of a model (see `ballsocket models`), or FILE.py:NAME. Default: exact; {JUDGE} with --plastic."
+        ),
+    ] = None,
     gap: GapName = None,
+    plastic: Yielding = False,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -299,7 +306,8 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
+    named = with_gap(requested_model(model or (JUDGE if plastic else reference.name)), gap)
+    file, named = joint_options.read(joint), with_yielding(named) if plastic else named
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
     contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
