@@ -18,7 +18,7 @@ from .contact import Contact
 from .contact.strength import unchecked_strength_reason
 from .contact.verdict import EDGE_DISTANCE, Bounded, Verdict, ball_von_mises, error_bar, exact_number, ratio_text
 from .core.answers import Check
-from .core.quantities import STRENGTH
+from .core.quantities import QUANTITIES, SHAKEDOWN_WORK, STRENGTH
 from .problem import Joint, Material
 from .problem.cup import Cup
 
@@ -41,13 +41,17 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
         reach = cup.rim - cup.chamfer / radius
         value, low, high = error_bar(contact, "half_angle")
         distance = Bounded(*(radius * (reach - angle) for angle in (value, high, low)))
-    return checks_at(
+    rows = checks_at(
         joint,
         pressure=error_bar(contact, "max_pressure"),
         von_mises=error_bar(contact, "quick_von_mises" if von_mises is None else "von_mises"),
         edge=(reach, distance) if float(contact.half_angle) > 0 else None,
         trusted=bool(contact.valid),
     )
+    if not contact.yields or not float(contact.force) > 0:
+        return rows
+    yielding = ("liner", STRENGTH[_VON_MISES].title)  # its stress does not exceed the hardening curve
+    return sorted_checks([*(row for row in rows if (row.part, row.limit) != yielding), *_yield_checks(contact)])
 
 
 def checks_at(
@@ -120,6 +124,23 @@ def _material_checks(
         )
 
 
+def _yield_checks(contact: Any) -> Iterator[Check]:
+    """Yield the checks of a liner that yields: its force, and the plastic work of the repeated load."""
+    for name, capacity, limit, source in (
+        ("force", float(contact.collapse_load), "collapse load", "largest force with an equilibrium"),
+        ("repeated_work", SHAKEDOWN_WORK, "limit of shakedown", "a socket that shakes down is elastic from then on"),
+    ):
+        yield Check(
+            title=QUANTITIES[name].title,
+            quantity=name,
+            demand=error_bar(contact, name),
+            capacity=capacity,
+            limit=limit,
+            source=source,
+            trusted=bool(contact.valid),
+        )
+
+
 def _source_of(material: Material, title: str) -> str:
     """Return the source of one limit of a material: its part of the sources, else its name alone."""
     parts = (part.strip() for part in material.source.split(";"))
@@ -139,7 +160,7 @@ def verdict_of(rows: Sequence[Check]) -> tuple[Verdict, str]:
     near = [row for row in undecided if row.capacity is not None]
     if near:
         return Verdict.UNDECIDED, f"Undecided: {_uses(near)}"
-    if not any(row.quantity in ("max_pressure", "von_mises") for row in kept):
+    if not any(row.quantity in ("max_pressure", "von_mises", "force") for row in kept):
         return Verdict.UNDECIDED, f"Undecided: {'; '.join(row.source for row in undecided)}"
     near_limit = ", near the limit" if kept[0].is_near else ""
     return Verdict.KEPT, f"Kept{near_limit}: {_uses(kept[:1])}, the highest ratio"

@@ -90,6 +90,13 @@ def named_model(name: Any) -> Model:
 SomeModel = TypeVar("SomeModel", bound=Model)
 
 
+def with_yielding(model: SomeModel) -> SomeModel:
+    """Return the finite elements with a liner that yields; ValueError for another model."""
+    if not hasattr(model, "plastic"):
+        raise ValueError(f"{model.name} has no liner that yields: use {JUDGE}")
+    return replace(model, plastic=True)  # type: ignore[type-var]
+
+
 def with_gap(model: SomeModel, name: str | None) -> SomeModel:
     """Return a model with the gap of a name, "linear" or "circular"; None leaves the model as it is.
 

@@ -14,7 +14,7 @@ from .contact.verdict import Verdict, rim_verdict
 from .core.answers import PAGE, Answer, Column, Row, Table
 from .core.arrays import to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
-from .core.quantities import CONTACT, HEADLINE, LOADS, PLASTIC
+from .core.quantities import CONTACT, HEADLINE, LOADS, PLASTIC, YIELD_LIMITS
 from .core.unit_systems import Amount, Sentence
 from .design_checks import checks_of, strength_lines, unchecked_text, verdict_of
 from .model_catalogue import JUDGE, OFF_AXIS, reference
@@ -94,7 +94,11 @@ def press_remarks(answered: PressAnswer) -> list[str]:
     comparison, seconds = answered.comparison, answered.seconds
     remarks = [f"verdict by {answered.leading}: {design_verdict(answered)[1]}"]
     if JUDGE in comparison:
-        remarks.append(_mesh_remark(comparison[JUDGE], seconds[JUDGE]))
+        contact: Any = comparison[JUDGE]  # with its limits, if its liner yields
+        remarks.append(_mesh_remark(contact, seconds[JUDGE]))
+        if contact.yields and contact.collapse_load == contact.collapse_load:
+            collapse = Amount(float(contact.collapse_load), NEWTONS)
+            remarks.append(Sentence(f"{JUDGE}: {YIELD_LIMITS['collapse_load'].title} {{}}", collapse))
     if OFF_AXIS in comparison:
         remarks.append(_sphere_remark(comparison[OFF_AXIS], seconds[OFF_AXIS]))
     remarks += answered.assumptions

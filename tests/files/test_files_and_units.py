@@ -304,9 +304,9 @@ def test_strengths_are_read_with_units_and_written_again_and_so_is_one_that_is_n
 
 def test_a_hardening_is_read_with_units_and_written_again():
     pytest.importorskip("tomli_w")
-    text = STRONG.replace("23 MPa", '23 MPa"\nhardening = "0.02 GPa:0, 24:0.01')
+    text = STRONG.replace("23 MPa", '23 MPa"\nhardening = "0.02 GPa:0, 24:0.01; E 1.2 GPa')
     file = parse_joint(text.encode(), "file")
-    assert file.joint.liner.hardening == bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01))
+    assert file.joint.liner.hardening == bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01), young=1200.0)
     assert parse_joint(toml_of(file).encode(), "file").joint.liner == file.joint.liner
     hip = bs.joints["hip-28"]
     assert "hardening" not in tables_of(JointFile(hip, {}))["liner"]
@@ -315,7 +315,7 @@ def test_a_hardening_is_read_with_units_and_written_again():
     again = parse_joint(toml_of(JointFile(others, {"force": 3e3})).encode(), "file").joint
     assert (again.liner.hardening, again.liner.yield_stress) == (None, bs.UHMWPE.yield_stress)
     assert again.ball.yield_stress == again.backing[0].material.yield_stress == named.yield_stress
-    with pytest.raises(ValueError, match="hardening = '0.02 GPa, 24:0.01' must be points 'stress:plastic strain'"):
+    with pytest.raises(ValueError, match=r"hardening = '0.02 GPa, 24:0.01; E.* must be points 'stress:plastic strain'"):
         parse_joint(text.replace("GPa:0", "GPa").encode(), "file")
 
 

@@ -15,7 +15,7 @@ from ..core.kinds import Choice
 from ..core.storage.atomic_files import check_ending, write_csv
 from ..files.joint_file import JointFile
 from ..files.joint_options import PARTS
-from ..model_catalogue import reference, with_gap
+from ..model_catalogue import JUDGE, reference, with_gap, with_yielding
 from ..problem import Joint
 from ..reports import study_plots
 from ..studies.axes import Span
@@ -30,6 +30,7 @@ from ..studies.sensitivity_answer import describe_sensitivity, index_table, sens
 from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
 from ..studies.variance_shares import sensitivity as find_sensitivity
+from .elasticity_options import Yielding
 from .options import (
     GapName,
     JointName,
@@ -57,19 +58,21 @@ class PressOptions:
 
     model: ModelName = None
     gap: GapName = None
+    plastic: Yielding = False
 
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
         """Return the requested model, or the default one for joints between some ends, in the cup of the file.
 
         Raises ValueError: the requested model has no result for any of these joints.
         """
-        if self.model is None:
+        if self.model is None and not self.plastic:
             model = default_model(file.joint, ends) if self.gap is None else reference
             if self.gap is None and model.name == reference.name:
                 print_message(f"model {model.name} is used, since tabulated is valid for none of these joints")
         else:
-            model = requested_model(self.model)
+            model = requested_model(self.model or JUDGE)
             check_model_domain(model, file.joint, ends)
+            model = with_yielding(model) if self.plastic else model
         return with_gap(model, self.gap).in_cup(file.cup, **file.aim)
 
 

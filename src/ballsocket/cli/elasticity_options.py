@@ -27,7 +27,10 @@ ModelNames = Annotated[
 ]
 
 Yielding = Annotated[
-    bool, typer.Option("--plastic", help=f"{JUDGE}: let the liner yield, by its hardening or yield stress.")
+    bool,
+    typer.Option(
+        "--plastic", help=f"Let the liner yield, by its hardening or yield stress, in finite elements ({JUDGE})."
+    ),
 ]
 
 if TYPE_CHECKING:

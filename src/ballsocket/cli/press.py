@@ -23,7 +23,7 @@ from ..core.validity import Status
 from ..design_checks import assess_strength
 from ..files.joint_file import JointFile
 from ..files.joint_options import PARTS
-from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, with_gap
+from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, reference, with_gap, with_yielding
 from ..press_answer import describe_curve, design_verdict, press_remarks
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_press
@@ -171,10 +171,12 @@ class PressedJoint:
         comparison, pulled, wear_depth = self.answer.comparison, self.answer.pulled, self.answer.wear_depth_to_loosen
         summary = comparison.summary()
         for result in summary["results"]:
-            contact = comparison.get(result["model"])
+            contact: Any = comparison.get(result["model"])  # with its limits, if its liner yields
             if contact is not None:
                 ends = map(to_list, error_bar(contact, "utilisation")[1:])
                 result.update(zip(("utilisation_low", "utilisation_high"), ends, strict=True))
+                if contact.yields:
+                    result["collapse_load"] = to_list(contact.collapse_load)
                 strength = assess_strength(contact)
                 result.update(strength_verdict=strength.verdict.word, strength_reason=strength.words)
             if friction.friction is not None:
@@ -281,8 +283,14 @@ def curve(
     *,
     joint: JointName = None,
     joint_options: Annotated[JointOptions, (*PARTS, "cup", "load")],
-    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
+    model: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Name of a model (see `ballsocket models`), or FILE.py:NAME. Default: exact; {JUDGE} with --plastic."
+        ),
+    ] = None,
     gap: GapName = None,
+    plastic: Yielding = False,
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -295,7 +303,8 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), with_gap(requested_model(model), gap)
+    named = with_gap(requested_model(model or (JUDGE if plastic else reference.name)), gap)
+    file, named = joint_options.read(joint), with_yielding(named) if plastic else named
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
     contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)

@@ -17,7 +17,7 @@ from ..core.executors.processes import count_text
 from ..core.storage.atomic_files import address_of
 from ..core.storage.folders import folder_at
 from ..core.unit_systems import Units
-from ..model_catalogue import with_gap
+from ..model_catalogue import with_gap, with_yielding
 from ..reports import study_plots
 from ..reports.figure_files import check_format, save
 from ..studies.file import StudyFile, read_study
@@ -26,6 +26,7 @@ from ..studies.run import Listener
 from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
 from ..studies.study_answer import describe_study, study_summary
+from .elasticity_options import Yielding
 from .options import AsJson, GapName, Scheduler, UnitSystem, Workers, choose_executor, print_result
 from .root import app, echo_path, print_message
 
@@ -51,6 +52,7 @@ def study(
         ),
     ] = None,
     gap: GapName = None,
+    plastic: Yielding = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
     figure: Annotated[
@@ -68,10 +70,11 @@ def study(
         check_suffix(out)
     study_file = read_study(file)
     draw = None if figure is None else _choose_plot(study_file, figure)
+    model = with_gap(study_file.model, gap)
     folder = store or study_file.store
     with _progress_bar(folder) as progress:
         result = run_study(
-            with_gap(study_file.model, gap),
+            with_yielding(model) if plastic else model,
             study_file.joint,
             study_file.design,
             quantities=study_file.quantities,

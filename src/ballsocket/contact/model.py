@@ -72,6 +72,11 @@ class Model(PressModel):
         return ()
 
     @property
+    def further_quantities(self) -> tuple[str, ...]:
+        """Names of quantities that only contacts of this model have."""
+        return ()
+
+    @property
     def parameters(self) -> tuple[Array, ...]:
         """Parameters of the model that may be arrays and broadcast with joint and load."""
         return ()

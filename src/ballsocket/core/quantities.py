@@ -305,6 +305,8 @@ BEARING = _make_quantity_table(
 )
 """Stresses of a contact relative to the strengths."""
 
+SHAKEDOWN_WORK = 1e-4  # relative plastic work below which a repeated load is elastic
+
 PLASTIC = _make_quantity_table(
     Quantity("permanent_set", "us", "permanent set", Kind.LENGTH,
              "Largest outward displacement of the bore that remains after the load is removed.", Unit("µm", 1e3)),
@@ -318,6 +320,18 @@ PLASTIC = _make_quantity_table(
              "the socket shakes down, above it ratchets."),
 )
 """Results of a liner that yields."""
+
+YIELD_LIMITS = _make_quantity_table(
+    Quantity("yield_load", "Fy", "load of first yield", Kind.FORCE,
+             "Largest force under which a liner that may yield remains elastic."),
+    Quantity("shakedown_load", "Fs", "shakedown load", Kind.FORCE,
+             "Largest force whose repetitions add no plastic work to a yielding liner."),
+    Quantity("collapse_load", "Fc", "collapse load", Kind.FORCE, "Largest force that a yielding liner bears."),
+    Quantity("minimum_thickness", "Lmin", "minimum thickness", Kind.LENGTH,
+             "Smallest thickness of the liner that remains elastic under the force, in the same bore; 0 if a liner of "
+             "R2/25 does, infinite if one of 4 R2 does not."),
+)
+"""Limits of a liner that yields, found by bisection on request."""
 
 FIELD = _make_quantity_table(
     Quantity("angle", "φ", "polar angle", Kind.ANGLE, "Angle from the axis of the load, at the centre of the socket.",
@@ -402,6 +416,7 @@ QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
         **CONTACT,
         **BEARING,
         **PLASTIC,
+        **YIELD_LIMITS,
         **JOINT,
         **FIT,
         **SHELL,

@@ -68,13 +68,13 @@ class MaterialTable(FileTable, frozen=True, kw_only=True):
 
 
 class HardeningCurve(Parsed):
-    """Points 'stress:plastic strain' with commas between them, such as '20 MPa:0, 24 MPa:0.01'."""
+    """Points 'stress:plastic strain' and Young's modulus of the curve, such as '20 MPa:0, 24 MPa:0.01; E 1.2 GPa'."""
 
     schema: ClassVar[Mapping[str, Any]] = {"type": "string", "pattern": ":"}
 
     @classmethod
     def parse(cls, name: str, value: Any) -> Hardening:
-        """Convert a text to a curve; stresses may have units."""
+        """Convert a text to a curve; stresses and modulus may have units."""
         return Hardening.parse(check_text(name, value), lambda stress: parse(name, stress, Kind.MODULUS))
 
 
@@ -83,7 +83,12 @@ class LinerTable(MaterialTable, frozen=True, kw_only=True):
 
     hardening: Annotated[
         HardeningCurve | None,
-        meaning("yield stress over plastic strain", example="20:0, 24:0.01", default="perfectly plastic"),
+        meaning(
+            "yield stress over plastic strain, and the Young's modulus E to which these strains belong if it is not "
+            "the liner's",
+            example="20:0, 24:0.01; E 1200",
+            default="perfectly plastic",
+        ),
     ] = None
 
 

@@ -9,6 +9,7 @@ from math import inf
 from typing import Any
 
 from ..core.checks import require, shown
+from ..core.quantities import MATERIAL
 
 OFFSET_STRAIN = 0.002
 """Plastic strain of the offset yield stress, 0.2 %, as in tensile tests of metals."""
@@ -27,7 +28,8 @@ class Hardening:
     plastic_strain : tuple of float
         Logarithmic plastic strain at each stress, ascending from 0: the strain minus stress over Young's modulus.
     young : float, optional
-        Young's modulus in MPa that the plastic strains belong to; contacts of liners with another one have a note.
+        Young's modulus in MPa that the plastic strains belong to; contacts of liners with another one have a note. None
+        (default) is that of the liner.
     source : str
         Source of the curve.
 
@@ -56,6 +58,8 @@ class Hardening:
         counts = len(self.stress), len(self.plastic_strain)
         if counts[0] != counts[1] or not counts[0]:
             raise ValueError(f"hardening needs one plastic strain for each stress, got {counts[1]} for {counts[0]}")
+        if self.young is not None:
+            MATERIAL["young"].check(self.young)
         for stress in self.stress:
             require("stress of hardening", stress, 0 < stress < inf, "a yield stress (MPa) is above 0 and finite")
         first = self.plastic_strain[0]
@@ -67,20 +71,25 @@ class Hardening:
 
     @classmethod
     def parse(cls, text: str, read_stress: Callable[[str], float] = float) -> Hardening:
-        """Read a curve from text, points "stress:plastic strain" with commas between them; stresses in MPa."""
-        points = [point.split(":") for point in text.split(",")]
+        """Read a curve from text: points "stress:plastic strain" with commas between them, then perhaps "; E modulus".
+
+        Stresses and modulus are in MPa.
+        """
+        points, _, modulus = text.partition(";")
+        pairs = [point.split(":") for point in points.split(",")]
         try:
-            stresses, strains = zip(*((read_stress(stress), float(strain)) for stress, strain in points), strict=True)
+            stresses, strains = zip(*((read_stress(stress), float(strain)) for stress, strain in pairs), strict=True)
+            young = read_stress(modulus.strip().removeprefix("E")) if modulus else None
         except ValueError:
             raise ValueError(
-                f"hardening = {shown(text)} must be points 'stress:plastic strain', such as '21:0, 25:0.05'"
+                f"hardening = {shown(text)} must be points 'stress:plastic strain', such as '21:0, 25:0.05', and may "
+                "end with Young's modulus, such as '; E 1494'"
             ) from None
-        return cls(stress=stresses, plastic_strain=strains)
+        return cls(stress=stresses, plastic_strain=strains, young=young)
 
     def __str__(self) -> str:
-        return ", ".join(
-            f"{stress!r}:{strain!r}" for stress, strain in zip(self.stress, self.plastic_strain, strict=True)
-        )
+        points = (f"{stress!r}:{strain!r}" for stress, strain in zip(self.stress, self.plastic_strain, strict=True))
+        return ", ".join(points) + (f"; E {self.young!r}" if self.young else "")
 
     @property
     def offset_yield(self) -> float:

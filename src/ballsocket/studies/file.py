@@ -39,7 +39,7 @@ from .distributions import Distribution
 from .expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_correlations
 from .parameters import LOADS, PARAMETERS
 from .sampling import Method
-from .task import EDGE_DISTANCE, QUANTITIES
+from .task import QUANTITIES
 
 
 class ScatteredNumber(Parsed):
@@ -214,7 +214,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     if not any(name in LOADS for name in design.names):
         design = design * grid(**file.load)
     store = None if tables.store is None else str(check_filled("store", tables.store))
-    everything = (*QUANTITIES, *([EDGE_DISTANCE] if model.off_axis else []))
+    everything = (*QUANTITIES, *model.further_quantities)
     return StudyFile(
         model=model,
         joint=file.joint,

@@ -20,7 +20,7 @@ from ..core.validity import Status
 from ..problem.cup import UP, Cup, Direction
 from .metadata import joint_dimension, missing_reasons
 from .parameters import PARAMETERS
-from .task import EDGE_DISTANCE, QUANTITIES, with_bounds
+from .task import EDGE_DISTANCE, FURTHER, QUANTITIES, with_bounds
 
 if TYPE_CHECKING:
     import xarray
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _ANGLES = tuple(name for name, quantity in {**PARAMETERS, **CONTACT}.items() if quantity.kind is Kind.ANGLE)
 
-LIMITED_NAMES = (*PARAMETERS, *QUANTITIES, EDGE_DISTANCE)
+LIMITED_NAMES = (*PARAMETERS, *QUANTITIES, *FURTHER)
 """Names of parameters and quantities that can have a limit."""
 
 
@@ -141,9 +141,14 @@ def limited_quantities(limits: Iterable[Limit], model: Model) -> tuple[str, ...]
     """Return the quantities that a study needs for limits: the limited ones and the ends of their error bars.
 
     The edge distance of a model for axial loads follows from the half angle.
+
+    Raises ValueError: a quantity of liners that yield, which the model does not have.
     """
-    known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
-    names = (limit.name if limit.name in known or limit.name != EDGE_DISTANCE else "half_angle" for limit in limits)
+    known = (*QUANTITIES, *model.further_quantities)
+    names = [limit.name if limit.name in known or limit.name != EDGE_DISTANCE else "half_angle" for limit in limits]
+    missing = [name for name in names if name in FURTHER and name not in known]
+    if missing:
+        raise ValueError(f"{missing[0]} needs finite elements whose liner yields: use --plastic or plastic=True")
     return with_bounds(dict.fromkeys(name for name in names if name in known))
 
 

@@ -32,7 +32,6 @@ from .store import StudyStore, read
 from .task import (
     DEFAULT_QUANTITIES,
     DTYPES,
-    EDGE_DISTANCE,
     QUANTITIES,
     STRESSES,
     Task,
@@ -176,7 +175,7 @@ def _create_task(
     if not loads:
         raise ValueError(f"one load is needed, as an axis or a number: {', '.join(LOADS)}")
     check_aims(model, points.names)
-    known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
+    known = (*QUANTITIES, *model.further_quantities)
     check_names([quantity_of_bound(name) for name in quantities], known, "among the quantities")
     if not all(is_number(number) for number in (*joint.numbers(), *model.parameters)):
         raise ValueError("joint and model of a study have plain numbers: use an axis for a number that varies")

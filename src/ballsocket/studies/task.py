@@ -13,7 +13,7 @@ import numpy
 from ..contact import Contact, Model
 from ..contact.verdict import Verdict, error_bar
 from ..core.arrays import Numbers
-from ..core.quantities import BEARING, CONTACT, Quantity
+from ..core.quantities import BEARING, CONTACT, PLASTIC, YIELD_LIMITS, Quantity
 from ..core.quantities import QUANTITIES as CONTACT_QUANTITIES
 from ..core.storage.pieces import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
@@ -26,6 +26,9 @@ QUANTITIES = (*CONTACT, *BEARING)
 
 EDGE_DISTANCE = "edge_distance"
 """Further quantity of models for loads off the axis."""
+
+FURTHER = (EDGE_DISTANCE, *PLASTIC, *YIELD_LIMITS)
+"""Quantities that only some models have."""
 
 DEFAULT_QUANTITIES = ("indentation", "half_angle", "max_pressure", "area")
 """Quantities of a study by default, with the force unless it is the load."""
@@ -48,13 +51,13 @@ BOUNDS: dict[str, Quantity] = {
         name=f"{name}_{end}",
         title=f"{word} bound of the {CONTACT_QUANTITIES[name].title}",
     )
-    for name in (*QUANTITIES, EDGE_DISTANCE)
+    for name in (*QUANTITIES, *FURTHER)
     for end, word in (("low", "lower"), ("high", "upper"))
 }
 """Ends of the error bars of quantities, which a study can have by these names."""
 
 DTYPES: dict[str, Any] = {
-    **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE, *BOUNDS), numpy.float64),
+    **dict.fromkeys((*QUANTITIES, *FURTHER, *BOUNDS), numpy.float64),
     "status": numpy.int8,
     "valid": numpy.bool_,
     "broken_limit": numpy.int8,

@@ -9,7 +9,9 @@ from scipy.optimize import brentq
 
 import ballsocket as bs
 from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION
+from ballsocket.contact.verdict import Verdict
 from ballsocket.core.validity import Status
+from ballsocket.design_checks import checks_of, verdict_of
 from ballsocket.elasticity.finite_elements import calculix
 from ballsocket.elasticity.finite_elements.bodies import CondensedBody
 from ballsocket.elasticity.finite_elements.deck import deck_of
@@ -18,6 +20,7 @@ from ballsocket.elasticity.finite_elements.mesh import mesh_block
 from ballsocket.elasticity.finite_elements.plastic_body import PlasticBody
 from ballsocket.elasticity.finite_elements.plasticity import PlasticStrain, YieldLaw
 from ballsocket.evidence.code_checks import pressure_forces
+from ballsocket.studies.limits import Limit, allowed, limited_quantities
 
 from ...extent import some
 from ...joints import HIP
@@ -142,11 +145,54 @@ def test_repeated_loads_shake_down_below_a_force_and_ratchet_up_to_the_collapse(
     collapse, shakedown = model.collapse_load(joint), model.shakedown_load(joint)
     assert 0.3 * collapse < shakedown < 0.9 * collapse
     safe, unsafe = (model.press(joint, force=factor * shakedown) for factor in (0.95, 1.05))
+    assert (safe.collapse_load, safe.shakedown_load) == (collapse, shakedown)
+    assert [row.capacity for row in checks_of(unsafe, model.cup) if row.quantity == "force"] == [collapse]
+    assert "repeated plastic work" in verdict_of(checks_of(unsafe, model.cup))[1]
+    light = replace(model, meshes=2).press(joint, force=0.4 * shakedown)  # with error bars
+    assert verdict_of(checks_of(light, model.cup))[0] is Verdict.KEPT
     assert safe.repeated_work < 1e-4 < unsafe.repeated_work
     assert "ratchets" in " ".join(unsafe.notes)
     assert "ratchets" not in " ".join(safe.notes)
     # the bonded liner bears more than a hemisphere of its yield stress
     assert collapse > pi * joint.socket_radius**2 * 12.0
+
+
+def test_first_yield_has_a_load_and_a_thickness():
+    stress = 12.0
+    joint = JOINT.replace(liner=replace(JOINT.liner, yield_stress=stress, hardening=None))
+    model = replace(MODEL, spacing=bs.Adapted(elements=24))
+    contact = model.press(joint, force=np.array([0.0, 5000.0, 5000.0]))
+    elastic = bs.FiniteElement(meshes=1).press(joint, force=contact.yield_load[1])
+    assert elastic.utilisation == pytest.approx(1.0, rel=0.02)  # at nodes, not at quadrature points
+    assert contact.yield_load == pytest.approx([np.nan, *2 * [model.yield_load(joint)]], nan_ok=True)
+    thickness = contact.minimum_thickness[1]
+    assert model.yield_load(joint.replace(liner_thickness=thickness)) == pytest.approx(5000.0, rel=2e-3)
+    assert model.minimum_thickness(joint, 100.0) == 0.0
+    assert model.minimum_thickness(joint, 1e5) == np.inf
+    assert np.isnan(elastic.minimum_thickness)
+
+
+def test_a_liner_with_another_modulus_than_its_curve_is_noted_with_both():
+    other = JOINT.replace(liner=replace(JOINT.liner, hardening=replace(CURVE, young=1494.0)))
+    assert "E 1000 MPa of the liner is not E 1494 MPa" in " ".join(MODEL.press(other, force=1e3).notes)
+    for young in (None, 1020.0):
+        same = JOINT.replace(liner=replace(JOINT.liner, hardening=replace(CURVE, young=young)))
+        assert "of its hardening curve" not in " ".join(MODEL.press(same, force=1e3).notes)
+
+
+@pytest.mark.long
+def test_limits_of_yielding_are_quantities_of_studies_and_limits():
+    joint = JOINT.replace(liner=replace(JOINT.liner, hardening=bs.Hardening(stress=(12.0,))))
+    model = replace(MODEL, spacing=bs.Adapted(elements=24))
+    thicknesses = [4.0, 10.0]
+    expected = [model.collapse_load(joint.replace(liner_thickness=thickness)) for thickness in thicknesses]
+    limit = Limit(name="collapse_load", low=sum(expected) / 2)
+    names = limited_quantities([limit], model)
+    found = bs.study(model, joint, liner_thickness=thicknesses, force=5e3, quantities=["permanent_set", *names])
+    assert found.collapse_load.values == pytest.approx(expected)
+    assert allowed(found, [limit]).values.tolist() == [True, False]  # a thin bonded liner cannot flow away
+    with pytest.raises(ValueError, match="collapse_load needs finite elements whose liner yields"):
+        limited_quantities([limit], bs.Exact())
 
 
 def test_below_the_yield_stress_the_contact_is_elastic():

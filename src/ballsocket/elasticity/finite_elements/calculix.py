@@ -265,9 +265,14 @@ def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> f
 
 
 def read_printed(dat: Path, name: str) -> dict[int, Numbers]:
-    """Read the rows of a set of nodes at the end of each step (from 0) from a .dat file."""
+    """Read the rows of a set of nodes at the end of each step (from 0) from a .dat file.
+
+    Fortran omits the letter of an exponent of three digits: 1.0608-172.
+    """
     return {
-        step: numpy.array([row.split() for row in table.splitlines() if row.strip()], dtype=float)
+        step: numpy.array(
+            [re.sub(r"(\d)(-\d{3})\b", r"\1E\2", row).split() for row in table.splitlines() if row.strip()], dtype=float
+        )
         for step, table in _split_by_step(dat, rf"^ .* for set (?:{name} and time +(\S+)|.*)$").items()
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 from math import degrees, inf, nan
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -19,19 +19,62 @@ from ...contact.verdict import Bounded, exact_number
 from ...core import arrays
 from ...core.arrays import Array, Numbers, to_numpy
 from ...core.checks import needs, require
+from ...core.kinds import MEGAPASCALS
+from ...core.quantities import PLASTIC, QUANTITIES, SHAKEDOWN_WORK, YIELD_LIMITS
 from ...core.sources import Source
 from ...core.stress import Peak
+from ...core.unit_systems import Amount, Sentence
 from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, Status, body_remarks, largest_poisson
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
-from .plasticity import SHAKEDOWN_WORK
 from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
 
 if TYPE_CHECKING:
     from .load_search import Solved
     from .plastic_curve import PlasticLoadCurve
     from .section import Section
+
+
+def _plastic_property(name: str) -> Any:
+    """Make a property of contacts with a liner that may yield, of which the solver has one number per contact."""
+
+    def read_quantity(self: MeshedContact) -> Array:
+        if not self.model.plastic:
+            return 0.0 * self.indentation
+        return self._match_load(self.laws.combine(lambda contacts: getattr(contacts.state, name)))
+
+    return _documented(read_quantity, name, "0 without yielding")
+
+
+def _limit_property(name: str, *arguments: str) -> Any:
+    """Make a property of contacts with a liner that may yield: a limit that the model finds for one joint.
+
+    `arguments` are the quantities of a contact that the limit depends on.
+    """
+
+    def find_limit(self: MeshedContact) -> Array:
+        if not self.model.plastic:
+            return nan * self.indentation
+
+        def limits(indices: Numbers, contacts: JointContacts) -> Numbers:
+            joint = joint_at(self.joint, self.laws.shape, int(indices[0]))
+            quantities = (getattr(contacts.state, argument) for argument in arguments)
+            states = zip(contacts.state.force, *quantities, strict=True)
+            find = lru_cache(partial(getattr(self.model, name), joint))  # loads on one joint share a limit
+            return numpy.array([find(*values) if force > 0 else nan for force, *values in states])
+
+        return self._match_load(arrays.where(self.force > 0, self.laws.combine_by_index(limits), nan))
+
+    return _documented(find_limit, name, "NaN without yielding, load or result")
+
+
+def _documented(function: Callable[[MeshedContact], Array], name: str, otherwise: str) -> Any:
+    """Make a cached property with the meaning of a quantity as its documentation."""
+    quantity = QUANTITIES[name]
+    function.__name__ = name
+    function.__doc__ = f"{quantity.meaning} In {quantity.unit}; {otherwise}."
+    return cached_property(function)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -84,35 +127,16 @@ class MeshedContact(SolvedContact):
         """True if the liner may yield."""
         return bool(self.model.plastic)
 
-    def _plastic_quantity(self, name: str) -> Array:
-        if not self.model.plastic:
-            return 0.0 * self.indentation
-        return self._match_load(self.laws.combine(lambda contacts: getattr(contacts.state, name)))
+    permanent_set = _plastic_property("permanent_set")
+    plastic_strain = _plastic_property("plastic_strain")
+    plastic_fraction = _plastic_property("plastic_fraction")
+    plastic_work = _plastic_property("plastic_work")
+    repeated_work = _plastic_property("repeated_work")
 
-    @property
-    def permanent_set(self) -> Array:
-        """Largest outward displacement of the bore in mm that remains after the load is removed; 0 without yielding."""
-        return self._plastic_quantity("permanent_set")
-
-    @property
-    def plastic_strain(self) -> Array:
-        """Largest equivalent plastic strain in the liner."""
-        return self._plastic_quantity("plastic_strain")
-
-    @property
-    def plastic_fraction(self) -> Array:
-        """Fraction of the liner's volume that has yielded."""
-        return self._plastic_quantity("plastic_fraction")
-
-    @property
-    def plastic_work(self) -> Array:
-        """Work in N mm that yielding has dissipated since the first load."""
-        return self._plastic_quantity("plastic_work")
-
-    @property
-    def repeated_work(self) -> Array:
-        """Plastic work that a repeated load adds, over the work until then; below 1e-4 the socket shakes down."""
-        return self._plastic_quantity("repeated_work")
+    yield_load = _limit_property("yield_load")
+    shakedown_load = _limit_property("shakedown_load")
+    collapse_load = _limit_property("collapse_load")
+    minimum_thickness = _limit_property("minimum_thickness", "force")
 
     @property
     def peak_stress(self) -> Peak:
@@ -166,12 +190,22 @@ def _hardening_modulus_ratio(contact: Any) -> Array:
     return liner.young / measured if measured else 1.0 + 0.0 * liner.young
 
 
-_OTHER_MODULUS = Remark(
+class _OtherModulus(Remark):
+    """Liners with another Young's modulus than their hardening curve, by more than 5 %."""
+
+    def note(self, contact: Any) -> str:
+        """Note with both moduli."""
+        liner = contact.joint.liner
+        moduli = float(to_numpy(liner.young)[~to_numpy(self.holds(contact))].flat[0]), liner.hardening.young
+        amounts = (Amount(young, MEGAPASCALS) for young in moduli)
+        return Sentence(f"E {{}} of the liner is not E {{}} of its hardening curve: {self.why}", *amounts)
+
+
+_OTHER_MODULUS = _OtherModulus(
     quantity=_hardening_modulus_ratio,
     low=0.95,
     high=1.05,
-    why="the liner's Young's modulus is not that of its hardening curve: its strains under a stress differ from the "
-    "measured ones",
+    why="strains under a stress differ from the measured ones",
 )
 
 
@@ -192,7 +226,12 @@ _CURVE_COUNTS = Remark(
     why="the liner yields by its hardening curve; its yield stress counts for the utilisation only",
 )
 
-_FORCE_TOLERANCE = 1e-3  # relative, of the collapse and the shakedown load
+
+def _is_elastic(contact: Any) -> bool:
+    return not contact.status.failed and contact.plastic_work == 0
+
+
+_TOLERANCE = 1e-3  # relative, of loads and the thickness at a limit
 _MAX_DOUBLINGS = 20  # of the load from which these are bisected
 
 
@@ -289,6 +328,11 @@ class FiniteElement(Model):
     )
 
     @property
+    def further_quantities(self) -> tuple[str, ...]:
+        """Quantities and limits of a liner that yields."""
+        return (*PLASTIC, *YIELD_LIMITS) if self.plastic else ()
+
+    @property
     def validity(self) -> tuple[Range, ...]:
         """Validity ranges; a circular gap needs no close fit."""
         return (*gap_validity(self.gap), SMALL_STRAIN, *([_SMALL_PLASTIC_STRAIN] if self.plastic else []))
@@ -342,6 +386,10 @@ class FiniteElement(Model):
         contact: MeshedContact = follower.press(joint, **loads)  # type: ignore[assignment]
         return contact
 
+    def yield_load(self, joint: Joint) -> float:
+        """Compute the largest force in N under which the liner of a joint of plain numbers is elastic, within 0.1 %."""
+        return self._largest_force(joint, _is_elastic)
+
     def collapse_load(self, joint: Joint) -> float:
         """Compute the largest force in N that a joint of plain numbers with a yielding liner bears, within 0.1 %."""
         return self._largest_force(joint, lambda contact: not contact.status.failed)
@@ -356,11 +404,25 @@ class FiniteElement(Model):
         low, high = 0.0, 3.0 * (curve.stress[-1] if curve else 1.0) * float(joint.ball_radius) ** 2
         for _ in range(_MAX_DOUBLINGS):
             if not bears(model.press(joint, force=high)):
-                return bisect(
-                    low, high, lambda force: bears(model.press(joint, force=force)), tolerance=_FORCE_TOLERANCE
-                )
+                return bisect(low, high, lambda force: bears(model.press(joint, force=force)), tolerance=_TOLERANCE)
             low, high = high, 2 * high
         return inf
+
+    def minimum_thickness(self, joint: Joint, force: float) -> float:
+        """Compute the smallest thickness in mm of a liner that is elastic under a force in N, within 0.1 %.
+
+        Bore, ball and backing of the joint of plain numbers stay. The result is 0 if a liner of R2/25 is elastic, and
+        infinite if one of 4 R2 is not.
+        """
+        model, radius = replace(self, meshes=1, plastic=True), float(joint.socket_radius)
+        low, high = radius / 25, 4 * radius
+
+        def yields(thickness: float) -> bool:
+            return not _is_elastic(model.press(joint.replace(liner_thickness=thickness), force=force))
+
+        if yields(high):
+            return inf
+        return bisect(low, high, yields, tolerance=_TOLERANCE) if yields(low) else 0.0
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         needs("fem", "skfem", "psutil")

@@ -14,11 +14,12 @@ from functools import cached_property
 import numpy
 
 from ...core.arrays import Numbers
+from ...core.quantities import SHAKEDOWN_WORK
 from ...problem.gaps import Gap
 from .bodies import SurfacePair
 from .pair_contact import edge_beyond, pressure_at_pole
 from .plastic_body import PlasticBody, Tangent
-from .plasticity import SHAKEDOWN_WORK, PlasticStrain
+from .plasticity import PlasticStrain
 
 _MAX_ITERATIONS, _MAX_SET_CHANGES = 20, 60
 _TOLERANCE = 1e-8  # of the nodal forces, relative

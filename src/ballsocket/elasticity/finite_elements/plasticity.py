@@ -19,7 +19,6 @@ from ...problem.hardening import Hardening
 
 _ROOT = numpy.sqrt(1.5)
 _ROUNDING = 1e-14  # of strains: a smaller increment is none
-SHAKEDOWN_WORK = 1e-4  # relative plastic work below which a repeated load is elastic
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

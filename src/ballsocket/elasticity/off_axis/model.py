@@ -13,6 +13,7 @@ from ...contact.assembly import SolverResult
 from ...contact.law import ForceLaw
 from ...contact.model import bonded_liner
 from ...contact.per_joint import JointContacts, solve_per_joint
+from ...contact.verdict import EDGE_DISTANCE
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.checks import (
@@ -101,6 +102,7 @@ class Sphere(Model):
     sources: ClassVar[tuple[Source, ...]] = (Source("polonsky1999"),)
     contact_type: ClassVar[type[Contact]] = OffAxisContact
     off_axis: ClassVar[bool] = True
+    further_quantities: ClassVar[tuple[str, ...]] = (EDGE_DISTANCE,)
     differentiable: ClassVar[bool] = False
     smooth_step: ClassVar[float] = 3e-3
     seconds_a_press: ClassVar[float] = 0.03
@@ -130,7 +132,7 @@ class Sphere(Model):
             high=0.49995,
             why="an incompressible body has no bulk modulus",
         ),
-        Range(quantity="joint.thickness_ratio", high=60.0, why="a thinner liner is not meshed in rings: use fem"),
+        Range(quantity="joint.thickness_ratio", high=250.0, why="a thinner liner is not meshed in rings"),
     )
 
     @property
