@@ -154,10 +154,10 @@ def test_no_script_stands_in_the_page(address):
 
 
 def test_files_are_compressed_and_are_sent_once(address):
-    response, body = answer(address, "/assets/page.css", **{"Accept-Encoding": "gzip"})
+    response, body = answer(address, "/assets/style.css", **{"Accept-Encoding": "gzip"})
     assert response.headers["Content-Encoding"] == "gzip"
-    assert gzip.decompress(body) == answer(address, "/assets/page.css")[1]
-    again, nothing = answer(address, "/assets/page.css", **{"If-None-Match": response.headers["ETag"]})
+    assert gzip.decompress(body) == answer(address, "/assets/style.css")[1]
+    again, nothing = answer(address, "/assets/style.css", **{"If-None-Match": response.headers["ETag"]})
     assert (again.status, nothing) == (304, b"")
 
 

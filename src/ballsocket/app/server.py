@@ -121,6 +121,7 @@ def page_files() -> dict[str, tuple[str, str]]:
     room = files("ballsocket")
     drawing = room / "reports" / "templates" / "drawing.css"  # of the section, which reports have, too
     contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
+    contents["style.css"] = "".join(contents.pop(f"{name}.css") for name in ("drawing", "parts", "page", "views"))
     kinds = {name: view_class(name) for name in VIEW_CLASSES}
     modules = sorted(name for name in contents if name.endswith(".js"))
     parts = {
