@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 MOST = 99  # minor versions of Python 3
-PIP = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check")
+PIP = ("-m", "pip", "install", "--quiet", "--no-compile", "--disable-pip-version-check")
 LINES = """
 import sys, ballsocket as bs
 hip = bs.Joint(head_diameter=35.8, diametral_clearance=0.2, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)

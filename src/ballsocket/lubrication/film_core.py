@@ -28,6 +28,7 @@ _IN_CONTACT = 0.5  # interpolated share of contact from which a point counts as 
 _CELL_WIDTH = radians(1.0)  # width in rad of the cells of the drift, whatever the cells of the bore are
 _MARGIN_CELLS = 3  # number of rings of these cells around the contact
 _NO_ROTATION = 1e-9  # net rotation in rad that counts as none
+_OUTSIDE = 1e-9  # distance from the triangles on their map, from which a point is certainly outside
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,14 +214,19 @@ class Triangles:
     """
 
     def __init__(self, directions: Numbers, nodes: Numbers) -> None:
-        from scipy.spatial import Delaunay  # slow to import
+        from scipy.spatial import ConvexHull, Delaunay  # slow to import
 
-        self._mesh, self._nodes = Delaunay(_map(directions[nodes])), nodes
+        points = _map(directions[nodes])
+        self._mesh, self._nodes = Delaunay(points), nodes
+        self._sides = ConvexHull(points).equations  # n_x x + n_y y + c, not above 0 inside
 
     def locate(self, directions: Numbers) -> tuple[Numbers, Numbers]:
         """Return numbers of three cells (n, 3) around each direction, and their weights: zeros outside."""
         points = _map(directions)
-        triangle = self._mesh.find_simplex(points)
+        distance = (points @ self._sides[:, :2].T + self._sides[:, 2]).max(axis=1)
+        near = distance < _OUTSIDE  # SciPy compares each of the others with every triangle
+        triangle = numpy.full(len(points), -1)
+        triangle[near] = self._mesh.find_simplex(points[near])
         transform = self._mesh.transform[triangle]
         first = numpy.einsum("nij,nj->ni", transform[:, :2], points - transform[:, 2])
         weights = numpy.concatenate([first, 1 - first.sum(axis=1, keepdims=True)], axis=1)
