@@ -280,14 +280,6 @@ def test_retarded_liner_drags_a_contact_that_moves_along_the_socket():
     assert pressed.dissipation == pytest.approx(2e-4 * load.tangent[2][2] * 30.0**2, rel=1e-12)
 
 
-@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
-def test_potential_of_a_number_equals_that_of_an_array_at_all_depths(model):
-    potential = bs.ForceElement(model, HIP).potential
-    depths = np.array([1e-9, 1e-7, 2e-7, 1e-5, 3e-3, 0.05, 1.0, 6.0])
-    columns = np.array([potential(depth) for depth in depths.tolist()]).T
-    np.testing.assert_allclose(columns, potential(depths), rtol=1e-11)
-
-
 def test_jax_derivatives_of_the_energy_equal_force_and_tangent():
     jax = pytest.importorskip("jax")
     element = bs.ForceElement(bs.Tabulated(), HIP, cup=CUPS["leaning cup"], smoothing=0.02)

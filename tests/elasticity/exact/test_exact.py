@@ -275,6 +275,17 @@ def test_errors_grow_with_the_slopes_of_a_point_contact(kind):
         assert excess == pytest.approx(share / shares["energy"], rel=0.02), name
 
 
+@pytest.mark.parametrize("kind", ["force", "indentation"])
+def test_half_angles_are_estimated_within_a_fifth_of_a_percent(kind):
+    """Below the knots the estimate is the power law of a point contact, with the logarithm of its slope."""
+    curve = curve_of(bs.Exact(), HIP)
+    state = curve.state(np.radians(np.linspace(0.3, 84.0, 40)), 20)
+    estimate = curve._estimate_angle(kind, getattr(state, kind))
+    np.testing.assert_allclose(estimate, state.half_angle, rtol=2e-3)
+    tiny = curve.state(np.radians([0.05, 0.1]), 20)
+    np.testing.assert_allclose(curve._estimate_angle(kind, getattr(tiny, kind)), tiny.half_angle, rtol=0.02)
+
+
 def test_the_peak_stress_is_the_largest_of_a_fine_search():
     """At a wide contact it lies in the liner, below the edge of the contact."""
     contact = bs.Exact().press(RIGID, force=3000.0)

@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 from functools import cached_property
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.finite_elements import calculix as ccx
 from ballsocket.elasticity.finite_elements.deck import deck_of
-from ballsocket.elasticity.finite_elements.deck_bodies import faceting_gap
 
 from ...extent import some
 from ..calculix import needs_ccx
@@ -152,21 +150,6 @@ def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes()
     assert set(elastic.set("PUSHED")).isdisjoint(elastic.set("UPRIGHT"))
     ball = {int(node) for head, rows in rigid.blocks if head.endswith("ELSET=BALL") for row in rows for node in row[1:]}
     assert set(rigid.set("PUSHED")) == ball <= set(rigid.set("UPRIGHT"))
-
-
-def test_facets_leave_a_gap_of_chords_or_parabolas():
-    """Largest distance from an arc to the element through its nodes; none where both bodies have the same nodes."""
-    half, radius, angle = 0.05, 18.0, np.arange(0.0, 0.61, 0.05)
-    corners = np.arange(0.0, 0.91, 0.05), np.append(np.arange(0.0, 0.61, 2 * half), [1.6, 2.5])
-    surfaces, resolution = [SimpleNamespace(corners=row) for row in corners], SimpleNamespace(order=1)
-    pair = SimpleNamespace(surfaces=surfaces, angle=angle, radius=radius, resolution=resolution)
-    assert faceting_gap(pair) == pytest.approx(radius * (1 - np.cos(half)), rel=1e-3)
-    pair.resolution.order = 2
-    t = np.linspace(-1.0, 1.0, 2001)
-    below = radius - radius * np.hypot(np.sin(half) * t, 1 - (1 - np.cos(half)) * t**2)
-    assert faceting_gap(pair) == pytest.approx(abs(below).max(), rel=1e-2)
-    pair.surfaces[1] = pair.surfaces[0]
-    assert faceting_gap(pair) == 0.0
 
 
 def test_a_fixed_liner_has_a_fixed_outer_surface():

@@ -17,12 +17,12 @@ from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
 from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points, socket_shape
-from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact, pressure_at_pole
+from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact
 from ballsocket.elasticity.finite_elements.solver import load_curve_of
 from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
-from ballsocket.problem.gaps import CircularGap, LinearGap
+from ballsocket.problem.gaps import LinearGap
 
 from ...extent import some
 from ...joints import HIP
@@ -102,12 +102,6 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     assert load_search._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
-@pytest.mark.parametrize("gap", [GAP, CircularGap(clearance=0.1, socket_radius=18.0)])
-def test_a_full_contact_is_solved_for_its_load(pair, gap):
-    for kind, load in (("force", 9000.0), ("indentation", 0.5)):
-        assert getattr(solver._solve_full_contact(kind, load, pair, gap), kind) == pytest.approx(load, rel=1e-10)
-
-
 def test_a_bracket_finds_the_contacts_between_its_ends(pair):
     bracket = ContactBracket(pair=pair, gap=GAP, low=0.3, high=1.0)
     low, high = partial_contact(pair, GAP, 0.3), partial_contact(pair, GAP, 1.0)
@@ -124,21 +118,6 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
             assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=0.02)
             bisected = bracket._solve_by_brent(kind, load, 0.29, 1.0)
             assert bisected.half_angle == pytest.approx(contact.half_angle, rel=1e-8)
-
-
-def test_the_pressure_at_the_pole_is_extrapolated_by_an_even_polynomial():
-    """Of few nodes it is a parabola through three, beyond which scatter and the fourth node have no effect."""
-    angle = np.linspace(0.0, 1.0, 41)
-    pressures = 5.0 - 2.0 * angle**2 + 0.5 * angle**4
-    pressures[0] = 99.0
-    assert pressure_at_pole(angle, pressures, 1.0) == pytest.approx(5.0, rel=1e-9)
-    few = angle[::8]
-    assert pressure_at_pole(few, 5.0 - 2.0 * few**2, 1.0) == pytest.approx(5.0, rel=1e-9)
-    square = np.array([0.1, 0.2, 0.3]) ** 2
-    scatter = np.cross(np.ones(3), square)
-    pressures = [99.0, *(5.0 - 2.0 * square + 0.3 * scatter / abs(scatter).max()), 77.0, 0.0]
-    few = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 1.0])
-    assert pressure_at_pole(few, np.array(pressures), 0.5) == pytest.approx(5.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("elements", [5.5, 6.5])

@@ -163,23 +163,11 @@ def test_springs_separate_at_the_interference(interference):
     assert fitted.separation_displacement((0.0, 5.0, 0.0)) == fitted.separation_displacement((0.0, 1.0, 0.0))
 
 
-@pytest.mark.parametrize("arc", some([200.0, 240.0], 1))
-def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc):
-    """Pressures are proportional to the interference that is left, even where the opening pushes the ball outwards."""
-    worn = bs.BoreDeviation(of=lambda n: 0.01)
-    fitted, looser = (bs.Preload(model=held(arc, worn=depth), joint=TIGHT) for depth in (None, worn))
-    assert fitted.equilibrium.pressure_map[2].min() == 0.0
-    assert fitted.separation_displacement((1.0, 0.0, 0.0)) == 0.0
-    assert fitted.wear_depth_to_loosen() == pytest.approx(0.05, rel=1e-3)
-    assert looser.wear_depth_to_loosen() == pytest.approx(0.04, rel=1e-3)
-    assert "as is normal in a preloaded joint, so its stress has no known bound" in fitted.equilibrium.notes[-1]
-
-
 @pytest.mark.parametrize("rings", some([1.5, 2.0, 3.0, 4.0], 2))
 def test_the_ball_is_loose_where_it_fits_through_the_worn_bore(rings):
     """A shifted bore holds the ball as a centred one, and an oval bore as long as its narrow diameter is too small."""
     shifted, oval = (lambda n: 0.02 * n[0]), (lambda n: 0.02 * (n[0] ** 2 - n[1] ** 2) / 2)
-    for depth, expected in ((None, 0.05), (shifted, 0.05), (oval, 0.06), (lambda n: 0.07, 0.0)):
+    for depth, expected in ((None, 0.05), (shifted, 0.05), (oval, 0.06), (lambda n: 0.01, 0.04), (lambda n: 0.07, 0.0)):
         worn = None if depth is None else bs.BoreDeviation(of=depth)
         fitted = bs.Preload(model=held(240.0, worn=worn, ring_width=radians(rings)), joint=TIGHT)
         assert fitted.wear_depth_to_loosen() == pytest.approx(expected, rel=2e-3, abs=1e-9)
