@@ -317,9 +317,17 @@ def test_a_linear_result_is_accurate_up_to_the_utilisation_at_which_it_ends_to_b
 
 @needs_ccx
 @pytest.mark.long
-def test_calculix_finds_the_same_forces_and_the_same_set(tmp_path):
-    contact = MODEL.press(JOINT, force=12000.0)
-    deck = deck_of(contact)
+@pytest.mark.parametrize(
+    ("joint", "force", "steps"),
+    [
+        (JOINT, 12000.0, 8),
+        (bs.joints["hip-28"].replace(liner=replace(JOINT.liner, young=1494.0, poisson=0.46)), 8000.0, 2),
+    ],
+    ids=["hip", "small"],
+)
+def test_calculix_finds_the_same_forces_and_the_same_set(tmp_path, joint, force, steps):
+    contact = MODEL.press(joint, force=force)
+    deck = deck_of(contact, steps=steps)
     deck.write(tmp_path)
     forces = calculix.run(tmp_path).force[:-1]
     assert forces == pytest.approx(deck.expected["force"][:-1], rel=5e-3)

@@ -14,6 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy
 
@@ -74,6 +75,8 @@ class PairContact(ABC):
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PartialContact(PairContact):
     """Contact of half angle ε (rad) on a surface pair; `last` is the node k before the edge functions."""
+
+    fills_bore: ClassVar[bool] = False
 
     pair: SurfacePair
     gap: Gap
@@ -254,6 +257,8 @@ def partial_contact(pair: SurfacePair, gap: Gap, half_angle: float) -> PartialCo
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FullContact(PairContact):
     """Contact that fills the bore, at an indentation in mm."""
+
+    fills_bore: ClassVar[bool] = True
 
     pair: SurfacePair
     gap: Gap

@@ -24,13 +24,6 @@ from .plasticity import PlasticStrain, YieldLaw
 _LINER = 0  # index of the layer that yields
 
 
-def deviators(gradients: Gradients) -> Numbers:
-    """Return the deviator per unknown in the orthonormal basis: (elements, points, 3, unknowns)."""
-    across, axial, shear, hoop = numpy.moveaxis(gradients.strain, 2, 0)
-    parts = (across - axial) / numpy.sqrt(2), (2 * hoop - across - axial) / numpy.sqrt(6), shear / numpy.sqrt(2)
-    return numpy.stack(parts, axis=2)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tangent:
     """Factored tangent stiffness of the free unknowns, those of the bore last."""
@@ -74,7 +67,10 @@ class PlasticBody:
 
     @cached_property
     def _rows(self) -> Numbers:
-        return deviators(self.gradients)
+        """Deviator per unknown in the orthonormal basis: (elements, points, 3, unknowns)."""
+        across, axial, shear, hoop = numpy.moveaxis(self.gradients.strain, 2, 0)
+        parts = (across - axial) / numpy.sqrt(2), (2 * hoop - across - axial) / numpy.sqrt(6), shear / numpy.sqrt(2)
+        return numpy.stack(parts, axis=2)
 
     @property
     def free_unknowns(self) -> Numbers:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy
 
@@ -42,6 +43,9 @@ class PlasticContact:
     displacement: Numbers
     plastic: PlasticStrain
     stiffness: float  # tangent stiffness in N/mm, of the direction of the last increment
+
+    tension: ClassVar[float] = 0.0  # the active set has neither tension nor overlap
+    overlap: ClassVar[float] = 0.0
 
     @property
     def pair(self) -> SurfacePair:

@@ -37,21 +37,6 @@ class PlasticContacts(MeshedStates):
             raise AttributeError(name)
         return self._evaluate_contacts(attrgetter(name))
 
-    @property
-    def at_rim(self) -> Numbers:
-        """Flag of each contact: 1 if it fills the socket, else 0."""
-        return self._evaluate_contacts(lambda contact: float(contact.fills_bore))
-
-    @property
-    def not_round(self) -> Numbers:
-        """Flag of each contact: 0, since the active set has neither tension nor overlap."""
-        return self._evaluate_contacts(lambda contact: 0.0)
-
-    @property
-    def edge_element(self) -> Numbers:
-        """Length of the elements at the edge of each contact, as a fraction of its half angle; 0 without contact."""
-        return self._evaluate_contacts(lambda contact: contact.edge_element / (contact.half_angle or numpy.inf))
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlasticLoadCurve:

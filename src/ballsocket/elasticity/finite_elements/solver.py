@@ -146,7 +146,7 @@ class MeshedStates(PeakPressure):
     @property
     def at_rim(self) -> Numbers:
         """Flag of each contact: 1 if it fills the socket, else 0."""
-        return self._evaluate_contacts(lambda contact: float(isinstance(contact, FullContact)))
+        return self._evaluate_contacts(lambda contact: float(contact.fills_bore))
 
     @property
     def not_round(self) -> Numbers:
@@ -155,8 +155,8 @@ class MeshedStates(PeakPressure):
 
     @property
     def edge_element(self) -> Numbers:
-        """Length of the elements at the edge of each contact, as a fraction of its half angle."""
-        return self._evaluate_contacts(lambda contact: contact.edge_element / contact.half_angle)
+        """Length of the elements at the edge of each contact, as a fraction of its half angle; 0 without contact."""
+        return self._evaluate_contacts(lambda contact: contact.edge_element / (contact.half_angle or numpy.inf))
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
