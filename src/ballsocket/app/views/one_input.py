@@ -38,7 +38,7 @@ class OneInput(View):
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <figure id="curve-chart"></figure>
-<h3>Effect of one percent of each number</h3>
+<h3>Change in % if 1 % is added to one number</h3>
 <div id="curve-effects"></div>
 """
 

@@ -116,6 +116,8 @@ class PlasticContact:
     @property
     def permanent_set(self) -> float:
         """Largest outward displacement of the bore in mm that remains after the load is removed; NaN if unknown."""
+        if not self.plastic_work:
+            return 0.0
         return numpy.nan if self.unloaded is None else max(float(self.unloaded.bore_displacement.max()), 0.0)
 
     @cached_property
