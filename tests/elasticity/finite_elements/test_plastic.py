@@ -203,6 +203,7 @@ def test_below_the_yield_stress_the_contact_is_elastic():
         assert getattr(yielding, name) == pytest.approx(getattr(elastic, name), rel=5e-3), name
     assert not yielding.plastic_work.any()
     assert yielding.permanent_set == pytest.approx(0.0, abs=1e-9)
+    assert "hardening curve; its yield stress counts" in " ".join(yielding.notes)
 
 
 @pytest.fixture(scope="module")
@@ -281,11 +282,6 @@ def test_contacts_beyond_the_last_pressure_node_of_a_deep_cup_have_no_result():
     contact = deep.press(wide, force=2e4)
     assert np.radians(66.0) < contact.half_angle < np.radians(88.0)
     assert "its yielding by the hardening curve is solved for" in contact.utilisation_note
-
-
-def test_a_liner_with_a_curve_and_a_yield_stress_says_which_one_yields():
-    assert HIP.liner.yield_stress is not None
-    assert "hardening curve; its yield stress counts" in " ".join(MODEL.press(JOINT, force=1e3).notes)
 
 
 test_loads_and_curves_without_a_result_are_refused = refused_calls(
