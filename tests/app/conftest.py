@@ -78,9 +78,8 @@ def reader(open_page):
 
 @pytest.fixture(scope="session")
 def examined_page(browser, address):
-    """Scripts of a test run in it, against the policy of the page."""
-    with opened_profile(browser, address, bypass_csp=True) as profile:
-        yield User(profile, address)
+    """Scripts of a test run in it, against the policy of the page; it ends with the browser."""
+    return User(opened_profile(browser, address, bypass_csp=True).__enter__(), address)
 
 
 @pytest.fixture

@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import ballsocket as bs
+from ballsocket.files.joint_file import parse_joint
+
+from ..places import EXAMPLES
 from ..processes import wait_until
 from .browser import NARROW, User, expect, opened_profile, pressure
 
@@ -380,3 +384,53 @@ def test_a_lost_context_is_restored(reader):
     canvas.press("ArrowRight")
     reader.page.evaluate("window.lost.restoreContext()")
     seen(canvas, lambda pixels: difference(pixels, before) < 0.5)
+
+
+def test_joint_files_are_read_by_the_strict_reader(user):
+    user.open()
+    good = (EXAMPLES / "metal_backed_hip.toml").read_bytes()
+    for name, content, words in (
+        ("broken", b"[joint]\nball_radius = 14\nclearence = 0.1\n", "'clearence' in [joint] is not known"),
+        ("large", b"#" * 200_000, "large.toml is larger than 100000 bytes"),
+        ("binary", bytes(range(128, 256)), "is not TOML"),
+        ("good", good, "3 mm of titanium"),
+    ):
+        file = {"name": f"{name}.toml", "mimeType": "text/plain", "buffer": content}
+        user.page.locator("#joint-file").set_input_files(file)
+        assert user.says(words)
+    assert user.shows("max_pressure", bs.Exact().press(parse_joint(good, "good").joint, force=3000.0).max_pressure)
+
+
+def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
+    """The shaft changes the force alone, the knob the tilt alone; a handle moved by a key moves on with the next."""
+    user.open()
+    force = float(user.drags("[data-drag=load][tabindex]", (0, -20)).link()["load.force"])
+    assert force != 3000.0
+    turned = user.drags("[data-drag=tilt]", (80, 0)).link()
+    assert 10 < float(turned["load.tilt"]) < 45
+    assert float(turned["load.force"]) == force
+    user.page.locator("[data-drag=load][tabindex]").focus()
+    for _ in range(2):
+        user.page.keyboard.press("ArrowDown")
+        user.answered()
+    assert user.shows("force", force - 100.0)
+
+
+def test_rows_of_limits_are_added_refused_and_taken_away(user):
+    user.open("?view=map")
+    user.page.locator("button", has_text="Add a limit").click()
+    row = user.page.locator(".limit-rows > div")
+    box = row.locator("input")
+    expect(box).to_be_focused()
+    row.locator("select").first.select_option(label="Outer diameter")
+    expect(box).to_have_value("38.2")
+    box.fill("52,x")
+    box.press("Enter")
+    assert user.says("Outer diameter must be a number in mm")
+    expect(box).to_have_value("52,x")
+    box.fill("52")
+    box.press("Enter")
+    user.until("location.search.includes('limit=outer_diameter%3C%3D52.0')")
+    row.locator("button").click()
+    user.until("!location.search.includes('limit=')")
+    assert row.count() == 0

@@ -228,6 +228,7 @@ def test_a_run_answers_what_a_press_answers():
     assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
     assert all(drawn.startswith(b"\x89PNG") for drawn in found.figures["png"].values())
     assert all(b"<svg" in drawn for drawn in found.figures["svg"].values())
+    assert len(found.drawing) == 2
     for drawing in found.drawing.values():  # on the page: no style of its own, and ink of its theme
         assert "<style" not in drawing
         assert "var(--text)" in drawing

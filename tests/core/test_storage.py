@@ -1,4 +1,4 @@
-"""Opened input files; atomic files, named arrays and their cache, fingerprints, and resumable runs of pieces."""
+"""Input files of a server; atomic files, named arrays and their cache, fingerprints, and resumable runs of pieces."""
 
 import os
 import stat
@@ -11,10 +11,12 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors import Serial
-from ballsocket.core.input_files import open_input, record_inputs
+from ballsocket.core.input_files import open_input, record_inputs, resolve_input, resolve_inside, restriction_variables
 from ballsocket.core.storage import atomic_files
 from ballsocket.core.storage.atomic_files import is_draft_folder, make_draft_folder, read_arrays, write_arrays
 from ballsocket.core.storage.pieces import PieceRun, PieceStore, fingerprint, hash_inputs
+
+from ..places import symlink_or_skip
 
 
 def names(folder):
@@ -260,3 +262,24 @@ def test_opened_inputs_are_recorded_once(tmp_path):
     assert outer == [first, second]
     open_input(first).close()
     assert outer == [first, second]
+
+
+def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):
+    folder = tmp_path / "allowed"
+    folder.mkdir()
+    (folder / "joint.toml").write_text("inside", encoding="utf-8")
+    (tmp_path / "other.toml").write_text("outside", encoding="utf-8")
+    symlink_or_skip(folder / "link.toml", tmp_path / "other.toml")
+    assert resolve_input(tmp_path / "other.toml") == tmp_path / "other.toml"
+    for name, value in restriction_variables([folder]).items():
+        monkeypatch.setenv(name, value)
+    with open_input(folder / "joint.toml") as stream:
+        assert stream.read() == b"inside"
+    for path in (tmp_path / "other.toml", folder / "link.toml", folder / ".." / "other.toml"):
+        with pytest.raises(ValueError, match="lies outside the folder of this server"):
+            open_input(path)
+    with pytest.raises(ValueError, match="is not a regular file"):
+        open_input(folder)
+    with pytest.raises(FileNotFoundError):
+        open_input(folder / "missing.toml")
+    assert resolve_inside((tmp_path.resolve(),), folder, "folder") == folder.resolve()

@@ -110,3 +110,15 @@ def test_published_relations_have_their_numbers_at_one_half_and_no_damping_at_on
         assert relation.damping(1.0) == 0.0
         assert damping_from_restitution(relation, 1.0, 1e-3) == Damping(sources=relation.sources)
     assert restitution_of(0.0) == 1.0
+
+
+@pytest.mark.parametrize("known", [True, False], ids=["noise known", "noise from the scatter"])
+def test_standard_error_equals_the_scatter_of_repeated_tests(known):
+    random, noise = np.random.default_rng(4), 0.005
+    measured = np.minimum(RESTITUTIONS + noise * random.normal(size=(60, 12)), 1.0)
+    uncertainty = noise if known else None
+    estimates = [from_restitution(speed=SPEEDS, restitution=row, uncertainty=uncertainty) for row in measured]
+    chi, error = np.array([(estimate.damping.hysteresis, estimate.error) for estimate in estimates]).T
+    assert np.std(chi) == pytest.approx(np.mean(error), rel=0.25)
+    assert abs(np.mean(chi) - CHI) < 3 * np.std(chi) / np.sqrt(60)
+    assert np.mean(np.abs(chi - CHI) < 2 * error) > 0.85

@@ -55,7 +55,7 @@ def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
 
     def simulate(self, number):
         calls.append(number)
-        return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), ""
+        return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), "dislocated: µ" * (number == 3)
 
     monkeypatch.setattr(CohortRun, "_simulate_patient", simulate)
     store = cohort_store(tmp_path / "store", one, [FEW_CYCLES], 0)
@@ -68,7 +68,9 @@ def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
     assert finished == [0, 16, 32, 40]
     np.testing.assert_array_equal(more[:20], first)
     calls.clear()
-    np.testing.assert_array_equal(cohort_run(40).simulate(store=store).table, more)
+    again = cohort_run(40).simulate(store=store)
+    np.testing.assert_array_equal(again.table, more)
+    assert {number: text for number, text in enumerate(again.refused) if text} == {3: "dislocated: µ"}
     np.testing.assert_array_equal(cohort_run(32).simulate(store=store, progress=finished.append).table, more[:32])
     assert calls == []
     assert finished[4:] == [32]

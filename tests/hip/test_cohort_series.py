@@ -16,7 +16,7 @@ from ballsocket.hip import cohort_series as module
 from ballsocket.hip.chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
-from ballsocket.hip.series_accuracy import TOLERANCES
+from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
 from ballsocket.hip.similarity import Similarity, find_obstacle
 from ballsocket.hip.variability import RESULT_COLUMNS, result_table
 from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
@@ -310,3 +310,34 @@ def test_similar_patients_have_no_obstacle():
     assert "a report is at 0 cycles" in find_obstacle(similar, (0.0, 1e6))
     closed = variability(hip(**QUICK), clearance=Normal(mean=-0.1, deviation=0.1))
     assert "the clearance is not positive" in find_obstacle(closed, MANY)
+
+
+@pytest.mark.long
+def test_more_patients_keep_the_first_ones(few_held_out):
+    few, more = (population(quick(coefficient=COEFFICIENT), COUNTS, patients=n)[1].cohort.table for n in (150, 300))
+    np.testing.assert_allclose(more[:150], few, rtol=1e-12)
+
+
+@pytest.mark.long
+def test_the_error_is_that_of_the_held_out_patients(few_held_out, monkeypatch):
+    """A series of a low degree is refined; without refinement its error is stated, or patients are simulated."""
+    monkeypatch.setattr(module, "_FIRST_DEGREES", (0,) * 5)
+    monkeypatch.setattr(module, "_DEGREE_STEP", 6)
+    patients = quick(body_weight=Normal(mean=800.0, deviation=130.0, low=400.0, high=1400.0))
+    refined = population(patients, COUNTS[:1], patients=200, method="series")[1].accuracy
+    assert refined.degree == 6
+    monkeypatch.setattr(module, "_MAX_MEMBERS", 8)
+    bands = population(patients, COUNTS[:1], patients=200, method="series")[1]
+    accuracy = bands.accuracy
+    assert (accuracy.degree, accuracy.within_tolerance) == (0, False)
+    assert accuracy.relative["volume"] > refined.relative["volume"]
+    assert any("this exceeds the tolerance of 0.1 % in volume" in note for note in bands.notes)
+
+
+def test_another_edge_loading_is_stated():
+    """Above 5 % of the held-out results, as for cups whose contacts often just reach the rim."""
+    errors = {"relative": {"volume": 1e-4}, "largest": {"volume": 1e-3}, "edge_distance": 0.1, "utilisation": 0.0}
+    for fraction, stated in ((0.0, False), (0.03, False), (0.08, True)):
+        wrong = {"wrong_edge_loading": fraction, "wrong_validity": 0.0}
+        accuracy = SeriesAccuracy(n_simulations=8, degree=1, n_held_out=64, **errors, **wrong)
+        assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated

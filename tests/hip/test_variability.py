@@ -127,3 +127,17 @@ def test_results_are_those_of_the_reports_whose_contacts_balance_their_loads(mon
     report = replace(patient.simulate([FEW_CYCLES])[0], converged=False)
     monkeypatch.setattr("ballsocket.hip.variability.make_report", lambda run: report)
     refuses("a contact did not balance its load", patient.simulate, [FEW_CYCLES])
+
+
+@pytest.mark.long
+def test_patients_with_the_real_cup_share_its_compliance_and_wear_as_on_springs():
+    on_springs = variability(hip(), coefficient=COEFFICIENT, tilt=Normal(mean=0.5, deviation=0.1))
+    with_cup = replace(on_springs, surface=bs.RealCup())
+    values = [{"coefficient": 2 * K, "tilt": 0.4}, {"coefficient": K, "tilt": 0.6}]
+    patients = [with_cup.patient(sample) for sample in values]
+    assert patients[0].use.foundation is patients[1].use.foundation
+    for patient, sample in zip(patients, values, strict=True):
+        elastic, springs = (one.simulate([1e5])[0] for one in (patient, on_springs.patient(sample)))
+        assert 0 < abs(elastic.volume / springs.volume - 1) < 0.01
+        assert elastic.depth == pytest.approx(springs.depth, rel=0.03)
+        assert elastic.max_pressure == pytest.approx(springs.max_pressure, rel=0.03)

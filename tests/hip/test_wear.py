@@ -222,3 +222,13 @@ def test_report_page_has_a_map_of_the_ball_wear():
     page = hip_report(hip(**QUICK, **BOTH).after(1e4))
     assert "Wear of the ball" in page
     assert page.count("data:image/png;base64") == 6
+
+
+def test_contact_shares_add_up_to_the_contact_area():
+    """The solid angle of a round contact beside the pole, within 0.4 %."""
+    load = 2000.0 * np.array([np.sin(0.3), 0.0, np.cos(0.3)])
+    cycle = replace(flexion(8), force=lambda t: np.outer(load, 1 + 0 * t), cup_tilt=None)
+    use = hip(cycle=cycle, cup=bs.Cup(), surface=bs.ClosedShell())
+    cap = 2 * np.pi * (1 - np.cos(bs.Exact().press(use.joint, force=2000.0).half_angle))
+    share = use.exposure(use.unworn).contact[0] @ use.foundation.areas / use.joint.socket_radius**2
+    assert share == pytest.approx(cap, rel=4e-3)

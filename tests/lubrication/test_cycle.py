@@ -228,3 +228,20 @@ def test_an_elastic_start_up_ends_at_the_steady_film():
     assert film.film.converged
     assert film.central[-1] == pytest.approx(steady.central, rel=0.01)
     assert film.minimum[-1] == pytest.approx(steady.minimum, rel=0.04)  # of first order in the cells at the edge
+
+
+@pytest.mark.long
+def test_start_up_ends_at_the_steady_film_and_rest_squeezes_it_out():
+    problem, start = springs_problem(0.5, 2.5, 16)
+    moving = load_steps(np.full(20, 1500.0), np.full(20, 10.0), 0.045)
+    film = solve_cycle(problem, start, moving)
+    steady = solve_steady(replace(problem, spin=moving[0].spin), film.states[-1])
+    assert steady.converged
+    inner = problem.mesh.direction[:, 2] > np.cos(0.8 * CONTACT.half_angle)
+    assert film.thickness[-1, inner] == pytest.approx(problem.thickness(steady)[inner], rel=0.02)
+    at_rest = solve_cycle(problem, film.states[-1], load_steps(np.full(12, 1500.0), np.zeros(12), 2.0))
+    central = at_rest.thickness[:, :16].mean(axis=1)
+    assert at_rest.converged
+    assert (np.diff(central) < 0).all()
+    # on springs h ~ t^(-1/2) once the first film is forgotten
+    assert central[5] / central[11] == pytest.approx(np.sqrt(2), rel=0.12)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.contact.strength import MAX_ELASTIC_UTILISATION
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.problem.gaps import linear_gap_reduction
 
@@ -363,3 +364,6 @@ def test_statuses_and_stresses_equal_those_of_the_exact_solutions():
     assert found.peak_stress.von_mises == pytest.approx(exact.peak_stress.von_mises, rel=1e-6)
     assert found.von_mises == pytest.approx(exact.von_mises, rel=2e-3)
     assert found.stress(0.2, 1.0).hoop == pytest.approx(exact.stress(0.2, 1.0).hoop, rel=1e-6)
+    many = bs.ExactCurve().press(JOINTS["shell"].replace(clearance=0.11), force=np.geomspace(1.0, 40_000.0, 1000))
+    assert (many.valid == (many.utilisation <= MAX_ELASTIC_UTILISATION)).all()
+    assert 0.1 < many.valid.mean() < 0.95

@@ -265,3 +265,14 @@ def test_the_stress_in_a_worn_bore_has_a_wide_bar_and_a_reason():
     assert assess_strength(worn).verdict is Verdict.UNDECIDED
     assert any(note.startswith("stress in a worn bore: up to 50% above") for note in worn.notes)
     assert assess_strength(replace(model, worn=None).press(weak, force=2000.0)).verdict is Verdict.EXCEEDED
+
+
+@pytest.mark.parametrize("arc", some([200.0, 240.0], 1))
+def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc):
+    """Pressures are proportional to the interference that is left, even where the opening pushes the ball outwards."""
+    worn = bs.BoreDeviation(of=lambda n: 0.01)
+    fitted, looser = (bs.Preload(model=held(arc, worn=depth), joint=TIGHT) for depth in (None, worn))
+    assert fitted.equilibrium.pressure_map[2].min() == 0.0
+    assert fitted.separation_displacement((1.0, 0.0, 0.0)) == 0.0
+    assert fitted.wear_depth_to_loosen() == pytest.approx(0.05, rel=1e-3)
+    assert looser.wear_depth_to_loosen() == pytest.approx(0.04, rel=1e-3)

@@ -68,10 +68,10 @@ def double_precision():
 
 @pytest.mark.long
 @pytest.mark.parametrize("tilt", [0.72, 1.1], ids=["near the rim", "cut off by the rim"])
-def test_derivatives_are_slopes_of_the_solution(tilt, double_precision):
-    """Central differences over 1e-5, in which an edge hardly ever passes a cell, within 2e-4 of the largest slope.
+def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(tilt, double_precision):
+    """Slopes are central differences over 1e-5, in which an edge hardly ever passes a cell, within 1e-3 of the largest.
 
-    Half angles are found by few secants, and a slope may nearly vanish: a tenth of them is known to 1e-2.
+    Edges, which few secants find, are known to 1e-2.
     """
     cup = JaxSphere(model=RIM, joint=HIP, tolerance=1e-9, dtype="float64")
     grid = RIM.bore_contact(HIP).compliance.grid
@@ -86,16 +86,20 @@ def test_derivatives_are_slopes_of_the_solution(tilt, double_precision):
         return outputs | {"pressure": (c.pressure[0] * weights).sum()}
 
     values = jax.tree.map(jax.numpy.asarray, NUMBERS | {"x": np.sin(tilt), "z": np.cos(tilt)})
-    slopes, errors = jax.jacrev(press)(values), []
+    cup_of_values = replace(RIM.cup, **{name: NUMBERS[name] for name in ("inclination", "anteversion")})
+    known = replace(RIM, cup=cup_of_values).press(HIP, force=3000.0, direction=[float(values[name]) for name in "xyz"])
+    pressed, slopes = press(values), jax.jacrev(press)(values)
+    for output in ("displacement", "force_vector", "max_pressure", "half_angle"):
+        expected = getattr(known, output)
+        assert np.asarray(pressed[output]) == pytest.approx(expected, abs=1e-3 * np.max(abs(expected))), output
+    assert float(pressed["edge_margin"]) == pytest.approx(max(float(known.edge_margin), 0.0), abs=1e-3)
     for name, value in values.items():
         step = 1e-5 * max(abs(float(value)), 0.1)
         low, high = (press(values | {name: value + change}) for change in (-step, step))
         for output in OUTPUTS:
             difference = np.asarray(high[output] - low[output]) / (2 * step)
             error = np.max(abs(slopes[output][name] - difference)) / slope_scale(output, name, difference)
-            assert error < 1e-2, (name, output)
-            errors.append(error)
-    assert np.quantile(errors, 0.9) < 2e-4
+            assert error < (1e-2 if output in ("half_angle", "edge_margin") else 1e-3), (name, output)
 
 
 def test_first_press_may_be_traced():
