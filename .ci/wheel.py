@@ -12,7 +12,9 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "ballsocket"
 MUST_BE_THERE = {
     "py.typed",
-    "__init__.pyi",
+    "__init__.pyi",  # the package reads its names there
+    "hip/__init__.pyi",
+    "studies/__init__.pyi",
     "data/references.bib",
     "data/exact_tables.npz",
     "app/assets/page.html",

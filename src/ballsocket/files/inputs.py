@@ -76,7 +76,7 @@ _REMARKS = {
     "material": "See `ballsocket presets`; single numbers replace its values.",
     "ball": "See `ballsocket presets`; single numbers replace its values. Without a material the ball is rigid.",
     "shell": "Its thickness follows from --outer-diameter and --liner-thickness, or is --shell-thickness.",
-    **dict.fromkeys(("interference", "tilt", "direction"), "A contact that the model sphere solves."),
+    **dict.fromkeys(("interference", "tilt", "direction"), "Contacts with it are solved by the model sphere."),
     "orientation": "See Murray 1993.",
 }
 """Remarks in the help of options, by the name of the input or by its key."""

@@ -69,6 +69,7 @@ def _step_into(location: _Location, step: re.Match[str]) -> _Location:
                 msgspec.convert(value, kind.cls, dec_hook=read_value)
             except msgspec.ValidationError:
                 return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
+        raise AssertionError("one of the entries is refused")
     key = f"{location.key}[{step['index']}]"
     listed = next(part for part in parts_of(location.type) if isinstance(part, inspect.ListType))
     return replace(location, value=location.value[int(step["index"])], type=listed.item_type, key=key)

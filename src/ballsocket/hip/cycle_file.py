@@ -141,13 +141,7 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
     columns, motion = table.columns, options.motion
     phase, duration = phases_and_duration(columns)
     for title, values in columns.items():
-        largest = float(values[abs(values).argmax()])
-        if title.startswith("force") and abs(largest) > _MAX_FORCE:
-            allowed = f"allowed are forces up to {plain_number(_MAX_FORCE)} N"
-            raise ValueError(f"{title} goes to {plain_number(abs(largest))} N; {allowed}")
-        if title in ANGLES and abs(largest) > pi:
-            degrees = f"{180 / pi * largest:.4g}°"
-            raise ValueError(f"{title} goes to {degrees}; allowed are angles up to 180°: check its unit")
+        _check_size(title, values)
         if title != time_column(columns):
             check_closed(title, values, options.closing, *(("°", 180 / pi) if title in ANGLES else (" N", 1.0)))
     if motion is None:
@@ -199,6 +193,16 @@ def _missing_angle_notes(columns: Mapping[str, Numbers]) -> tuple[str, ...]:
         else "cross-shear and crossing angle mean nothing, nor does wear by a law with cross-shear"
     )
     return (f"the motion has no columns of {', '.join(missing)}: they are assumed to be 0, so that {meaning}",)
+
+
+def _check_size(title: str, values: Numbers) -> None:
+    """Raise ValueError for forces (N) above those of any hip and for angles (rad) beyond 180°: a wrong unit."""
+    largest = float(values[abs(values).argmax()])
+    if title.startswith("force") and abs(largest) > _MAX_FORCE:
+        allowed = f"allowed are forces up to {plain_number(_MAX_FORCE)} N"
+        raise ValueError(f"{title} goes to {plain_number(abs(largest))} N; {allowed}")
+    if title in ANGLES and abs(largest) > pi:
+        raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
 
 
 def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> Numbers:

@@ -93,17 +93,23 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
     """Solve contacts on a hemisphere, at the same half angles as contacts on the closed sphere.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
-    reduced-rank extrapolation, a least-squares fit of differences, solve this system.
+    reduced-rank extrapolation solve this system.
     """
-    displacements = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
+    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        displacements.append(low_pressure_modes(_make_hemisphere_state(closed, displacements[-1])) @ extra_response.T)
-    iterates = numpy.stack(displacements, axis=-1)  # (contacts, modes, iterations)
+        iterates.append(low_pressure_modes(_make_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
+    return _make_hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
+
+
+def _extrapolate_iterates(iterates: Numbers) -> Numbers:
+    """Extrapolate iterates (contacts, terms, iterations) of linear fixed-point maps to their limit.
+
+    The method is reduced-rank extrapolation, a least-squares fit of differences.
+    """
     steps = numpy.diff(iterates, axis=-1)
     steps = steps / (numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300)
     weights = numpy.linalg.pinv(numpy.diff(steps, axis=-1), rcond=1e-10) @ steps[..., :1]
-    limit = iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
-    return _make_hemisphere_state(closed, limit)
+    return iterates[..., 0] - ((iterates[..., 1:-1] - iterates[..., :-2]) @ weights)[..., 0]
 
 
 def low_pressure_modes(state: AbelState) -> Numbers:

@@ -111,11 +111,7 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
         ratio = _spring_indentation(bore, target) / numpy.maximum(_spring_indentation(bore, angle), 1e-9 * d)
         guess = d * numpy.clip(ratio, 0.1, 10.0)
         active, guess = active[unsolved], guess[unsolved]
-        below, above = low[active], high[active]
-        middle = numpy.where(below > 0, numpy.sqrt(below * above), above / 10)
-        inside = numpy.where((guess > below) & (guess < above), guess, middle)
-        # just below a limit that was never computed
-        indentation[active] = numpy.where((guess >= limit) & (above >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
+        indentation[active] = _limit_to_bracket(guess, low[active], high[active], limit)
     states = _solve_indentations(bore, indentation, axes, edges)
     deficit = half_angle - states.half_angle
     converged = states.equilibrium.converged & (abs(deficit) <= _MAX_ANGLE_JUMP * width)
@@ -127,6 +123,13 @@ def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
     """Compute the indentation in mm of a half angle in rad on springs; without clearance only proportional to it."""
     versine = versine_of(half_angle)
     return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
+
+
+def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
+    """Return an estimate inside its bracket, else another point there, just below a limit that was never computed."""
+    middle = numpy.where(low > 0, numpy.sqrt(low * high), high / 10)
+    inside: Numbers = numpy.where((guess > low) & (guess < high), guess, middle)
+    return numpy.where((guess >= limit) & (high >= limit), (1 - _MIN_BRACKET / 2) * limit, inside)
 
 
 LOAD_SOLVERS = {"force": _solve_forces, "indentation": _solve_indentations, "half_angle": _solve_half_angles}

@@ -80,20 +80,23 @@ def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
     measure = (width * weights).ravel() * numpy.sin(angle)
     integrals = numpy.zeros((len(m), grid.rings, max_degree + 1))
     previous, current = numpy.zeros((2, len(m), angle.size))
-    order, cosine = m[:, None], numpy.cos(angle)
     start, rows = numpy.sqrt(0.5) * numpy.ones(angle.size), {int(order): i for i, order in enumerate(m)}
     for n in range(max_degree + 1):
-        below = order < n
-        square = numpy.where(below, n * n - order * order, 1)
-        rise = numpy.sqrt(numpy.where(below, (4 * n * n - 1) / square, 0.0))
-        fall = (2 * n + 1) * numpy.maximum((n - 1) ** 2 - order * order, 0) / square
-        drop = numpy.sqrt(numpy.where(below, fall, 0.0)) / numpy.sqrt(max(2 * n - 3, 1))
-        previous, current = current, rise * cosine * current - drop * previous
+        previous, current = current, _next_legendre(n, m[:, None], previous, current, numpy.cos(angle))
         if n in rows:
             current[rows[n]] = start
         start = start * numpy.sqrt((2 * n + 3) / (2 * n + 2)) * numpy.sin(angle)
         integrals[..., n] = (current * measure).reshape(len(m), grid.rings, _POINTS_PER_RING).sum(axis=-1)
     return integrals
+
+
+def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: Numbers) -> Numbers:
+    """Compute the associated Legendre functions of degree n from those of n - 2 and n - 1; 0 where m is not below n."""
+    low = m < n
+    square = numpy.where(low, n * n - m * m, 1)
+    rise = numpy.sqrt(numpy.where(low, (4 * n * n - 1) / square, 0.0))
+    drop = numpy.sqrt(numpy.where(low, (2 * n + 1) * numpy.maximum((n - 1) ** 2 - m * m, 0) / square, 0.0))
+    return rise * x * last - drop / numpy.sqrt(max(2 * n - 3, 1)) * before_last
 
 
 def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
