@@ -138,6 +138,18 @@ class User:
         for _ in range(times):
             handle.press(key)
 
+    def drags(self, handle, *moves):
+        """Drag a handle from its middle over some points, each relative to the one before."""
+        box = self.page.locator(handle).bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for across, down in moves:
+            x, y = x + across, y + down
+            self.page.mouse.move(x, y, steps=4)
+        self.page.mouse.up()
+        return self.answered()
+
     def view(self, title):
         self.page.locator("nav button", has_text=title).click()
         self.answered()
