@@ -71,7 +71,7 @@ def double_precision():
 def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(tilt, double_precision):
     """Slopes are central differences over 1e-5, in which an edge hardly ever passes a cell, within 1e-3 of the largest.
 
-    Edges, which few secants find, are known to 1e-2.
+    Edges, which few secants find, and sums over the cells that they pass are known to 1e-2.
     """
     cup = JaxSphere(model=RIM, joint=HIP, tolerance=1e-9, dtype="float64")
     grid = RIM.bore_contact(HIP).compliance.grid
@@ -99,7 +99,10 @@ def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(tilt, double_precisi
         for output in OUTPUTS:
             difference = np.asarray(high[output] - low[output]) / (2 * step)
             error = np.max(abs(slopes[output][name] - difference)) / slope_scale(output, name, difference)
-            assert error < (1e-2 if output in ("half_angle", "edge_margin") else 1e-3), (name, output)
+            assert error < (1e-3 if output in ("displacement", "force_vector", "max_pressure") else 1e-2), (
+                name,
+                output,
+            )
 
 
 def test_first_press_may_be_traced():
