@@ -170,6 +170,25 @@ def test_first_yield_has_a_load_and_a_thickness():
     assert model.minimum_thickness(joint, 100.0) == 0.0
     assert model.minimum_thickness(joint, 1e5) == np.inf
     assert np.isnan(elastic.minimum_thickness)
+    lengths = {"ball_radius": joint.ball_radius, "clearance": joint.clearance, "outer_radius": joint.outer_radius}
+    sized = bs.Joint(**lengths, liner=joint.liner, ball=joint.ball, backing=joint.backing)
+    assert model.minimum_thickness(sized, 5000.0) == pytest.approx(thickness, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("cup", "spacing"),
+    [
+        (bs.Cup(chamfer=0.02), bs.Adapted(elements=24)),
+        (bs.Cup(chamfer=1.0), bs.Adapted(elements=24)),
+        (bs.Cup(), bs.Uniform(size=0.5)),
+    ],
+    ids=["small chamfer", "large chamfer", "uniform"],
+)
+def test_a_thickness_is_sought_where_chamfer_and_elements_allow_one(cup, spacing):
+    liner = bs.Material(young=1000.0, poisson=0.4, yield_stress=12.0)
+    model = replace(MODEL, cup=cup, spacing=spacing)
+    hip = bs.joints["hip-28"].replace(liner=liner)
+    assert [model.minimum_thickness(hip, force) for force in (500.0, 20000.0)] == [0.0, np.inf]
 
 
 def test_a_liner_with_another_modulus_than_its_curve_is_noted_with_both():

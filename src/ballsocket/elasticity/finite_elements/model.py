@@ -28,7 +28,7 @@ from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, St
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
-from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
+from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, Uniform, mesh_size
 
 if TYPE_CHECKING:
     from .load_search import Solved
@@ -411,14 +411,23 @@ class FiniteElement(Model):
     def minimum_thickness(self, joint: Joint, force: float) -> float:
         """Compute the smallest thickness in mm of a liner that is elastic under a force in N, within 0.1 %.
 
-        Bore, ball and backing of the joint of plain numbers stay. The result is 0 if a liner of R2/25 is elastic, and
-        infinite if one of 4 R2 is not.
+        Bore, ball and backing of the joint of plain numbers stay. The liner is from R2/25 to 4 R2 thick, as far as
+        chamfer and element size allow. The result is 0 if the thinnest one is elastic, and infinite if the thickest one
+        is not.
         """
+        from .solver import CHAMFERS  # slow to import
+
         model, radius = replace(self, meshes=1, plastic=True), float(joint.socket_radius)
         low, high = radius / 25, 4 * radius
+        if self.cup.chamfer:
+            thickest, thinnest = (self.cup.chamfer / share for share in CHAMFERS)
+            low, high = max(low, thinnest * (1 + _TOLERANCE)), min(high, thickest * (1 - _TOLERANCE))
+        if isinstance(self.spacing, Uniform):
+            low = max(low, 2 * self.spacing.size)
 
         def yields(thickness: float) -> bool:
-            return not _is_elastic(model.press(joint.replace(liner_thickness=thickness), force=force))
+            changed = joint.replace(ball_radius=joint.ball_radius, clearance=joint.clearance, liner_thickness=thickness)
+            return not _is_elastic(model.press(changed, force=force))
 
         if yields(high):
             return inf
