@@ -20,7 +20,7 @@ from ballsocket.elasticity.finite_elements.mesh import mesh_block
 from ballsocket.elasticity.finite_elements.plastic_body import PlasticBody
 from ballsocket.elasticity.finite_elements.plasticity import PlasticStrain, YieldLaw
 from ballsocket.evidence.code_checks import pressure_forces
-from ballsocket.studies.limits import Limit, allowed, limited_quantities
+from ballsocket.studies.limits import Limit, allowed, count_verdicts, limited_quantities
 
 from ...extent import some
 from ...joints import HIP
@@ -291,6 +291,22 @@ def test_a_liner_that_collapses_has_no_result():
     assert "collapse" in " ".join(contact.notes)
 
 
+@pytest.mark.long
+def test_a_force_beyond_the_collapse_load_exceeds_it():
+    weak = JOINT.replace(liner=replace(JOINT.liner, hardening=bs.Hardening(stress=(10.0,))))
+    model = replace(MODEL, spacing=bs.Adapted(elements=24))
+    collapse = model.collapse_load(weak)
+    verdict, sentence = verdict_of(checks_of(model.press(weak, force=2.0 * collapse), model.cup))
+    assert (verdict, "collapse load" in sentence) == (Verdict.EXCEEDED, True)
+    names = ["max_pressure", "collapse_load"]
+    found = bs.study(model, weak, force=[0.5 * collapse, 2.0 * collapse], quantities=names)
+    assert found.collapse_load.values == pytest.approx(2 * [collapse])
+    high, low = (Limit(name="collapse_load", low=factor * collapse) for factor in (1.5, 0.5))
+    assert count_verdicts(found, [high])[Verdict.EXCEEDED.word] == 2
+    assert allowed(found, [low]).values.tolist() == [True, False]  # without a result nothing is kept
+    assert count_verdicts(found, [low])["no result"] == 1
+
+
 def test_contacts_beyond_the_last_pressure_node_of_a_deep_cup_have_no_result():
     """In a cup of 220 degrees the pressure nodes end at 88 degrees, before the rim."""
     liner = bs.Material(young=300.0, poisson=0.45, hardening=bs.Hardening(stress=(60.0,)))
@@ -311,6 +327,7 @@ test_loads_and_curves_without_a_result_are_refused = refused_calls(
     (lambda: bs.Hardening.parse("20:0.1"), "plastic strain 0"),
     (lambda: bs.Hardening.parse("20:0, 18:0.1"), "softening"),
     (lambda: bs.Hardening(stress=(20.0, 21.0)), "one plastic strain for each"),
+    (lambda: bs.Hardening.parse("20:0;"), "may end with Young's modulus"),
 )
 
 
@@ -346,7 +363,6 @@ def test_calculix_finds_the_same_forces_and_the_same_set(tmp_path, joint, force,
     deck.write(tmp_path)
     forces = calculix.run(tmp_path).force[:-1]
     assert forces == pytest.approx(deck.expected["force"][:-1], rel=5e-3)
-    (lambda: bs.Hardening.parse("20:0;"), "may end with Young's modulus"),
     # CalculiX's pressures, and so its plastic strains, are wrong next to the pole
     bore = calculix.bore_displacements(tmp_path)[len(forces)][10:]
     left = contact._solved.unloaded.bore_displacement[10:]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from math import degrees, inf, nan
+from math import degrees, inf, nan, prod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -57,16 +57,18 @@ def _limit_property(name: str, *arguments: str) -> Any:
         if not self.model.plastic:
             return nan * self.indentation
 
-        def limits(indices: Numbers, contacts: JointContacts) -> Numbers:
-            joint = joint_at(self.joint, self.laws.shape, int(indices[0]))
-            quantities = (getattr(contacts.state, argument) for argument in arguments)
-            states = zip(contacts.state.force, *quantities, strict=True)
-            find = lru_cache(partial(getattr(self.model, name), joint))  # loads on one joint share a limit
-            return numpy.array([find(*values) if force > 0 else nan for force, *values in states])
+        shape = self.laws.shape
+        quantities = [numpy.broadcast_to(to_numpy(getattr(self, argument)), shape).ravel() for argument in arguments]
+        limits = numpy.full(prod(shape), nan)
+        for indices, contacts in self.laws.pieces:  # a load beyond the collapse has no result, but a limit
+            find = lru_cache(partial(getattr(self.model, name), joint_at(self.joint, shape, int(indices[0]))))
+            for index, load in zip(indices, contacts.load, strict=True):
+                values = [float(quantity[index]) for quantity in quantities]
+                if load > 0 and all(value > 0 for value in values):
+                    limits[index] = find(*values)  # loads on one joint share a limit
+        return self._match_load(arrays.convert_like(limits.reshape(shape), self.laws.like))
 
-        return self._match_load(arrays.where(self.force > 0, self.laws.combine_by_index(limits), nan))
-
-    return _documented(find_limit, name, "NaN without yielding, load or result")
+    return _documented(find_limit, name, "NaN without yielding or load")
 
 
 def _documented(function: Callable[[MeshedContact], Array], name: str, otherwise: str) -> Any:
