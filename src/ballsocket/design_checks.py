@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import nextafter
+from math import nextafter, pi
 from typing import Any
 
 from .contact import Contact
@@ -19,6 +19,7 @@ from .contact.strength import unchecked_strength_reason
 from .contact.verdict import EDGE_DISTANCE, Bounded, Verdict, ball_von_mises, error_bar, exact_number, ratio_text
 from .core.answers import Check
 from .core.quantities import QUANTITIES, SHAKEDOWN_WORK, STRENGTH
+from .core.validity import Status
 from .problem import Joint, Material
 from .problem.cup import Cup
 
@@ -26,13 +27,17 @@ _PRESSURE, _VON_MISES = "allowable_pressure", "yield_stress"
 
 
 def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tuple[Check, ...]:
-    """List the checks of a single contact in its cup, the highest ratio first; empty for a contact without a result.
+    """List the checks of a single contact in its cup, the highest ratio first.
 
+    A contact without a result has none, but the check of a force beyond the collapse load of a liner that yields.
     A contact of a model along the axis ends at its half angle from the pole. `von_mises` is the largest von Mises
     stress in the liner in MPa, if it is solved for already; by default the `quick_von_mises`.
     """
+    is_forced = contact.yields and float(contact.force) > 0
     if contact.status.failed:
-        return ()
+        # in a deeper cup the pressure nodes may end before the liner collapses
+        may_collapse = is_forced and contact.status is Status.NOT_REACHED and cup.rim <= pi / 2
+        return tuple(row for row in _yield_checks(contact) if row.verdict is Verdict.EXCEEDED) if may_collapse else ()
     joint, radius = contact.joint, float(contact.joint.socket_radius)
     reach_of: Any = getattr(contact.model, "reach_of", None)
     if reach_of is not None:  # a load off the axis
@@ -48,7 +53,7 @@ def checks_of(contact: Contact, cup: Cup, von_mises: float | None = None) -> tup
         edge=(reach, distance) if float(contact.half_angle) > 0 else None,
         trusted=bool(contact.valid),
     )
-    if not contact.yields or not float(contact.force) > 0:
+    if not is_forced:
         return rows
     yielding = ("liner", STRENGTH[_VON_MISES].title)  # its stress does not exceed the hardening curve
     return sorted_checks([*(row for row in rows if (row.part, row.limit) != yielding), *_yield_checks(contact)])
@@ -126,17 +131,19 @@ def _material_checks(
 
 def _yield_checks(contact: Any) -> Iterator[Check]:
     """Yield the checks of a liner that yields: its force, and the plastic work of the repeated load."""
-    for name, capacity, limit, source in (
-        ("force", float(contact.collapse_load), "collapse load", "largest force with an equilibrium"),
-        ("repeated_work", SHAKEDOWN_WORK, "limit of shakedown", "a socket that shakes down is elastic from then on"),
+    force = exact_number(float(contact.force)) if contact.status.failed else error_bar(contact, "force")
+    work, source = error_bar(contact, "repeated_work"), "a socket that shakes down is elastic from then on"
+    for name, demand, capacity, limit, origin in (
+        ("force", force, float(contact.collapse_load), "collapse load", "largest force with an equilibrium"),
+        ("repeated_work", work, SHAKEDOWN_WORK, "limit of shakedown", source),
     ):
         yield Check(
             title=QUANTITIES[name].title,
             quantity=name,
-            demand=error_bar(contact, name),
+            demand=demand,
             capacity=capacity,
             limit=limit,
-            source=source,
+            source=origin,
             trusted=bool(contact.valid),
         )
 

@@ -139,3 +139,10 @@ def test_the_hardening_of_uhmwpe_is_the_curve_of_the_three_network_model():
     assert curve.young == pytest.approx(INITIAL, rel=0.015)
     assert curve.yield_at_strain(0.04, curve.young) == pytest.approx(np.interp(0.04, STRAIN, STRESS), rel=0.03)
     assert curve.offset_yield == pytest.approx(STRESS[np.argmax(STRESS < INITIAL * (STRAIN - 0.002))], rel=0.05)
+
+
+def test_the_modulus_of_a_hardening_is_one_number_of_any_kind():
+    curve = bs.Hardening(stress=(20.0, 24.0), plastic_strain=(0.0, 0.01), young=np.float64(1200.0))
+    assert bs.Hardening.parse(str(curve)) == curve
+    with pytest.raises(TypeError, match="young of hardening must be one number"):
+        bs.Hardening(stress=(20.0,), young=np.array([1200.0, 1300.0]))

@@ -19,7 +19,9 @@ from pyarrow import parquet
 import ballsocket as bs
 from ballsocket.contact.verdict import Verdict
 from ballsocket.core.executors import Processes, Serial
+from ballsocket.core.quantities import PLASTIC
 from ballsocket.design_checks import assess_strength
+from ballsocket.model_catalogue import with_yielding
 from ballsocket.studies.design import Span, grid, sample, table
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.file import read_study
@@ -259,6 +261,21 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
     here, there = ((tmp_path / f"{name}.csv").read_bytes() for name in ("here", "there"))
     assert here.startswith(b"ball_young_MPa,ball_radius_mm,outer_radius_mm,liner,")
     assert here == there
+
+
+def test_a_study_of_yielding_has_its_results_by_default_and_writes_infinite_ones(tmp_path):
+    text = "model = 'fem'\njoint = 'hip-28'\nQUANTITIES\n[axes]\nforce = [1e3, 2e4]\n"
+    path = tmp_path / "study.toml"
+    path.write_text(text.replace("QUANTITIES", ""), encoding="utf-8")
+    given = read_study(path)
+    yielding = given.quantities_of(with_yielding(given.model))
+    assert set(yielding) - set(given.quantities_of(given.model)) == {*PLASTIC}
+    path.write_text(text.replace("QUANTITIES", "quantities = ['minimum_thickness']"), encoding="utf-8")
+    printed = run("study", "study.toml", "--plastic", "--json", folder=tmp_path)
+    assert printed.returncode == 0, printed.stderr
+    found = json.loads(printed.stdout)
+    assert found["quantities"]["minimum_thickness"]["largest"]["value"] == "inf"
+    assert "inf" in found["values"]["minimum_thickness"]
 
 
 def test_files_for_other_programs(tmp_path):

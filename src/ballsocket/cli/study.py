@@ -71,13 +71,14 @@ def study(
     study_file = read_study(file)
     draw = None if figure is None else _choose_plot(study_file, figure)
     model = with_gap(study_file.model, gap)
+    model = with_yielding(model) if plastic else model
     folder = store or study_file.store
     with _progress_bar(folder) as progress:
         result = run_study(
-            with_yielding(model) if plastic else model,
+            model,
             study_file.joint,
             study_file.design,
-            quantities=study_file.quantities,
+            quantities=study_file.quantities_of(model),
             store=folder,
             engine=choose_executor(workers, scheduler, study_file.engine),
             listen=progress,

@@ -328,8 +328,8 @@ YIELD_LIMITS = _make_quantity_table(
              "Largest force whose repetitions add no plastic work to a yielding liner."),
     Quantity("collapse_load", "Fc", "collapse load", Kind.FORCE, "Largest force that a yielding liner bears."),
     Quantity("minimum_thickness", "Lmin", "minimum thickness", Kind.LENGTH,
-             "Smallest thickness of the liner that remains elastic under the force, in the same bore; 0 if a liner of "
-             "R2/25 does, infinite if one of 4 R2 does not."),
+             "Smallest thickness of the liner that remains elastic under the force, in the same bore; 0 if one of "
+             "R2/25 or the least that cup and elements allow does, infinite if one of 4 R2 or the most does not."),
 )
 """Limits of a liner that yields, found by bisection on request."""
 

@@ -8,6 +8,8 @@ from itertools import pairwise
 from math import inf
 from typing import Any
 
+import numpy
+
 from ..core.checks import require, shown
 from ..core.quantities import MATERIAL
 
@@ -37,6 +39,8 @@ class Hardening:
     ------
     ValueError
         Points that are not allowed, with the first of them.
+    TypeError
+        A modulus that is not one number.
 
     Examples
     --------
@@ -59,7 +63,9 @@ class Hardening:
         if counts[0] != counts[1] or not counts[0]:
             raise ValueError(f"hardening needs one plastic strain for each stress, got {counts[1]} for {counts[0]}")
         if self.young is not None:
-            MATERIAL["young"].check(self.young)
+            if numpy.ndim(MATERIAL["young"].check(self.young)):
+                raise TypeError(f"young of hardening must be one number, got {shown(self.young)}")
+            object.__setattr__(self, "young", float(self.young))
         for stress in self.stress:
             require("stress of hardening", stress, 0 < stress < inf, "a yield stress (MPa) is above 0 and finite")
         first = self.plastic_strain[0]
@@ -75,11 +81,11 @@ class Hardening:
 
         Stresses and modulus are in MPa.
         """
-        points, _, modulus = text.partition(";")
+        points, semicolon, modulus = text.partition(";")
         pairs = [point.split(":") for point in points.split(",")]
         try:
             stresses, strains = zip(*((read_stress(stress), float(strain)) for stress, strain in pairs), strict=True)
-            young = read_stress(modulus.strip().removeprefix("E")) if modulus else None
+            young = read_stress(modulus.strip().removeprefix("E")) if semicolon else None
         except ValueError:
             raise ValueError(
                 f"hardening = {shown(text)} must be points 'stress:plastic strain', such as '21:0, 25:0.05', and may "
@@ -94,16 +100,12 @@ class Hardening:
     @property
     def offset_yield(self) -> float:
         """Yield stress in MPa at a plastic strain of 0.2 %."""
-        from numpy import interp
-
-        return float(interp(OFFSET_STRAIN, self.plastic_strain, self.stress))
+        return float(numpy.interp(OFFSET_STRAIN, self.plastic_strain, self.stress))
 
     def yield_at_strain(self, strain: float, young: float) -> float:
         """Return the stress in MPa at a total strain, such as 0.04, for Young's modulus in MPa."""
-        from numpy import array, interp
-
-        stress = array(self.stress)
-        return float(min(interp(strain, stress / young + self.plastic_strain, stress), strain * young))
+        stress = numpy.array(self.stress)
+        return float(min(numpy.interp(strain, stress / young + self.plastic_strain, stress), strain * young))
 
     def scaled(self, stress_factor: float, strain_factor: float = 1.0) -> Hardening:
         """Return the curve with multiplied stresses and plastic strains."""

@@ -11,6 +11,7 @@ from ..contact import Model
 from ..core.checks import check_filled, check_names, shown
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
+from ..core.quantities import YIELD_LIMITS
 from ..core.storage.atomic_files import address_of, check_local
 from ..files.columns import HeadKeys
 from ..files.joint_file import JointTables, joint_in
@@ -187,9 +188,15 @@ class StudyFile:
     model: Model
     joint: Joint
     design: Design
-    quantities: tuple[str, ...]
+    quantities: tuple[str, ...]  # empty by default, see `quantities_of`
     store: str | Path | None
     engine: Engine
+
+    def quantities_of(self, model: Model) -> tuple[str, ...]:
+        """Return the requested quantities; by default all of a model, but for the limits of yielding."""
+        return self.quantities or tuple(
+            name for name in (*QUANTITIES, *model.further_quantities) if name not in YIELD_LIMITS
+        )
 
 
 def read_study(path: str | Path) -> StudyFile:
@@ -214,12 +221,11 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     if not any(name in LOADS for name in design.names):
         design = design * grid(**file.load)
     store = None if tables.store is None else str(check_filled("store", tables.store))
-    everything = (*QUANTITIES, *model.further_quantities)
     return StudyFile(
         model=model,
         joint=file.joint,
         design=design,
-        quantities=tuple(map(str, tables.quantities or everything)),
+        quantities=tuple(map(str, tables.quantities or ())),
         store=store if store is None or address_of(store) is not None else folder / store,
         engine=_engine(tables.engine),
     )

@@ -13,7 +13,7 @@ from ..contact import Model
 from ..contact.verdict import Bounded, Verdict
 from ..core.checks import check_names, degrees_hint, require
 from ..core.kinds import Kind
-from ..core.quantities import CONTACT
+from ..core.quantities import CONTACT, YIELD_LIMITS
 from ..core.quantities import QUANTITIES as ALL_QUANTITIES
 from ..core.unit_systems import Amount, Sentence
 from ..core.validity import Status
@@ -153,12 +153,18 @@ def limited_quantities(limits: Iterable[Limit], model: Model) -> tuple[str, ...]
 
 
 def verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
-    """Return the code of the `Verdict` on all limits at each point; undecided without a result."""
-    answered = study[next(iter(study.data_vars))].notnull()
-    codes = (1 - answered) * int(Verdict.UNDECIDED)
+    """Return the code of the `Verdict` on all limits at each point; undecided without a result.
+
+    A joint has limits of yielding also at a force that it does not bear.
+    """
+    results = [name for name in study.data_vars if name not in YIELD_LIMITS] or list(study.data_vars)
+    answered = study[results[0]].notnull()
+    codes, known = (1 - answered) * int(Verdict.UNDECIDED), answered
     for limit in limits:
         codes = numpy.maximum(codes, limit.margin(study).decide(low=0.0))
-    return codes.where(answered, int(Verdict.UNDECIDED))
+        if limit.name in YIELD_LIMITS:
+            known = known | study[limit.name].notnull()
+    return codes.where(known, int(Verdict.UNDECIDED))
 
 
 def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
@@ -168,9 +174,10 @@ def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
 
 def count_verdicts(study: xarray.Dataset, limits: Iterable[Limit]) -> dict[str, int]:
     """Count the points of a study by their verdict on all limits, and those without a result."""
-    codes, answered = verdicts(study, limits), allowed(study, ())
-    counts = {verdict.word: int(((codes == int(verdict)) & answered).sum()) for verdict in Verdict}
-    return {**counts, "no result": int((~answered).sum())}
+    codes = verdicts(study, limits)
+    decided = allowed(study, ()) | (codes == int(Verdict.EXCEEDED))
+    counts = {verdict.word: int(((codes == int(verdict)) & decided).sum()) for verdict in Verdict}
+    return {**counts, "no result": int((~decided).sum())}
 
 
 def undecided_reason(study: xarray.Dataset, limits: Iterable[Limit]) -> str:

@@ -146,7 +146,8 @@ def _datum(name: str, content: Any) -> Any:
     if isinstance(content, Mapping):
         return {key: as_data(part) if key == "at" else _datum(name, part) for key, part in content.items()}
     is_number = isinstance(content, float) and name in QUANTITIES
-    return content * QUANTITIES[name].written.factor if is_number else content
+    number = content * QUANTITIES[name].written.factor if is_number else content
+    return "inf" if number in (inf, -inf) else number  # as `arrays.to_list` writes lists
 
 
 def held_text(held: Mapping[str, float]) -> Sentence:

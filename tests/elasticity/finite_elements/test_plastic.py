@@ -20,7 +20,7 @@ from ballsocket.elasticity.finite_elements.mesh import mesh_block
 from ballsocket.elasticity.finite_elements.plastic_body import PlasticBody
 from ballsocket.elasticity.finite_elements.plasticity import PlasticStrain, YieldLaw
 from ballsocket.evidence.code_checks import pressure_forces
-from ballsocket.studies.limits import Limit, allowed, limited_quantities
+from ballsocket.studies.limits import Limit, allowed, count_verdicts, limited_quantities
 
 from ...extent import some
 from ...joints import HIP
@@ -170,6 +170,25 @@ def test_first_yield_has_a_load_and_a_thickness():
     assert model.minimum_thickness(joint, 100.0) == 0.0
     assert model.minimum_thickness(joint, 1e5) == np.inf
     assert np.isnan(elastic.minimum_thickness)
+    lengths = {"ball_radius": joint.ball_radius, "clearance": joint.clearance, "outer_radius": joint.outer_radius}
+    sized = bs.Joint(**lengths, liner=joint.liner, ball=joint.ball, backing=joint.backing)
+    assert model.minimum_thickness(sized, 5000.0) == pytest.approx(thickness, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("cup", "spacing"),
+    [
+        (bs.Cup(chamfer=0.02), bs.Adapted(elements=24)),
+        (bs.Cup(chamfer=1.0), bs.Adapted(elements=24)),
+        (bs.Cup(), bs.Uniform(size=0.5)),
+    ],
+    ids=["small chamfer", "large chamfer", "uniform"],
+)
+def test_a_thickness_is_sought_where_chamfer_and_elements_allow_one(cup, spacing):
+    liner = bs.Material(young=1000.0, poisson=0.4, yield_stress=12.0)
+    model = replace(MODEL, cup=cup, spacing=spacing)
+    hip = bs.joints["hip-28"].replace(liner=liner)
+    assert [model.minimum_thickness(hip, force) for force in (500.0, 20000.0)] == [0.0, np.inf]
 
 
 def test_a_liner_with_another_modulus_than_its_curve_is_noted_with_both():
@@ -272,6 +291,22 @@ def test_a_liner_that_collapses_has_no_result():
     assert "collapse" in " ".join(contact.notes)
 
 
+@pytest.mark.long
+def test_a_force_beyond_the_collapse_load_exceeds_it():
+    weak = JOINT.replace(liner=replace(JOINT.liner, hardening=bs.Hardening(stress=(10.0,))))
+    model = replace(MODEL, spacing=bs.Adapted(elements=24))
+    collapse = model.collapse_load(weak)
+    verdict, sentence = verdict_of(checks_of(model.press(weak, force=2.0 * collapse), model.cup))
+    assert (verdict, "collapse load" in sentence) == (Verdict.EXCEEDED, True)
+    names = ["max_pressure", "collapse_load"]
+    found = bs.study(model, weak, force=[0.5 * collapse, 2.0 * collapse], quantities=names)
+    assert found.collapse_load.values == pytest.approx(2 * [collapse])
+    high, low = (Limit(name="collapse_load", low=factor * collapse) for factor in (1.5, 0.5))
+    assert count_verdicts(found, [high])[Verdict.EXCEEDED.word] == 2
+    assert allowed(found, [low]).values.tolist() == [True, False]  # without a result nothing is kept
+    assert count_verdicts(found, [low])["no result"] == 1
+
+
 def test_contacts_beyond_the_last_pressure_node_of_a_deep_cup_have_no_result():
     """In a cup of 220 degrees the pressure nodes end at 88 degrees, before the rim."""
     liner = bs.Material(young=300.0, poisson=0.45, hardening=bs.Hardening(stress=(60.0,)))
@@ -292,6 +327,7 @@ test_loads_and_curves_without_a_result_are_refused = refused_calls(
     (lambda: bs.Hardening.parse("20:0.1"), "plastic strain 0"),
     (lambda: bs.Hardening.parse("20:0, 18:0.1"), "softening"),
     (lambda: bs.Hardening(stress=(20.0, 21.0)), "one plastic strain for each"),
+    (lambda: bs.Hardening.parse("20:0;"), "may end with Young's modulus"),
 )
 
 

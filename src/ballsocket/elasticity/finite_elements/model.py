@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from math import degrees, inf, nan
+from math import degrees, inf, nan, prod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -28,7 +28,7 @@ from ...core.validity import SMALL_STRAIN, OutsideDomainError, Range, Remark, St
 from ...problem import Joint
 from ...problem.cup import AXIAL_TILT, Cup
 from ...problem.gaps import GapKind, check_gap, gap_remarks, gap_validity, select_gap
-from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, mesh_size
+from .spacing import SPACINGS, Adapted, Element, MeshSize, Spacing, Uniform, mesh_size
 
 if TYPE_CHECKING:
     from .load_search import Solved
@@ -57,16 +57,18 @@ def _limit_property(name: str, *arguments: str) -> Any:
         if not self.model.plastic:
             return nan * self.indentation
 
-        def limits(indices: Numbers, contacts: JointContacts) -> Numbers:
-            joint = joint_at(self.joint, self.laws.shape, int(indices[0]))
-            quantities = (getattr(contacts.state, argument) for argument in arguments)
-            states = zip(contacts.state.force, *quantities, strict=True)
-            find = lru_cache(partial(getattr(self.model, name), joint))  # loads on one joint share a limit
-            return numpy.array([find(*values) if force > 0 else nan for force, *values in states])
+        shape = self.laws.shape
+        quantities = [numpy.broadcast_to(to_numpy(getattr(self, argument)), shape).ravel() for argument in arguments]
+        limits = numpy.full(prod(shape), nan)
+        for indices, contacts in self.laws.pieces:  # a load beyond the collapse has no result, but a limit
+            find = lru_cache(partial(getattr(self.model, name), joint_at(self.joint, shape, int(indices[0]))))
+            for index, load in zip(indices, contacts.load, strict=True):
+                values = [float(quantity[index]) for quantity in quantities]
+                if load > 0 and all(value > 0 for value in values):
+                    limits[index] = find(*values)  # loads on one joint share a limit
+        return self._match_load(arrays.convert_like(limits.reshape(shape), self.laws.like))
 
-        return self._match_load(arrays.where(self.force > 0, self.laws.combine_by_index(limits), nan))
-
-    return _documented(find_limit, name, "NaN without yielding, load or result")
+    return _documented(find_limit, name, "NaN without yielding or load")
 
 
 def _documented(function: Callable[[MeshedContact], Array], name: str, otherwise: str) -> Any:
@@ -411,14 +413,23 @@ class FiniteElement(Model):
     def minimum_thickness(self, joint: Joint, force: float) -> float:
         """Compute the smallest thickness in mm of a liner that is elastic under a force in N, within 0.1 %.
 
-        Bore, ball and backing of the joint of plain numbers stay. The result is 0 if a liner of R2/25 is elastic, and
-        infinite if one of 4 R2 is not.
+        Bore, ball and backing of the joint of plain numbers stay. The liner is from R2/25 to 4 R2 thick, as far as
+        chamfer and element size allow. The result is 0 if the thinnest one is elastic, and infinite if the thickest one
+        is not.
         """
+        from .solver import CHAMFERS  # slow to import
+
         model, radius = replace(self, meshes=1, plastic=True), float(joint.socket_radius)
         low, high = radius / 25, 4 * radius
+        if self.cup.chamfer:
+            thickest, thinnest = (self.cup.chamfer / share for share in CHAMFERS)
+            low, high = max(low, thinnest * (1 + _TOLERANCE)), min(high, thickest * (1 - _TOLERANCE))
+        if isinstance(self.spacing, Uniform):
+            low = max(low, 2 * self.spacing.size)
 
         def yields(thickness: float) -> bool:
-            return not _is_elastic(model.press(joint.replace(liner_thickness=thickness), force=force))
+            changed = joint.replace(ball_radius=joint.ball_radius, clearance=joint.clearance, liner_thickness=thickness)
+            return not _is_elastic(model.press(changed, force=force))
 
         if yields(high):
             return inf

@@ -199,6 +199,7 @@ def estimate_errors(kind: str, fine: MeshedStates, coarse: MeshedStates, order: 
 
 LIMIT = radians(88.0)  # largest half angle in rad that is solved
 _REACH_FACTOR = 1.2  # of a class's widest contact: extent of its pressure nodes
+CHAMFERS = 1e-3, 0.9  # limits on a chamfer as a share of the liner thickness
 MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000  # limits on the number of elements of one size along the bore
 
 
@@ -239,9 +240,9 @@ def check_cup(cup: Cup, joint: Joint) -> None:
             raise ValueError("interface = 'sliding' needs a backing or a fixed outer surface behind the liner")
     chamfer, liner, bore = cup.chamfer, float(joint.liner_thickness), socket_shape(joint, cup).reach
     leaves = f"a chamfer must leave a tenth of the liner thickness, {liner:g} mm"
-    require("chamfer", chamfer, chamfer < 0.9 * liner, leaves)
+    require("chamfer", chamfer, chamfer < CHAMFERS[1] * liner, leaves)
     allowed = "a chamfer must be 0 or above a thousandth of the liner thickness"
-    require("chamfer", chamfer, chamfer == 0 or chamfer > 1e-3 * liner, allowed)
+    require("chamfer", chamfer, chamfer == 0 or chamfer > CHAMFERS[0] * liner, allowed)
     require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
