@@ -298,3 +298,12 @@ def test_a_failure_stands_first_and_has_a_sign_a_word_and_a_style():
     assert f"<tr class='exceeded'><th scope='row'>pressure on the liner</th>{pressure}" in html
     assert f"{10 * contact.max_pressure:.0f} %" in html
     assert "psi" in checks_html(checks_of(contact, DEFAULT), Units.IMPERIAL.text_of)
+
+
+@pytest.mark.long
+def test_a_force_beyond_the_collapse_load_is_exceeded_as_in_the_terminal():
+    hip = bs.joints["hip-28"]
+    soft = hip.replace(liner=replace(hip.liner, hardening=bs.Hardening(stress=(12.0,))))
+    collapsed = bs.FiniteElement(plastic=True, meshes=1).press(soft, force=4e4)
+    assert collapsed.status.failed
+    assert "Exceeded: normal force is 1.6" in press_lede(collapsed, bs.Cup())

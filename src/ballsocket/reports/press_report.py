@@ -258,9 +258,10 @@ def _checks(contact: Contact, cup: Cup) -> tuple[Check, ...]:
 
 def _verdict(contact: Contact, cup: Cup) -> tuple[str, str]:
     """Return the verdict on the checks of a contact in one sentence, and its style."""
-    if contact.status.failed:
+    checks = _checks(contact, cup)
+    if contact.status.failed and not checks:
         return f"Undecided: {contact.status.sentence}", _VERDICT_STYLES[Verdict.UNDECIDED]
-    verdict, sentence = verdict_of(_checks(contact, cup))
+    verdict, sentence = verdict_of(checks)
     return sentence, _VERDICT_STYLES[verdict]
 
 
