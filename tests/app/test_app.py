@@ -38,6 +38,17 @@ def test_on_a_narrow_screen_the_answers_come_first_and_no_column_lies_beside_it(
         assert not reader.errors
 
 
+def test_the_client_view_has_no_button_of_the_evidence_but_shows_it_by_a_link(user):
+    user.open("?view=evidence&preset=hip-28")
+    section, button = (user.page.locator(f"{place} [data-view=evidence]") for place in ("#view", ".views"))
+    expect(button).to_be_visible()
+    user.page.get_by_role("button", name="Client view").click()
+    user.page.reload()
+    user.answered()
+    expect(section).to_be_visible()
+    expect(button).to_be_hidden()
+
+
 def test_changes_are_undone_and_done_again(user):
     """A preset, keys of a slider, and a view are a step each; text in a box has its own undo."""
 

@@ -9,9 +9,11 @@ from math import degrees
 import pytest
 
 import ballsocket as bs
+from ballsocket.app import results
+from ballsocket.app.running import RunFinished
 from ballsocket.studies.derivatives import local_uncertainty
 
-from .asking import does, opened, saved, told
+from .asking import does, edits, opened, saved, told, trouble
 
 HIP = bs.joints["hip-28"]
 LINK = "view=curve&preset=hip-28&load.force=3000&limit=max_pressure<=16 MPa"
@@ -44,11 +46,40 @@ def test_a_number_is_explained_by_its_formula_and_the_values_in_it():
     assert f"R1 = 14 mm, ε = {degrees(contact.half_angle):.4g}°" in unescape(area)
 
 
-def test_a_view_whose_work_is_done_is_marked_until_it_is_seen():
-    page = opened("view=wear&preset=hip-28")
-    page.view.long.unseen = True
-    assert page.channel.shown_value("works") is None  # of the open view
+def test_a_view_is_marked_whose_work_ends_while_another_is_open(asked, monkeypatch):
+    monkeypatch.setattr(results, "RESULTS", results.ResultStore())
+    page = opened("view=cup&preset=hip-28")
+    orientations = page.view.works[1]
+    orientations.show_result = lambda screen, result: None
+
+    def end_of_work():
+        orientations._job._heard(asked[-1], RunFinished("a map"))
+
+    end_of_work()
     does(page, "view", value="press")
-    assert page.channel.shown_value("works") == {"wear": "done"}
-    does(page, "view", value="wear")
+    assert page.channel.shown_value("works") is None  # its end was seen
+    end_of_work()
+    assert page.channel.shown_value("works") == {"cup": "done"}
+    edits(page, "tilt", 20)  # for which the view has no map of orientations
+    does(page, "view", value="cup")
+    does(page, "view", value="press")
     assert page.channel.shown_value("works") is None
+
+
+def test_the_input_may_be_the_y_axis_of_the_map_whose_range_refuses_no_edit():
+    page = opened(f"{LINK}&up=liner_thickness=3..15")
+    edits(page, "curve.across", "liner_thickness")
+    assert not trouble(page)
+    assert (page.screen.across.name, page.screen.up.name) == ("liner_thickness", "head_diameter")
+    assert "data-chart" in told(page, "curve-chart")
+    page = opened(f"{LINK}&up=liner_thickness=0.01..0.1&across=force=1000..3000&map_model=exact")
+    edits(page, "curve.across_low", 2000)  # `exact` takes minutes over such liners
+    assert (trouble(page), page.screen.across.low) == ("", 2000.0)
+
+
+def test_effects_that_take_seconds_are_refused():
+    page = opened(
+        "view=curve&joint.ball_radius=19.9&joint.clearance=0.1&joint.liner_thickness=0.25&load.force=500"
+        "&liner.young=800&liner.poisson=0.45"
+    )
+    assert "Too slow here at R2/L = 80" in told(page, "curve-effects")

@@ -283,7 +283,10 @@ def fitted_wear():
     return fit_wear_coefficient(hip(wear=Archard(coefficient=1e-6), **QUICK), rate)
 
 
-PACK = {"drawn": {"joint": bs.joints["hip-28"].summary(), "arc_of_cover_deg": 180.0, "half_angle_deg": 30.0}}
+PACK = {
+    "drawn": {"joint": bs.joints["hip-28"].summary(), "arc_of_cover_deg": 180.0, "half_angle_deg": 30.0},
+    "worst": {"max_pressure": {"numbers": {"force": 3000.0}}},
+}
 
 FIGURES = {
     "press": lambda units: plot(dict(press(models=["exact", "hertz"])), units),

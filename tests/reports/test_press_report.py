@@ -8,7 +8,7 @@ from dataclasses import replace
 from datetime import date
 from hashlib import sha256
 from html import unescape
-from math import radians
+from math import inf, radians
 from xml.etree import ElementTree
 
 import pytest
@@ -18,7 +18,7 @@ from ballsocket.contact.verdict import Bounded, Verdict, error_bar, exact_number
 from ballsocket.core.unit_systems import Units
 from ballsocket.design_checks import assess_strength, checks_at, checks_of, verdict_of, wear_check
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
-from ballsocket.reports.joint_drawing import DrawnLoad, gap_factor, joint_svg
+from ballsocket.reports.joint_drawing import DrawnLoad, gap_factor, joint_svg, largest_drawn, petals
 from ballsocket.reports.pages import checks_html, table, write_page
 from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_sections
 from ballsocket.studies import tolerance
@@ -193,6 +193,29 @@ def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     loaded = joint_svg(FILE, contact, float(contact.half_angle), DrawnLoad(text="674.4 lbf"), Units.IMPERIAL)
     assert {"⌀ 1.417 in", "674.4 lbf"} <= drawn_texts(loaded)
+
+
+def test_the_pressure_under_a_sharp_rim_is_drawn_up_to_the_largest_beside_it():
+    cup = bs.Cup(chamfer=1.0)
+    contact = bs.Sphere(cup=cup, ring_width=radians(5)).press(HIP, force=3000.0, tilt=1.1)
+    assert contact.max_pressure == inf
+    radii, _, pressures = petals(JointFile(HIP, {}, cup), contact)
+    highest = 0.45 * float(HIP.liner_thickness)  # of the drawing
+    assert radii.max() - float(HIP.socket_radius) == pytest.approx(highest)
+    assert 0 < largest_drawn(contact) <= pressures.max() < inf
+
+
+def test_the_position_in_the_cup_is_that_of_the_contact_of_the_design():
+    models = {name: bs.Sphere(ring_width=radians(width)) for name, width in (("fine", 4), ("coarse", 6))}
+    comparison = bs.compare(HIP, models=models, force=3000.0, tilt=0.5)
+    position = {
+        name: press_sections(comparison, leading=contact)["position"][1]
+        for name, contact in comparison.contacts.items()
+    }
+    page = {name: designs_report([PressedDesign(comparison=comparison, file=FILE, leading=name)]) for name in models}
+    for name, other in (("fine", "coarse"), ("coarse", "fine")):
+        assert position[name] in page[name]
+        assert position[name] not in page[other]
 
 
 def drawn_texts(drawing):

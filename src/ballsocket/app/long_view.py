@@ -48,7 +48,7 @@ class LongWork:
     _cancelled: Hashable = field(default=None, init=False)
     _refusal: str = field(default="", init=False)
     _start: float = field(default=0.0, init=False)
-    unseen: bool = field(default=False, init=False)  # True for a result since the view was shown
+    unseen: bool = field(default=False, init=False)  # True for a result that came while another view was open
 
     def __post_init__(self) -> None:
         call_later(PREPARE_AFTER, WORKERS.prepare)
@@ -60,7 +60,6 @@ class LongWork:
 
     def show(self, screen: Screen) -> None:
         """Show the stored result for a screen, or that of an earlier screen with a mark."""
-        self.unseen = False
         question, result = self._key(screen), self.result(screen)
         self._put("trouble", self._refusal if question == self._cancelled else "")
         if result is not None:
@@ -187,6 +186,10 @@ class LongView(View):
     @property
     def mark(self) -> str:
         return "runs" if any(work.runs for work in self.works) else "done" * any(work.unseen for work in self.works)
+
+    def clear_mark(self) -> None:
+        for work in self.works:
+            work.unseen = False
 
     def result(self, screen: Screen) -> Any:
         """Return the result for a file; raise ValueError without one."""

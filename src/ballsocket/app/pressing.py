@@ -15,7 +15,7 @@ from ..contact.describe import values_of
 from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
-from ..model_catalogue import catalogue
+from ..model_catalogue import catalogue, reference
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..question import complete, real_cup_reason
@@ -24,6 +24,7 @@ from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from ..reports.svg import rounded_up
 from ..studies.derivatives import LocalUncertainty, local_uncertainty
+from ..studies.run import default_model
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
 from .widgets.reading import Reading
@@ -68,8 +69,18 @@ def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, Any], ...], name: st
 
 def effects_of(file: JointFile) -> LocalUncertainty | None:
     """Compute the effect of one percent of each number of a joint; None without a load along the cup's axis."""
-    pressing = any(float(load) > 0 for load in file.load.values()) and not real_cup_reason(file)
-    return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
+    return local_uncertainty(file.joint, file.cup, file.load, {}) if _has_effects(file) else None
+
+
+def effects_are_slow(file: JointFile) -> bool:
+    """Return True if `effects_of` takes seconds, where a joint of a thin liner is outside the tables."""
+    if not _has_effects(file) or not heavy(file.joint, reference.name):
+        return False
+    return default_model(file.joint, {name: [load] for name, load in file.load.items()}).name != "tabulated"
+
+
+def _has_effects(file: JointFile) -> bool:
+    return any(float(load) > 0 for load in file.load.values()) and not real_cup_reason(file)
 
 
 _DEFAULT_LOADS = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from html import escape
 from importlib.resources import files
+from ipaddress import ip_address
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -52,7 +53,7 @@ _SENTENCES = {
 }
 
 MAX_SESSIONS = 400  # largest number of open pages. The same number of sockets may be connected without a page.
-MAX_PER_ADDRESS = 200  # pages of one network address: no client, and no proxy, holds all of them
+MAX_PER_ADDRESS = 200  # pages of one network address; all users of a proxy on this machine share its loopback address
 _MAX_MESSAGE = 400_000  # bytes; an upload is smaller
 _RATE, _BURST = 60.0, 120.0  # requests a second, and at once, that are read from one browser
 _SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
@@ -176,10 +177,14 @@ class PageSockets:
             oldest.close()
 
     def admit(self, connection: PageSocket) -> bool:
-        """Count the page of a socket; return False if too many are open, of all or of its network address."""
-        address = connection.request.remote_ip
+        """Count the page of a socket; return False if too many are open, of all or of its network address.
+
+        The loopback address, of this machine and of a proxy on it, may hold all of them.
+        """
+        address = str(connection.request.remote_ip)
         same = sum(page.request.remote_ip == address for page in self.pages)
-        if len(self.pages) >= MAX_SESSIONS or same >= MAX_PER_ADDRESS:
+        most = MAX_SESSIONS if ip_address(address).is_loopback else MAX_PER_ADDRESS
+        if len(self.pages) >= MAX_SESSIONS or same >= most:
             return False
         self._waiting.pop(connection, None)
         self.pages.add(connection)

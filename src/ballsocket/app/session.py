@@ -219,6 +219,8 @@ class Page:
             _LOG.exception("a view failed")
             self.channel.forget_expected()
             self.refuse(f"This cannot be shown: {error}")
+        if self.screen.view in self._views:
+            self.view.clear_mark()
         marks = {name: view.mark for name, view in self._views.items() if view.mark and name != self.screen.view}
         self.channel.put("works", marks or None)
         self.channel.send()

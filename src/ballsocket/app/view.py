@@ -140,6 +140,9 @@ class View(ABC):
         """State of the work of the view for its button: "runs", "done" since it was last shown, or empty."""
         return ""
 
+    def clear_mark(self) -> None:  # noqa: B027  most views have no work of their own
+        """Forget the mark "done", since the view is open."""
+
     def leave(self) -> None:  # noqa: B027  most views have no work of their own
         """Stop all work of a closed page."""
 

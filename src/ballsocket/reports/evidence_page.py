@@ -145,8 +145,10 @@ def _final_wear(record: Record, units: Units) -> Rows:
 
 def _pictures(record: Record, units: Units) -> list[dict[str, str]]:
     """Return pictures of the joint with the largest pressure, and of each mapped result over the matrix."""
-    aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
-    caption = f"The joint with the largest pressure.{aside}"
+    half_angle, aside = record["drawn"]["half_angle_deg"], "Its contact lies off the axis and is not drawn."
+    if half_angle is not None:
+        aside = f"A dashed line marks the edge of its contact, to {half_angle:.3g}°."
+    caption = f"The joint with the largest pressure. {aside}"
     pictures = [
         {
             "address": data_address(figures.joint_drawing(record, units), "svg+xml"),

@@ -12,7 +12,7 @@ import numpy
 from ..contact.verdict import Bounded, bar_text
 from ..core.arrays import Numbers
 from ..core.kinds import Unit
-from ..core.quantities import QUANTITIES, Quantity
+from ..core.quantities import CONTACT, QUANTITIES, Quantity
 from ..core.unit_systems import Amount, Sentence, Units
 from ..evidence.matrix import KEYS, LIMITED, NAMES, amount_text, number, title_of
 from ..files.joint_file import JointFile
@@ -110,8 +110,9 @@ def joint_drawing(record: Record, units: Units) -> bytes:
     file = JointFile(_joint(drawn["joint"]), {}, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
     if drawn["half_angle_deg"] is None:
         return joint_svg(file, units=units)
-    edge = DrawnLoad(text=f"contact to {drawn['half_angle_deg']:.3g}°")
-    return joint_svg(file, None, radians(drawn["half_angle_deg"]), edge, units)
+    force = record["worst"]["max_pressure"]["numbers"][CONTACT["force"].key]
+    load = DrawnLoad(text=units.text_of(CONTACT["force"], force))
+    return joint_svg(file, None, radians(drawn["half_angle_deg"]), load, units)
 
 
 def _joint(summary: Record) -> Joint:

@@ -18,6 +18,7 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..problem import Joint
 from . import svg
+from .cup_map import shown_maximum
 
 Numbers = numpy.ndarray
 Cells = tuple[Numbers, Numbers, Numbers]
@@ -142,7 +143,7 @@ def section_parts(
     `inside` replaces the pressure, such as by stresses. `groups` are further attributes of the "ball" and the "load".
     """
     frame, groups, tilt = frame_of(file.joint), groups or {}, 0.0 if load is None else load.tilt
-    pressure = [] if contact is None else frame.cells(petals(file, contact), float(contact.max_pressure) or 1.0)
+    pressure = [] if contact is None else frame.cells(petals(file, contact), largest_drawn(contact) or 1.0)
     return [
         *layers(file, frame),
         *(inside or ()),
@@ -182,8 +183,15 @@ def profile(contact: Contact) -> tuple[Numbers, Numbers]:
     return angle, numpy.asarray(contact.pressure(angle))
 
 
+def largest_drawn(contact: Contact) -> float:
+    """Return the largest pressure (MPa) of a drawing, which is finite where a sharp rim digs in."""
+    if isinstance(contact, OffAxisContact) and isinf(contact.max_pressure):
+        return shown_maximum(contact)
+    return float(contact.max_pressure)
+
+
 def petals(file: JointFile, contact: Contact) -> Cells:
-    """Return quadrilaterals in the liner whose height shows the pressure."""
+    """Return quadrilaterals in the liner whose height shows the pressure, up to the `largest_drawn`."""
     if not float(contact.half_angle) > 0:
         return numpy.empty((0, 4)), numpy.empty((0, 4)), numpy.empty(0)
     if isinstance(contact, OffAxisContact):
@@ -195,7 +203,7 @@ def petals(file: JointFile, contact: Contact) -> Cells:
         pressure = numpy.interp(numpy.abs(angle), *profile(contact), right=0.0)
     radius = float(file.joint.socket_radius)
     highest = _HIGHEST * min(float(file.joint.liner_thickness), 0.6 * radius)
-    reach = radius + highest * pressure / float(contact.max_pressure)
+    reach = radius + highest * numpy.minimum(pressure / largest_drawn(contact), 1.0)
     bore, a, b = numpy.full_like(angle[1:], radius), angle[:-1], angle[1:]
     radii, angles = numpy.stack([bore, bore, reach[1:], reach[:-1]], axis=-1), numpy.stack([a, b, b, a], axis=-1)
     wide = b > a

@@ -150,8 +150,8 @@ def joint_report(
 ) -> str:
     """Return the page of a joint without axes as HTML that needs no other file.
 
-    Below `lede`, which is HTML, the page has the checks of the contact, a drawing with an axial contact, the inputs,
-    the given sections (title and HTML by id), and the joint file. By default its date is today, and its title the
+    Below `lede`, which is HTML, the page has the checks of the contact, a drawing with its pressure, the inputs, the
+    given sections (title and HTML by id), and the joint file. By default its date is today, and its title the
     joint's name.
     """
     everything = _joint_sections(file, dict(sections), units, contact)
@@ -185,7 +185,7 @@ def _drawing(file: JointFile, contact: Contact | None, units: Units) -> bytes:
 
 def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
     contact = design.contact
-    answers, *more = press_sections(design.comparison, units, design.uncertainty, design.remarks).items()
+    answers, *more = press_sections(design.comparison, units, design.uncertainty, design.remarks, contact).items()
     figures = "figures", ("Pressure and force", _figures(design.comparison, contact, units))
     return _joint_sections(design.file, dict([answers, figures, *more]), units, contact, design.command)
 
@@ -353,14 +353,19 @@ def press_sections(
     units: Units = Units.SI,
     surroundings: LocalUncertainty | None = None,
     remarks: Sequence[str] = (),
+    leading: Contact | None = None,
 ) -> TitledHtml:
-    """Return the sections of a press without its figures: title and HTML by id."""
+    """Return the sections of a press without its figures: title and HTML by id.
+
+    The position in the cup is that of the contact `leading`, or of the first that is off the cup's axis.
+    """
     sources = [f"{source}, doi {source.doi}" if source.doi else str(source) for source in comparison.sources]
     position: TitledHtml = {}
-    for contact in successful_contacts(comparison).values():
-        if isinstance(contact, OffAxisContact):
-            rows = list(_position(contact, units))
-            position["position"] = "Position of the contact in the cup", render_part(_TEMPLATE, "position", rows)
+    contacts = successful_contacts(comparison)
+    located = [contact for contact in contacts.values() if isinstance(contact, OffAxisContact)]
+    if located:
+        rows = list(_position(next((contact for contact in located if contact is leading), located[0]), units))
+        position["position"] = "Position of the contact in the cup", render_part(_TEMPLATE, "position", rows)
     return {
         "answers": ("Results", _results(comparison, units, remarks)),
         **position,

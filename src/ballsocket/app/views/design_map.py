@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -59,15 +59,20 @@ _MAX_LEVELS = 12
 
 
 def axis_control(screen: Screen, which: str) -> Control:
-    """Return the parameter of an axis; another one runs over half to twice its present value."""
-    present = getattr(screen, which).name
-    names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == present]
+    """Return the parameter of an axis; another one runs over half to twice its present value.
+
+    The other axis of the map makes way for its own parameter, and takes the present axis.
+    """
+    axis = getattr(screen, which)
+    other = "up" if which == "across" else "across"
+    names = [name for name in AXES if name not in SHELL or screen.file.joint.shell or name == axis.name]
     axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in names]
 
-    return Control(
-        choice(which, f"{_AXIS_LETTERS[which]} axis", axes, present),
-        lambda name: {"picked": None, which: default_axis(name, present_value(screen.file, name))},
-    )
+    def read(name: str) -> Changes:
+        chosen = {"picked": None, which: default_axis(name, present_value(screen.file, name))}
+        return {**chosen, **({other: axis} if name == getattr(screen, other).name else {})}
+
+    return Control(choice(which, f"{_AXIS_LETTERS[which]} axis", axes, axis.name), read)
 
 
 def end_control(screen: Screen, which: str, end: str) -> Control:
@@ -126,7 +131,7 @@ class DesignMap(View):
             chosen(screen, "sizes", "Sizes at a selected point", PICKED, segments),
         ]
         return [
-            *(Control(control.field, checked(screen, control.read)) for control in controls),
+            *(Control(control.field, checked(screen, control.read, _AXIS_LETTERS)) for control in controls),
             limits_input(screen, mapped),
         ]
 
@@ -178,12 +183,13 @@ class DesignMap(View):
         )
 
 
-def checked(screen: Screen, read: Callable[[Any], Changes]) -> Callable[[Any], Changes]:
-    """Let an edit be refused for which no map can be computed."""
+def checked(screen: Screen, read: Callable[[Any], Changes], varied: Iterable[str]) -> Callable[[Any], Changes]:
+    """Let an edit be refused for which no map can be computed over the varied axes, "across" and "up"."""
 
     def checked(value: Any) -> Changes:
         changes = read(value)
-        check_map(replace(screen, **changes))
+        edited = replace(screen, **changes)
+        check_map(edited, [getattr(edited, which) for which in varied])
         return changes
 
     return checked

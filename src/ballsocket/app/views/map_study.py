@@ -58,9 +58,9 @@ def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
     return catalogue[name]
 
 
-def check_map(screen: Screen) -> None:
-    """Check that a map can be computed; raise ValueError otherwise."""
-    ends = {axis.name: numpy.array([axis.low, axis.high]) for axis in (screen.across, screen.up)}
+def check_map(screen: Screen, axes: Iterable[MapAxis]) -> None:
+    """Check that a study over these axes can be computed; raise ValueError otherwise."""
+    ends = {axis.name: numpy.array([axis.low, axis.high]) for axis in axes}
     _map_model(screen.file.joint, ends, screen.map_model)
     press_arguments(screen.file.joint, ends)
 

@@ -16,7 +16,7 @@ from ...studies.limits import verdicts
 from ...studies.sensitivity_answer import uncertainty_tables
 from ...studies.study_answer import describe_study
 from ..pictures.chart import Curve, chart, legend, spans
-from ..pressing import axis_end, effects_of
+from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
 from ..view import Document, View, field_places
 from ..widgets.controls import Control, chosen
@@ -50,7 +50,7 @@ class OneInput(View):
             chosen(screen, "quantity", "Result", [(name, QUANTITIES[name].title) for name in MAPPED]),
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
         ]
-        edits = [Control(control.field, checked(screen, control.read)) for control in controls]
+        edits = [Control(control.field, checked(screen, control.read, ["across"])) for control in controls]
         return [*edits, limits_input(screen, swept)]
 
     def show(self, screen: Screen) -> None:
@@ -72,8 +72,11 @@ class OneInput(View):
 
 
 def _effects(screen: Screen) -> str:
-    """Tabulate the effect of one percent of each number on each result."""
+    """Tabulate the effect of one percent of each number on each result, unless its presses take seconds."""
     try:
+        if effects_are_slow(screen.file):
+            ratio = float(screen.file.joint.thickness_ratio)
+            return f"<p class='quiet'>Too slow here at R2/L = {ratio:.3g}: the report of Contact has it.</p>"
         effects = effects_of(screen.file)
     except ValueError as error:
         return alert(str(error))

@@ -15,6 +15,7 @@ from ...core.quantities import CONTACT, JOINT
 from ...design_checks import checks_of, verdict_of
 from ...files.joint_file import JointFile
 from ...question import real_cup_reason
+from ...reports.joint_drawing import largest_drawn
 from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
@@ -98,7 +99,7 @@ def with_stresses(designs: Designs) -> Designs:
 def with_drawings(designs: Designs) -> Designs:
     """Add sections of the designs to their headings, at one scale and in one colour scale."""
     extent = max(extent_of(design.file) for design in designs.values())
-    pressures = [float(design.contact.max_pressure) for design in designs.values() if design.contact is not None]
+    pressures = [largest_drawn(design.contact) for design in designs.values() if design.contact is not None]
     highest = max(pressures, default=1.0)
     return {
         name: replace(design, heading=section(design.file, design.contact, extent, highest) + design.heading)
