@@ -308,8 +308,11 @@ async def edit_without_reading(parts, process):
     assert await user.moves_load()
     assert megabytes(process) - before < 15
     sender.cancel()
-    while LINES:  # the deaf one answers no farewell
-        LINES.pop().protocol.stream.close()
+    while LINES:
+        line = LINES.pop()
+        stream = line.protocol.stream
+        line.close()
+        stream.close()  # the deaf one waits for no farewell
     await asyncio.sleep(0.1)
 
 
