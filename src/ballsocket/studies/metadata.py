@@ -147,7 +147,7 @@ def _datum(name: str, content: Any) -> Any:
         return {key: as_data(part) if key == "at" else _datum(name, part) for key, part in content.items()}
     is_number = isinstance(content, float) and name in QUANTITIES
     number = content * QUANTITIES[name].written.factor if is_number else content
-    return "inf" if number in (inf, -inf) else number  # as `arrays.to_list` writes lists
+    return arrays.to_list(number) if isinstance(number, float) else number
 
 
 def held_text(held: Mapping[str, float]) -> Sentence:
