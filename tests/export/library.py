@@ -13,6 +13,7 @@ import pytest
 
 from ballsocket.export import CElement
 from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, shared_library
+from ballsocket.export.tunable import tunables_of
 
 
 def _compiles():
@@ -77,23 +78,27 @@ class Library:
         strict = ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")
         path = shared_library([f"{name}.c"], folder / f"{name}{LIBRARY_ENDING}", folder, strict)
         self.functions, self.name = c.CDLL(str(path)), name
-        self.defaults = tuple((c.c_double * 7).in_dll(self.functions, f"{name}_defaults"))
-        self.parameters = (c.c_double * 7)(*self.defaults)
+        self.names = [parameter.name for parameter in tunables_of(element)]
+        numbers = c.c_double * len(self.names)
+        self.defaults = tuple(numbers.in_dll(self.functions, f"{name}_defaults"))
+        self.parameters = numbers(*self.defaults)
 
     def _call(self, function, given, *sizes):
         out = [np.full(size, -1.0) for size in sizes]
         numbers = [np.array(each, dtype=float) for each in given]
-        status = getattr(self.functions, f"{self.name}_{function}")(*self._first(function), *map(_at, (*numbers, *out)))
+        status = getattr(self.functions, f"{self.name}_{function}")(
+            c.byref(self.parameters), *map(_at, (*numbers, *out))
+        )
         return status, *out
-
-    def _first(self, function):
-        return (c.byref(self.parameters),) if function in ("load", "slope") else ()
 
     def load(self, *state):
         return self._call("load", state, 3, 3, 1)
 
     def contact(self, position):
         return self._call("contact", [position], 1, 1)
+
+    def valid(self, position):
+        return bool(self._call("valid", [position])[0])
 
     def tangent(self, position):
         return self._call("tangent", [position], 9)

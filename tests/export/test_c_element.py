@@ -10,6 +10,9 @@ from numpy.testing import assert_allclose
 import ballsocket as bs
 from ballsocket.dynamics import ContactState, Damping, ForceElement, Friction
 from ballsocket.export import CElement
+from ballsocket.export.tunable import reason_of_fixed_joint
+from ballsocket.model_catalogue import listed_models, named_model
+from ballsocket.models.closed_form import ClosedForm
 
 from ..extent import either, some
 from ..joints import HIP
@@ -66,7 +69,8 @@ def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(e
         close(moment, wanted.moment, np.linalg.norm(wanted.moment))
         close(energy[0], wanted.energy, 0.0)
         _, half_angle, max_pressure = library.contact(state[0])
-        close((half_angle[0], max_pressure[0]), (wanted.half_angle, wanted.max_pressure), 0.0)
+        sizes = wanted.half_angle, wanted.max_pressure  # the Python element reads them from curves within 1e-9
+        assert_allclose((half_angle[0], max_pressure[0]), sizes, rtol=2e-9)
         tangent = np.array(wanted.tangent)
         close(library.tangent(state[0])[1], tangent.ravel(), abs(tangent).max())
     assert touched > either(150, 500)
@@ -145,15 +149,72 @@ def plain(tmp_path_factory):
 def test_losses_can_be_tuned_to_parameters_that_are_allowed(plain):
     tuned = ELEMENTS["springs"]()
     state = (0.0, 0.03, 0.12), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
-    plain.parameters[:] = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
+    plain.parameters[:7] = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
     close(np.concatenate(plain.load(*state)[1:3]), np.concatenate(tuned(*state)[:2]), 1e3)
     plain.parameters[:] = plain.defaults
     assert plain.load(*state)[2].tolist() == [0.0, 0.0, 0.0]
-    complaint, given = plain.functions.joint_complaint, (ctypes.c_double * 7)(*plain.defaults)
+    complaint, given = plain.functions.joint_complaint, (ctypes.c_double * len(plain.defaults))(*plain.defaults)
     complaint.restype = ctypes.c_char_p
     assert complaint(ctypes.byref(given)) is None
     given[2] = -0.1
     assert complaint(ctypes.byref(given)) == b"friction_coefficient must be finite and 0 or more"
+
+
+FORMULAS = [name for name, model in listed_models.items() if isinstance(model, ClosedForm) and name != "adhesive"]
+JOINT = {"ball_radius": 15.0, "clearance": 0.3, "liner_thickness": 6.0, "liner_modulus": 1500.0}
+
+
+@pytest.mark.parametrize("name", some(FORMULAS, 2))
+def test_the_joint_of_a_formula_can_be_changed(name, tmp_path):
+    model = named_model(name)
+    library = Library(ForceElement(model, HIP, **LOSSES), tmp_path)
+    library.parameters[-4:] = tuple(JOINT.values())
+    lengths = {key: JOINT[key] for key in list(JOINT)[:3]}
+    joint = HIP.replace(**lengths, liner=replace(HIP.liner, young=JOINT["liner_modulus"]))
+    element = ForceElement(model, joint, **LOSSES)
+    for depth in (-0.2, 1e-4, 0.01, 0.2, 1.0):
+        state = (0.0, 0.6 * (0.3 + depth), 0.8 * (0.3 + depth)), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
+        wanted = element(*state)
+        status, force, moment, energy = library.load(*state)
+        assert status == wanted.status
+        close(force, wanted.force, np.linalg.norm(wanted.force))
+        close(moment, wanted.moment, np.linalg.norm(wanted.moment))
+        close(energy[0], wanted.energy, 0.0)
+        close(library.tangent(state[0])[1], np.ravel(wanted.tangent), np.abs(wanted.tangent).max())
+        sizes = wanted.half_angle, wanted.max_pressure
+        assert_allclose(np.concatenate(library.contact(state[0])[1:]), sizes, rtol=2e-9)
+    deepest = element.valid_depth
+    assert library.valid((0.0, 0.0, 0.3 + 0.9 * deepest))  # at first touch a model counts as valid
+    if name != "cosine-limit":  # small contacts count as valid, and its limits exclude each other in this joint
+        assert not library.valid((0.0, 0.0, 0.3 + (1.1 * deepest or 0.01)))
+
+
+def test_a_joint_without_a_law_is_refused(tmp_path):
+    for model, smoothing, name, text in (
+        (bs.Hertz(), 0.0, "clearance", b"hertz has no answer outside c"),
+        (bs.HessForsbach(), 0.02, "clearance", b"clearance must be at least the smoothing, 0.02 mm"),
+        (bs.HessForsbach(), 0.0, "ball_radius", b"ball_radius must be finite and above 0"),
+    ):
+        library = Library(ForceElement(model, HIP, smoothing=smoothing), tmp_path, name=f"{model.name[:4]}{len(text)}")
+        complaint = getattr(library.functions, f"{library.name}_complaint")
+        complaint.restype = ctypes.c_char_p
+        assert complaint(ctypes.byref(library.parameters)) is None
+        library.parameters[library.names.index(name)] = 0.0
+        assert complaint(ctypes.byref(library.parameters)).startswith(text)
+
+
+def test_the_joint_is_fixed_where_the_law_is_that_of_one_joint():
+    def iterated(joint):
+        """Modulus by a loop that depends on the joint."""
+        return next(modulus for modulus in (100.0, 200.0, 300.0) if modulus > 10.0 * joint.liner_thickness)
+
+    for element, reason in (
+        (ForceElement(bs.Tabulated(), HIP), "tabulated for this joint"),
+        (ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant()), "film of the lubricant"),
+        (ForceElement(bs.RadialFoundation(modulus=iterated), HIP), "branches or iterations"),
+    ):
+        assert reason in reason_of_fixed_joint(element)
+        assert len(CElement(element=element).tunables) == 7
 
 
 def test_names_are_those_that_c_allows_and_neither_open_nor_close_a_comment():

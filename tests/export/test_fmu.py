@@ -2,6 +2,7 @@
 
 import shutil
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
@@ -90,7 +91,7 @@ def test_loads_depend_on_the_state_and_the_contact_on_the_position(version, tag,
     loads = {f"{name}[{axis}]" for name in ("force", "moment") for axis in (1, 2, 3)}
     expected = dict.fromkeys(loads, state) | dict.fromkeys(("energy", "half_angle", "max_pressure", "status"), position)
     assert {name: {names[each] for each in numbers.split()} for name, numbers in dependencies.items()} == expected
-    assert [int(each.get("valueReference")) for each in variables if each.get("name") != "time"] == list(range(1, 27))
+    assert [int(each.get("valueReference")) for each in variables if each.get("name") != "time"] == list(range(1, 31))
 
 
 def test_units_are_powers_of_the_base_units_and_starts_are_in_si(folder):
@@ -198,7 +199,7 @@ def test_a_terminal_has_the_motion_and_the_load_of_the_ball_in_the_form_of_the_s
         text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")
     members = [each.get("variableName") for each in fromstring(text).iter("TerminalMemberVariable")]
     variables = [each for each in description(folder / "hip3.fmu").find("ModelVariables") if each.get("name") != "time"]
-    assert members == [each.get("name") for each in variables if each.get("causality") != "parameter"]
+    assert members == [each.get("name") for each in variables if each.get("causality") in ("input", "output")]
     fmpy, etree = pytest.importorskip("fmpy"), pytest.importorskip("lxml.etree")
     schema = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
     etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.fromstring(text))
@@ -246,6 +247,45 @@ def test_a_parameter_is_tuned_during_a_simulation(host):
     assert host.set(friction_coefficient=-0.1) == GOOD
     assert host.get("force[1]")[0] == ERROR
     assert host.messages == [(ERROR, "friction_coefficient must be finite and 0 or more")]
+
+
+CHANGED = {"ball_radius": 17.0, "clearance": 0.2, "liner_thickness": 6.0}  # mm
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_fmpy_changes_the_joint_of_a_unit(version, folder, fmpy):
+    Fmu(element=ForceElement(bs.HessForsbach(), HIP), name="dry", version=version).write(folder / "dry.fmu")
+    young = 1.5 * HIP.liner.young
+    changed = ForceElement(bs.HessForsbach(), HIP.replace(**CHANGED, liner=replace(HIP.liner, young=young)))
+    values = {name: 1e-3 * value for name, value in CHANGED.items()} | {"liner_modulus": 1e6 * young}
+    state = trajectory(changed, np.linspace(0.0, 0.1, 21))
+    names = [f"{name}[{axis}]" for name in ("position", "velocity", "spin") for axis in (1, 2, 3)]
+    given = np.array(
+        [(time, *row) for time, row in zip(np.linspace(0.0, 0.1, 21), states_in_si(state).tolist(), strict=True)],
+        dtype=[("time", float), *((name, float) for name in names)],
+    )
+    options = {"fmi_type": "ModelExchange", "stop_time": 0.1, "output_interval": 0.005}
+    found = fmpy.simulate_fmu(str(folder / "dry.fmu"), input=given, start_values=values, **options)
+    wanted = reference_loads(changed, state)
+    for index, name in enumerate(found.dtype.names[1:]):  # Python reads half angle and pressure from curves
+        assert_allclose(found[name], wanted[:, index], rtol=2e-9, atol=2e-9 * abs(wanted[:, index]).max())
+
+
+def test_a_unit_says_which_numbers_of_the_joint_are_fixed_and_why(folder):
+    fixed = {
+        each.get("name"): each for each in description(folder / "hip3.fmu").iter() if each.get("causality") == "local"
+    }
+    assert list(fixed) == ["ball_radius", "clearance", "liner_thickness", "liner_modulus"]
+    assert all(each.get("variability") == "constant" for each in fixed.values())
+    assert float(fixed["clearance"].get("start")) == pytest.approx(1e-3 * HIP.clearance, rel=1e-15)
+    assert "fixed: the film of the lubricant" in fixed["clearance"].get("description")
+
+
+@needs_compiler
+def test_a_fixed_number_of_the_joint_can_be_read_but_not_set(host):
+    assert host.get("clearance") == (GOOD, [pytest.approx(1e-3 * HIP.clearance, rel=1e-15)])
+    assert host.set(clearance=1e-3) == ERROR
 
 
 @needs_compiler

@@ -14,22 +14,30 @@ from typing import Any
 
 import numpy
 
-from ..contact.octave_curve import OctaveCurve
-from ..core.arrays import isfinite, where
+from ..contact import Contact
+from ..contact.coordinates import LIMIT
+from ..contact.octave_curve import OctaveCurve, fit_octave_curve
+from ..contact.strength import MAX_ELASTIC_UTILISATION
+from ..contact.stress_ratio import von_mises_ratio
+from ..core.arrays import isfinite, logical_not, where
 from ..core.checks import known_name
 from ..core.display import ascii_text
 from ..core.storage.atomic_files import write_text
+from ..core.validity import Status
 from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
 from ..dynamics.ball_centre import BallCentre, Constants, Vector
 from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
+from ..models.closed_form import ClosedFormSolution
+from ..problem import Joint
 from ..version import __version__
 from .c_text import C, c_number
 from .recorder import Part, Recorded, Tape, directional_derivatives
-from .tunable import TUNABLES
+from .tunable import TUNABLES, Tunable, joint_of_inputs, reason_of_fixed_joint, tunables_of
 
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
+STRESS_RATIO = "stress_ratio_curve"
 STATE = ("position", "velocity", "spin")
 BEYOND = {
     "extend": "the indentation exceeds the wall thickness or the range of the model; the force has its last stiffness",
@@ -38,6 +46,15 @@ BEYOND = {
 """What an exported element says of an indentation beyond the range of its law, by what it does there."""
 
 Outputs = dict[str, Part]  # recorded quantities by the C expression that receives them
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class _RecordedContact(Contact):
+    """Contact of recorded numbers, whose von Mises stress is that of a curve."""
+
+    def _compute_von_mises(self) -> Part:
+        angle = where(self.half_angle < LIMIT, self.half_angle, LIMIT)
+        return angle.tape.curve(STRESS_RATIO, angle, 1)[0] * self.max_pressure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,17 +72,46 @@ class Recording:
         return x, v, w  # type: ignore[return-value]
 
     @cached_property
+    def joint(self) -> Joint | None:
+        """Joint with its tunable numbers as inputs of the tape; None if the law is that of one joint."""
+        return None if reason_of_fixed_joint(self.element) else joint_of_inputs(self.element, self.tape)
+
+    @cached_property
     def constants(self) -> Constants:
         """Constants of the force element, in which the tunable parameters are inputs of the tape."""
         tuned: dict[str, Any] = {
             parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True) for parameter in TUNABLES
         }
         tuned["static"] = where(tuned["static"] > tuned["sliding"], tuned["static"], tuned["sliding"])
+        if self.joint is not None:
+            R2, L = self.joint.socket_radius, self.joint.liner_thickness
+            tuned |= {"ball_radius": self.joint.ball_radius, "socket_radius": R2, "clearance": self.joint.clearance}
+            tuned["wall"] = where(L < R2, L, R2)
         return self.element.constants._replace(**tuned)
+
+    def _pressed(self, joint: Joint, indentation: Part) -> _RecordedContact:
+        """Return the contact of a joint at an indentation by the formulas of the model."""
+        model: Any = self.element.model
+        return _RecordedContact(
+            model=model,
+            joint=joint,
+            laws=ClosedFormSolution(model=model, joint=joint, indentation=indentation),
+            force=model.force(joint, indentation),
+            indentation=indentation,
+            status=Status.OK,
+        )
 
     @cached_property
     def curves(self) -> dict[str, OctaveCurve]:
-        """Fitted curves that the C program evaluates, by name: half angle, largest pressure, energy."""
+        """Fitted curves that the C program evaluates, by name.
+
+        They are those of half angle, largest pressure and energy of one joint, or the ratio of the largest von Mises
+        stress to the largest pressure over the half angle.
+        """
+        if self.joint is not None:
+            return (
+                {} if self.joint.liner.yield_stress is None else {STRESS_RATIO: _stress_ratio_curve(self.element.joint)}
+            )
         half_angle, max_pressure = self.element.curves
         curves = {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure}
         potential = self.element.potential
@@ -91,8 +137,12 @@ class Recording:
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         """Record energy, force and stiffness at an indentation."""
-        inside = self._within_range(depth)
-        if ENERGY in self.curves:
+        inside, model = self._within_range(depth), self.element.model
+        if self.joint is not None:
+            energy, force, stiffness = (
+                getattr(model, law)(self.joint, inside) for law in ("energy", "force", "stiffness")
+            )
+        elif ENERGY in self.curves:
             energy, force, stiffness = self.tape.curve(ENERGY, inside, 3)
         else:
             energy, force, stiffness = self.element.potential(inside)
@@ -100,7 +150,8 @@ class Recording:
 
     def _within_range(self, depth: Part) -> Part:
         """Record the indentation at which the law is evaluated: the last one of its range for deeper ones."""
-        return where(depth < self.element.wall, depth, self.element.wall) if self.beyond == "extend" else depth
+        wall = self.constants.wall
+        return where(depth < wall, depth, wall) if self.beyond == "extend" else depth
 
     def _continued(self, derivatives: tuple[Part, ...], excess: Part) -> tuple[Part, Part, Part]:
         """Record energy, force and stiffness at an indentation beyond the range: the stiffness stays the last one."""
@@ -123,8 +174,44 @@ class Recording:
     def contact_size(self) -> Outputs:
         """Recorded half angle and largest pressure, by C variable."""
         depth = self.centre.indentation
-        angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
+        if self.joint is None:
+            angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
+        else:
+            touching = depth > 0.0
+            contact = self._pressed(self.joint, where(touching, depth, self.constants.ball_radius))
+            angle, pressure = where(touching, contact.half_angle, 0.0), where(touching, contact.max_pressure, 0.0)
         return {"*half_angle": angle, "*max_pressure": pressure}
+
+    @cached_property
+    def validity(self) -> Outputs:
+        """Recorded truth that the model is valid for the joint and its indentation, by C variable.
+
+        Contacts that are only too small for the model count as valid: every contact passes through them.
+        """
+        depth = self.centre.indentation
+        if self.joint is None:
+            return {"valid": depth <= self.element.valid_depth}
+        model, joint, contact = self.element.model, self.element.joint.with_floats(), self._pressed(self.joint, depth)
+        first_touch, deepest = (model.press(joint, indentation=share * self.element.wall) for share in (1e-3, 1.0))
+        valid = depth <= self.constants.wall
+        for limit in model.validity:
+            if limit.holds(first_touch) or not limit.holds(deepest):
+                valid = valid & limit.holds(contact)
+        if joint.strengths():
+            valid = valid & logical_not(contact.utilisation > MAX_ELASTIC_UTILISATION)
+        return {"valid": (depth <= 0.0) | valid}
+
+    @cached_property
+    def domain(self) -> dict[str, Part]:
+        """Recorded truths that the joint has a contact law, by the messages on joints without one."""
+        if self.joint is None:
+            return {}
+        model, smoothing = self.element.model, self.element.constants.smoothing
+        contact = self._pressed(self.joint, self.centre.indentation)
+        holds = {f"{model.name} has no answer outside {each}": each.strictly_holds(contact) for each in model.domain}
+        if smoothing > 0.0:
+            holds[f"clearance must be at least the smoothing, {smoothing!r} mm"] = self.joint.clearance >= smoothing
+        return {ascii_text(message): truth for message, truth in holds.items() if isinstance(truth, Recorded)}
 
     @cached_property
     def status(self) -> Outputs:
@@ -267,11 +354,16 @@ class CElement:
             return PreloadRecording(element=self.element, beyond=self.beyond)
         return Recording(element=self.element, beyond=self.beyond)
 
+    @cached_property
+    def tunables(self) -> tuple[Tunable, ...]:
+        """Adjustable parameters in the order of the C structure."""
+        return tunables_of(self.element)
+
     @property
     def header(self) -> str:
         """Text of the C header that other programs include."""
         fields = "\n".join(
-            f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in TUNABLES
+            f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in self.tunables
         )
         codes = "\n".join(f"    {self.name.upper()}_{state.name} = {state.value}," for state in ContactState)
         names = {"name": self.name, "NAME": self.name.upper()}
@@ -289,19 +381,28 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
-        unloaded = constants.clearance - constants.smoothing  # distance in mm; a lubricated or preloaded ball has none
-        first_touch = unloaded**2 if unloaded > 0.0 and constants.film_damping == 0.0 else -1.0
+        # distance in mm; a lubricated ball has a force at all distances
+        unloaded = recording.constants.clearance - constants.smoothing if constants.film_damping == 0.0 else -1.0
+        domain = {f"allowed[{index}]": holds for index, holds in enumerate(recording.domain.values())}
+        checks = [_range_check_statement(parameter.name, parameter.above) for parameter in self.tunables]
+        if domain:
+            checks += ["    {", f"    int allowed[{len(domain)}];", C.statements(domain)]
+            checks += [
+                f'    if (!{name}) return "{text}";' for name, text in zip(domain, recording.domain, strict=True)
+            ]
+            checks.append("    }")
         sentences = {state: state.sentence for state in ContactState}
         sentences[ContactState.THROUGH_WALL] = BEYOND[self.beyond]
         return fill_template(
             "element.c",
             name=self.name,
             NAME=self.name.upper(),
-            along=_read_template("curve.c"),
+            along=_read_template("curve.c") if recording.curves else "",
             curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
-            defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
-            checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
-            first_touch=c_number(first_touch),
+            defaults=", ".join(c_number(parameter.value(self.element)) for parameter in self.tunables),
+            checks="\n".join(checks),
+            unloaded=C.statements({"unloaded": unloaded}),
+            valid=C.statements(recording.validity),
             load=C.statements({**recording.status, **recording.load}),
             pressed=C.statements({**recording.status, **recording.contact_size}),
             tangent=C.statements({**recording.status, **recording.tangent}),
@@ -331,6 +432,16 @@ class CElement:
         description = f"{joint}; {joint.source}" if joint.source else str(joint)
         comment = re.sub(r"\*/|/\*|--|\\", "?", ascii_text(description))
         return {"version": __version__, "model": self.element.model.name, "joint": comment}
+
+
+def _stress_ratio_curve(joint: Joint) -> OctaveCurve:
+    """Fit a curve to the ratio of the largest von Mises stress to the largest pressure, over the half angle in rad."""
+    return fit_octave_curve(
+        lambda angles: von_mises_ratio(angles, joint.liner.poisson, joint.thickness_ratio)[None], _SMALL_ANGLE, LIMIT
+    )
+
+
+_SMALL_ANGLE = 0.01  # half angle in rad at which the curve of the stresses begins
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

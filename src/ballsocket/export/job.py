@@ -12,7 +12,6 @@ from .c_element import BEYOND, CElement, fill_template
 from .compiler import LIBRARY_ENDING
 from .law_fit import ExpressionFit, PowerFit, expression_fit, power_fit
 from .time_steps import TimeStepAdvice, time_step_advice
-from .tunable import TUNABLES
 
 NOT_CENTRAL = (
     "the force of a preloaded joint depends on the direction, which this target cannot represent: "
@@ -84,9 +83,9 @@ class ExportJob:
             "Name": self.name.capitalize(),
             "library": f"_{self.name}{LIBRARY_ENDING}",
             "plugin": f"_{self.name}_plugin{LIBRARY_ENDING}",
-            "parameters": str(len(TUNABLES)),
-            "units": ", ".join(repr(parameter.si) for parameter in TUNABLES),
-            "tunables": ", ".join(parameter.name for parameter in TUNABLES),
+            "parameters": str(len(self.c_program.tunables)),
+            "units": ", ".join(repr(parameter.si) for parameter in self.c_program.tunables),
+            "tunables": ", ".join(parameter.name for parameter in self.c_program.tunables),
             "through_wall": f"{ContactState.THROUGH_WALL.value}: {BEYOND[self.beyond]}",
             "failed": str(self.c_program.first_failure.value),
         }

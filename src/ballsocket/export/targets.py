@@ -14,7 +14,6 @@ from .c_element import fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .job import NOT_CENTRAL, ExportJob, Texts
 from .law_tables import pivot_texts, table_texts, two_axes_note
-from .tunable import TUNABLES
 from .warp import warp_texts
 
 
@@ -166,18 +165,17 @@ def _exudyn_texts(job: ExportJob) -> Texts:
 
 def _modelica_texts(job: ExportJob) -> Texts:
     """Return the texts of the Modelica package and its C program, by file name."""
-    constants = job.element.constants
+    tunables, context = job.c_program.tunables, job.template_context
     declarations = "\n".join(
-        f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {start * number.si!r} "{number.meaning}";'
-        for number in TUNABLES
-        for start in (getattr(constants, number.constant),)
+        f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {number.value(job.element) * number.si!r} '
+        f'"{number.meaning}";'
+        for number in tunables
     )
-    copies = "\n".join(f"    p.{parameter.name} = own[{index}];" for index, parameter in enumerate(TUNABLES))
-    names = ", ".join(parameter.name for parameter in TUNABLES)
-    include, context = f"{job.name}/Resources/Include", job.template_context
+    copies = "\n".join(f"    p.{parameter.name} = own[{index}];" for index, parameter in enumerate(tunables))
+    include = f"{job.name}/Resources/Include"
     return {
         f"{job.name}/package.mo": fill_template(
-            "modelica.mo", declared=declarations, names=names, **job.template_context
+            "modelica.mo", declared=declarations, names=context["tunables"], **context
         ),
         f"{include}/{job.name}_modelica.c": fill_template("modelica.c", copied=copies, **context),
         **{f"{include}/{name}": text for name, text in job.program_texts().items()},

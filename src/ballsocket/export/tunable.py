@@ -1,8 +1,17 @@
-"""Parameters of damping and friction that stay adjustable in exported elements."""
+"""Parameters of losses and joint that stay adjustable in exported elements."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from operator import attrgetter
+from typing import cast
+
+from ..dynamics import ForceElement, PreloadedElement
+from ..dynamics.potential import FormulaPotential, SpringPotential
+from ..models.closed_form import ClosedForm, ClosedFormSolution
+from ..problem import Joint
+from .recorder import Tape
 
 
 @dataclass(frozen=True)
@@ -10,7 +19,7 @@ class Tunable:
     """Adjustable parameter of an exported element."""
 
     name: str
-    constant: str  # field of the `Constants` of a `ForceElement`
+    path: str  # attribute of a force element that has the value
     # unit in this package and in the International System
     unit: str
     si_unit: str
@@ -18,16 +27,32 @@ class Tunable:
     meaning: str
     above: bool = False  # True for a parameter above 0; false for 0 or more
 
+    @property
+    def constant(self) -> str:
+        """Field of the `Constants` of a force element, or number of a joint."""
+        return self.path.rpartition(".")[2]
 
-# name, constant, unit here, unit and factor in the International System, meaning
+    def value(self, element: ForceElement | PreloadedElement) -> float:
+        """Return the value of the parameter in an element."""
+        return float(attrgetter(self.path)(element))
+
+
+# name, attribute of the element, unit here, unit and factor in the International System, meaning
 TUNABLES = (
-    Tunable("hysteresis", "hysteresis", "s/mm", "s/m", 1e3, "damping force per contact force and speed"),
-    Tunable("retardation_time", "time", "s", "s", 1.0, "retardation time of the liner"),
-    Tunable("friction_coefficient", "sliding", "1", "1", 1.0, "coefficient of sliding friction"),
-    Tunable("static_coefficient", "static", "1", "1", 1.0, "static coefficient of friction, at least that of sliding"),
+    Tunable("hysteresis", "constants.hysteresis", "s/mm", "s/m", 1e3, "damping force per contact force and speed"),
+    Tunable("retardation_time", "constants.time", "s", "s", 1.0, "retardation time of the liner"),
+    Tunable("friction_coefficient", "constants.sliding", "1", "1", 1.0, "coefficient of sliding friction"),
+    Tunable(
+        "static_coefficient",
+        "constants.static",
+        "1",
+        "1",
+        1.0,
+        "static coefficient of friction, at least that of sliding",
+    ),
     Tunable(
         "transition_speed",
-        "transition_speed",
+        "constants.transition_speed",
         "mm/s",
         "m/s",
         1e-3,
@@ -36,13 +61,58 @@ TUNABLES = (
     ),
     Tunable(
         "stribeck_speed",
-        "stribeck_speed",
+        "constants.stribeck_speed",
         "mm/s",
         "m/s",
         1e-3,
         "slip speed of the transition from static to sliding friction",
         above=True,
     ),
-    Tunable("viscous_friction", "viscous", "s/mm", "s/m", 1e3, "viscous friction per contact force and speed"),
+    Tunable(
+        "viscous_friction", "constants.viscous", "s/mm", "s/m", 1e3, "viscous friction per contact force and speed"
+    ),
 )
 """Adjustable parameters of every exported element, in the order of the C structure."""
+
+JOINT_TUNABLES = (
+    Tunable("ball_radius", "joint.ball_radius", "mm", "m", 1e-3, "radius of the ball", above=True),
+    Tunable("clearance", "joint.clearance", "mm", "m", 1e-3, "radial clearance"),
+    Tunable("liner_thickness", "joint.liner_thickness", "mm", "m", 1e-3, "thickness of the liner", above=True),
+    Tunable("liner_modulus", "joint.liner.young", "MPa", "Pa", 1e6, "Young's modulus of the liner", above=True),
+)
+"""Further parameters of elements whose law is a formula: the first numbers of a joint, in its order."""
+
+
+def joint_tunables(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
+    """List the numbers of the joint that are finite: only a massive socket has an infinite liner."""
+    return tuple(number for number in JOINT_TUNABLES if math.isfinite(number.value(element)))
+
+
+def joint_of_inputs(element: ForceElement, tape: Tape) -> Joint:
+    """Return the joint of an element with its tunable numbers as inputs of a tape."""
+    joint, tunables = element.joint.with_floats(), joint_tunables(element)
+    numbers = list(joint.numbers())
+    for index, number in enumerate(JOINT_TUNABLES):
+        if number in tunables:
+            numbers[index] = tape.input(f"p->{number.name}")
+    return joint.with_numbers(numbers)
+
+
+def reason_of_fixed_joint(element: ForceElement | PreloadedElement) -> str:
+    """Say why the numbers of the joint cannot be tuned in the exported element; empty if they can."""
+    if not isinstance(element, ForceElement) or not isinstance(element.potential, FormulaPotential | SpringPotential):
+        return f"the law of {element.model.name} is tabulated for this joint"
+    if element.constants.film_damping > 0.0:
+        return "the film of the lubricant is computed for this joint"
+    tape, model = Tape(), cast(ClosedForm, element.model)
+    law = ClosedFormSolution(model=model, joint=joint_of_inputs(element, tape), indentation=tape.input("depth"))
+    try:
+        law.energy, law.stiffness, law.half_angle, law.max_pressure  # noqa: B018 - records them
+    except (TypeError, AttributeError, ValueError):
+        return f"the formulas of {element.model.name} have branches or iterations, evaluated for this joint"
+    return ""
+
+
+def tunables_of(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
+    """List the adjustable parameters of an exported element, in the order of the C structure."""
+    return TUNABLES if reason_of_fixed_joint(element) else (*TUNABLES, *joint_tunables(element))

@@ -39,6 +39,8 @@ WARP = Language(
 class WarpRecording(Recording):
     """Recorded formulas of a force element with fixed parameters, whose energy is a fitted curve."""
 
+    joint = None
+
     @cached_property
     def constants(self) -> Constants:
         """Constants of the force element."""

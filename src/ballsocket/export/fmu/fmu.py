@@ -22,7 +22,6 @@ from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library, cross_compilers
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
-from ..tunable import TUNABLES
 from .variables import STEP, STOP, UNITS, Variable, start_inputs, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
@@ -98,7 +97,7 @@ def terminals_description(fmu: Fmu) -> bytes:
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     terminal = SubElement(SubElement(root, "Terminals"), "Terminal", name="ball", matchingRule="bus")
     for variable in fmu.variables:
-        if variable.causality != "parameter":
+        if variable.causality in ("input", "output"):
             name = {"variableName": variable.name, "memberName": variable.name}
             SubElement(terminal, "TerminalMemberVariable", {**name, "variableKind": "signal"})
     return _xml_bytes(root)
@@ -138,15 +137,18 @@ def _add_units_and_logs(root: Element) -> Element:
 
 
 def _variable_attributes(variable: Variable) -> dict[str, str]:
-    parameter = variable.causality == "parameter"
     attributes = {
         "name": variable.name,
         "valueReference": str(variable.reference),
         "description": variable.description,
         "causality": variable.causality,
-        "variability": "tunable" if parameter else "continuous",
+        "variability": _VARIABILITIES.get(variable.causality, "continuous"),
     }
-    return attributes | ({"initial": "exact"} if parameter else {})
+    return attributes | ({"initial": "exact"} if variable.causality in _VARIABILITIES else {})
+
+
+_VARIABILITIES = {"parameter": "tunable", "local": "constant"}
+"""Variability of variables by their causality; "continuous" of the others."""
 
 
 def _unit_and_start_attributes(variable: Variable) -> dict[str, str]:
@@ -220,7 +222,8 @@ class Fmu:
     """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
-    has no states. Damping and friction are tunable parameters. The start position of a preloaded ball is that at rest.
+    has no states. Damping and friction are tunable parameters, and the joint if its law is a formula. The start
+    position of a preloaded ball is that at rest.
 
     Parameters
     ----------
@@ -293,10 +296,10 @@ class Fmu:
         return {
             "inputs": ", ".join(map(c_number, start_inputs(element))),
             "starts": ", ".join(
-                c_number(getattr(element.constants, number.constant) * number.si) for number in TUNABLES
+                c_number(variable.start or 0.0) for variable in self.variables if variable.causality in _VARIABILITIES
             ),
-            "valid": c_number(element.joint.with_floats().clearance + depth),
-            "beyond": f"{element.model.name} is not valid beyond an indentation of {depth:.4g} mm",
+            "fixed": str(sum(variable.causality == "local" for variable in self.variables)),
+            "beyond": f"{element.model.name} is not valid beyond {depth:.4g} mm in the exported joint",
         }
 
     @property

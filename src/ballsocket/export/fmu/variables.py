@@ -11,7 +11,7 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.storage.atomic_files import write_text
 from ...dynamics import ContactState, ForceElement, PreloadedElement
-from ..tunable import TUNABLES
+from ..tunable import Tunable, joint_tunables, reason_of_fixed_joint, tunables_of
 
 UNITS: Mapping[str, Mapping[str, int]] = {
     "m": {"m": 1},
@@ -33,7 +33,7 @@ STOP, STEP = 0.1, 1e-3  # suggested end and step of a simulation in s
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
-    """Input, output or parameter of the FMU.
+    """Input, output, parameter or constant of the FMU.
 
     `reference` is its number in the standard, and `needs` are the inputs that it depends on.
     """
@@ -92,10 +92,18 @@ def _properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
             yield {**described, "causality": "output", "needs": _STATE}
     for name, (unit, meaning) in _SCALARS.items():
         yield {"name": name, "causality": "output", "unit": unit, "description": meaning, "needs": _POSITION}
-    for parameter in TUNABLES:
-        start = getattr(element.constants, parameter.constant) * parameter.si
-        properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
-        yield {"name": parameter.name, "causality": "parameter", **properties}
+    for parameter in tunables_of(element):
+        yield {**_parameter_properties(parameter, element), "causality": "parameter"}
+    if reason := reason_of_fixed_joint(element):
+        for parameter in joint_tunables(element):
+            described = _parameter_properties(parameter, element)
+            yield {**described, "causality": "local", "description": f"{described['description']}; fixed: {reason}"}
+
+
+def _parameter_properties(parameter: Tunable, element: ForceElement | PreloadedElement) -> dict:
+    """Return name, unit, meaning and start value of a parameter in SI units."""
+    start = parameter.value(element) * parameter.si
+    return {"name": parameter.name, "unit": parameter.si_unit, "description": parameter.meaning, "start": start}
 
 
 _MM, _MPA = 1e-3, 1e6

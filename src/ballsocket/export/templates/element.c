@@ -39,10 +39,13 @@ static int fill(double *numbers, int count, double value, int status)
 }
 
 /* Return 1 if there is no contact, else 0; the formulas cover the centre. */
-static int apart(const double position[3])
+static int apart(const ${name}_parameters *p, const double position[3])
 {
     const double x = position[0], y = position[1], z = position[2], square = x * x + y * y + z * z;
-    return square > 0.0 && square <= $first_touch;
+    double unloaded;
+    (void)p;
+$unloaded
+    return square > 0.0 && unloaded > 0.0 && square <= unloaded * unloaded;
 }
 
 int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3],
@@ -54,7 +57,7 @@ int ${name}_load(const ${name}_parameters *p, const double position[3], const do
         fill(moment, 3, NAN, 0);
         return fill(energy, 1, NAN, ${NAME}_NO_NUMBER);
     }
-    if (apart(position)) {
+    if (apart(p, position)) {
         fill(force, 3, 0.0, 0);
         fill(moment, 3, 0.0, 0);
         return fill(energy, 1, 0.0, ${NAME}_FREE);
@@ -63,9 +66,10 @@ $load
     return status;
 }
 
-int ${name}_contact(const double position[3], double *half_angle, double *max_pressure)
+int ${name}_contact(const ${name}_parameters *p, const double position[3], double *half_angle, double *max_pressure)
 {
     int status;
+    (void)p;
     if (!is_finite(position)) {
         fill(half_angle, 1, NAN, 0);
         return fill(max_pressure, 1, NAN, ${NAME}_NO_NUMBER);
@@ -74,12 +78,23 @@ $pressed
     return status;
 }
 
-int ${name}_tangent(const double position[3], double tangent[9])
+int ${name}_valid(const ${name}_parameters *p, const double position[3])
+{
+    int valid;
+    (void)p;
+    if (!is_finite(position))
+        return 0;
+$valid
+    return valid;
+}
+
+int ${name}_tangent(const ${name}_parameters *p, const double position[3], double tangent[9])
 {
     int status;
+    (void)p;
     if (!is_finite(position))
         return fill(tangent, 9, NAN, ${NAME}_NO_NUMBER);
-    if (apart(position))
+    if (apart(p, position))
         return fill(tangent, 9, 0.0, ${NAME}_FREE);
 $tangent
     return status;
@@ -92,7 +107,7 @@ int ${name}_slope(const ${name}_parameters *p, const double position[3], const d
     if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)
         || !is_finite(way) || !is_finite(way + 3) || !is_finite(way + 6))
         return fill(slope, 9, NAN, ${NAME}_NO_NUMBER);
-    if (apart(position))
+    if (apart(p, position))
         return fill(slope, 9, 0.0, ${NAME}_FREE);
 $slope
     return status;

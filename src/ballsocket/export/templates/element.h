@@ -43,10 +43,13 @@ int ${name}_load(const ${name}_parameters *p, const double position[3], const do
                  double force[3], double moment[3], double *energy);
 
 /* Half angle of the contact in rad, its largest pressure in MPa. */
-int ${name}_contact(const double position[3], double *half_angle, double *max_pressure);
+int ${name}_contact(const ${name}_parameters *p, const double position[3], double *half_angle, double *max_pressure);
+
+/* 1 where the model is valid at the indentation, else 0. */
+int ${name}_valid(const ${name}_parameters *p, const double position[3]);
 
 /* Second derivatives of the energy in N/mm, row by row: minus the derivative of the elastic force. */
-int ${name}_tangent(const double position[3], double tangent[9]);
+int ${name}_tangent(const ${name}_parameters *p, const double position[3], double tangent[9]);
 
 /* Derivatives of force (3), moment (3), energy, half angle and largest pressure along a direction of position, velocity
    and spin. */

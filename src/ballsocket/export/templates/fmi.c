@@ -1,6 +1,6 @@
 /* The joint as an FMU of version $standard, for model exchange and co-simulation. Written by ballsocket $version.
    All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, 10..19 force, moment,
-   energy, half angle, largest pressure and status, 20..26 parameters. The unit has no continuous states. */
+   energy, half angle, largest pressure and status, from 20 on parameters, then constants. The unit has no continuous states. */
 #define FMI $fmi
 
 #include <math.h>
@@ -74,13 +74,14 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 #define UNIT fmi${fmi}$handle c
 #define REFERENCES const fmi${fmi}ValueReference vr[], size_t n
 
-enum { INPUTS = 9, OUTPUTS = 10, PARAMETERS = $parameters, VARIABLES = 1 + INPUTS + OUTPUTS + PARAMETERS };
+enum { INPUTS = 9, OUTPUTS = 10, PARAMETERS = $parameters, FIXED = $fixed };
+enum { CONSTANTS = 1 + INPUTS + OUTPUTS + PARAMETERS, VARIABLES = CONSTANTS + FIXED };
 typedef fmi${fmi}Status result;
 enum { OK = fmi${fmi}OK, WARNING = fmi${fmi}Warning, DISCARD = fmi${fmi}Discard, ERROR = fmi${fmi}Error };
 
 /* Numbers that a host can save and restore. */
 typedef struct {
-    double time, input[INPUTS], parameter[PARAMETERS];
+    double time, input[INPUTS], parameter[PARAMETERS + FIXED];
 } memory;
 
 typedef struct {
@@ -119,7 +120,7 @@ static result report(instance *i, int level, const char *message)
 
 static void set_defaults(instance *i)
 {
-    const double defaults[PARAMETERS] = {$starts};
+    const double defaults[PARAMETERS + FIXED] = {$starts};
     const double at_rest[INPUTS] = {$inputs};
     memset(&i->now, 0, sizeof i->now);
     memcpy(i->now.input, at_rest, sizeof at_rest);
@@ -149,14 +150,16 @@ static void convert_units(const instance *i, double state[INPUTS], ${name}_param
     memcpy(p, tuned, sizeof *p);
 }
 
-static result report_status(instance *i, int status, const double r[3])
+static result report_status(instance *i, const ${name}_parameters *p, int status, const double r[3])
 {
     char text[300];
     if (status < ${NAME}_FAILED) {
         if (status == ${NAME}_THROUGH_WALL)
             report(i, WARNING, ${name}_sentence(status));
-        else if (sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) > $valid)
-            report(i, WARNING, "$beyond");
+        else if (!${name}_valid(p, r)) {
+            snprintf(text, sizeof text, "$beyond; position (%g, %g, %g) mm", r[0], r[1], r[2]);
+            report(i, WARNING, text);
+        }
         return (result)OK;
     }
     snprintf(text, sizeof text, "%s; position (%g, %g, %g) mm, time %g s", ${name}_sentence(status), r[0], r[1], r[2],
@@ -176,11 +179,11 @@ static result evaluate(instance *i)
     convert_units(i, state, &p);
     complaint = ${name}_complaint(&p);
     status = ${name}_load(&p, state, state + 3, state + 6, y, y + 3, y + 6);
-    ${name}_contact(state, y + 7, y + 8);
+    ${name}_contact(&p, state, y + 7, y + 8);
     y[9] = status;
     for (k = 0; k < OUTPUTS; k++)
         y[k] = complaint ? NAN : y[k] * output_unit[k];
-    i->status = complaint ? report(i, ERROR, complaint) : report_status(i, status, state);
+    i->status = complaint ? report(i, ERROR, complaint) : report_status(i, &p, status, state);
     return (result)i->status;
 }
 
@@ -221,7 +224,7 @@ static result set_numbers(UNIT, REFERENCES, const double *values)
     size_t k;
     for (k = 0; k < n; k++) {
         const unsigned number = vr[k];
-        if (number == 0 || is_output(number) || number >= VARIABLES)
+        if (number == 0 || is_output(number) || number >= CONSTANTS)
             return unknown_reference(c);
         if (is_input(number))
             i->now.input[number - 1] = values[k];
@@ -253,7 +256,7 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
             return unknown_reference(c);
         sensitivity[k] = slope[unknowns[k] - 1 - INPUTS] * output_unit[unknowns[k] - 1 - INPUTS];
     }
-    return report_status(i, status, state);
+    return report_status(i, &p, status, state);
 }
 
 /* Functions of both versions. A name that differs in its letters stands in the template as a placeholder. */

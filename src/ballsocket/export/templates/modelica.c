@@ -16,7 +16,7 @@ void ${name}_modelica(const double *position, const double *velocity, const doub
         own[k] = tuned[k] / units[k];
 $copied
     ${name}_load(&p, r, v, spin, load, load + 3, load + 6);
-    load[9] = ${name}_contact(r, load + 7, load + 8);
+    load[9] = ${name}_contact(&p, r, load + 7, load + 8);
     for (k = 3; k < 7; k++)
         load[k] *= 1e-3;
     load[8] *= 1e6;
