@@ -170,6 +170,20 @@ def test_a_worker_that_waits_takes_the_next_run_and_one_that_has_ended_takes_non
     assert not waiting.is_alive()
 
 
+def test_the_process_of_a_finished_run_waits_for_the_next_unless_it_has_grown_large(monkeypatch):
+    run = Run(callable)
+    run.news()
+    process = run._process
+    assert isinstance(until_the_end(run)[-1], RunFinished)
+    ready, pipe = running.WORKERS.take()
+    assert ready is process
+    pipe.send(callable)
+    assert isinstance(pipe.recv(), RunFinished)
+    monkeypatch.setattr(running, "MAX_KEPT_MEMORY", 1_000_000)
+    running.WORKERS.give_back(process, pipe)
+    assert not process.is_alive()
+
+
 def test_processor_time_includes_that_of_children():
     before = running.processor_seconds(os.getpid()) - time.process_time()
     with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:

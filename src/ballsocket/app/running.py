@@ -18,6 +18,7 @@ from ..core.validity import OutsideDomainError
 MAX_SECONDS = 60.0  # processor time of a run in s
 MAX_WAITING_SECONDS = 600.0  # longer than its processor time that a run may take: on a busy machine it waits
 MAX_MEMORY = 4_000_000_000  # bytes that its process may ask for
+MAX_KEPT_MEMORY = 1_000_000_000  # bytes of a process that waits for the next run
 Report = Callable[[Any], None]  # callback for intermediate results, as plain values
 Work = Callable[[Report], Any]  # function that a process runs; it, its result and its reports must be picklable
 
@@ -49,7 +50,7 @@ class RunFinished:
 
 
 class Workers:
-    """Processes for one run each, of which one is started before it is needed."""
+    """Processes for one run at a time, of which one waits for the next run: a new one takes seconds for its imports."""
 
     def __init__(self) -> None:
         self._ready: tuple[Any, Connection] | None = None
@@ -63,13 +64,17 @@ class Workers:
         ready, self._ready = self._ready, None
         return ready if ready is not None and ready[0].is_alive() else self._started()
 
+    def give_back(self, process: Any, pipe: Connection) -> None:
+        """Let a process that has finished its run wait for the next, unless one waits already or it has grown large."""
+        if self._ready is None and resident_memory(process.pid) < MAX_KEPT_MEMORY:
+            self._ready = process, pipe
+        else:
+            end(process, pipe)
+
     def close(self) -> None:
         """End the process that waits."""
         if self._ready is not None:
-            process, pipe = self._ready
-            process.kill()
-            process.join()
-            pipe.close()
+            end(*self._ready)
             self._ready = None
 
     def _started(self) -> tuple[Any, Connection]:
@@ -83,6 +88,12 @@ class Workers:
 
 
 WORKERS = Workers()  # of all pages
+
+
+def end(process: Any, pipe: Connection) -> None:
+    process.kill()
+    process.join()
+    pipe.close()
 
 
 @dataclass(eq=False)
@@ -117,6 +128,9 @@ class Run:
                 message = self._pipe.recv()
             except (EOFError, ConnectionError):
                 message = RunRefused(why="the process ended unexpectedly, perhaps for lack of memory")
+            if isinstance(message, RunFinished):
+                WORKERS.give_back(self._process, self._pipe)
+                self._process = self._pipe = None
             if isinstance(message, RunFinished | RunRefused):
                 self.stop()
             return message
@@ -133,11 +147,8 @@ class Run:
         """End the run, and free its place for the next."""
         if self in QUEUE:
             QUEUE.remove(self)
-        if self._process is not None:
-            self._process.kill()
-            self._process.join()
-        if self._pipe is not None:
-            self._pipe.close()
+        if self._process is not None and self._pipe is not None:
+            end(self._process, self._pipe)
 
 
 PREPARE_AFTER = 2.0  # s after the opening of a page, or after a run
@@ -157,25 +168,35 @@ def processor_seconds(pid: int) -> float:
     return total
 
 
+def resident_memory(pid: int) -> int:
+    """Memory in bytes that a process holds; 0 for a process that has ended."""
+    import psutil
+
+    with suppress(psutil.Error):
+        return psutil.Process(pid).memory_info().rss
+    return 0
+
+
 def _run(pipe: Connection) -> None:
     exit_with_parent()
     limit_memory()
     for module in _IMPORTED:
         if not pipe.poll():
             import_module(module, __package__)
-    try:
-        work: Work = pipe.recv()
-    except EOFError:  # nothing was to be done
-        return
-    try:
-        pipe.send(RunFinished(work(pipe.send)))
-    except (ValueError, OutsideDomainError, ImportError) as error:
-        pipe.send(RunRefused(why=str(error)))
-    except MemoryError:
-        pipe.send(RunRefused(why=f"this needs more than {MAX_MEMORY / 1e9:g} GB, the memory limit of a run"))
-    except Exception as error:
-        pipe.send(RunRefused(why=f"this run failed: {type(error).__name__}: {error}"))
-        raise
+    while True:
+        try:
+            work: Work = pipe.recv()
+        except EOFError:  # nothing more is to be done
+            return
+        try:
+            pipe.send(RunFinished(work(pipe.send)))
+        except (ValueError, OutsideDomainError, ImportError) as error:
+            pipe.send(RunRefused(why=str(error)))
+        except MemoryError:
+            pipe.send(RunRefused(why=f"this needs more than {MAX_MEMORY / 1e9:g} GB, the memory limit of a run"))
+        except Exception as error:
+            pipe.send(RunRefused(why=f"this run failed: {type(error).__name__}: {error}"))
+            raise
 
 
 def limit_memory() -> None:
