@@ -14,10 +14,28 @@ def opened(link):
     return page
 
 
+def changed(value, changes):
+    """Return a value of a page after the changes of a message, as a browser does."""
+    if isinstance(changes, list):
+        return changes[0]
+    inside = {key: changed(value[key if isinstance(value, dict) else int(key)], part) for key, part in changes.items()}
+    if isinstance(value, dict):
+        return {**value, **inside}
+    return [inside.get(str(index), part) for index, part in enumerate(value)]
+
+
+def read_message(text, shown):
+    """Read a message of the server, with the values after its changes of those that the page has `shown`."""
+    message = json.loads(text)
+    message |= {name: changed(shown[name], part) for name, part in message.pop("changes", {}).items()}
+    shown.update(message)
+    return message
+
+
 def does(page, what, **words):
     """Send one request to a page; return its messages as one."""
-    number, answer = page.channel.number + 1, {}
-    page.channel.write = lambda text: answer.update(json.loads(text))
+    number, answer, shown = page.channel.number + 1, {}, dict(page.channel._sent)
+    page.channel.write = lambda text: answer.update(read_message(text, shown))
     page.channel.receive({"n": number, "do": what, **words})
     assert answer["n"] == number
     return answer

@@ -22,6 +22,7 @@ from ballsocket.app.server import HostNames
 from ballsocket.app.state.screen import VIEWS
 
 from ..processes import PATIENCE
+from .asking import read_message
 from .browser import explorer_process
 
 LINES = []
@@ -46,7 +47,7 @@ class Someone:
     """One user of a server, as the script of the page would be."""
 
     def __init__(self, served):
-        self.address, self.number = f"127.0.0.1:{served.port}", 0
+        self.address, self.number, self.shown = f"127.0.0.1:{served.port}", 0, {}
 
     async def connect(self):
         headers = {"Origin": f"http://{self.address}"}
@@ -69,7 +70,7 @@ class Someone:
     async def hears(self):
         text = await asyncio.wait_for(self.line.read_message(), PATIENCE)
         assert text is not None, "the server closed the connection"
-        return json.loads(text)
+        return read_message(text, self.shown)
 
     async def asks(self, what, **words):
         """Send a request, and return all that the server says until its answer, as one."""

@@ -1,6 +1,5 @@
 """Answers that take long: processes that wait their turn and can be ended, and the views that show their results."""
 
-import json
 import operator
 import os
 import subprocess
@@ -37,7 +36,7 @@ from ballsocket.problem.cup import Cup
 
 from ..extent import some
 from ..processes import PATIENCE, wait_until
-from .asking import does, edits, saved
+from .asking import does, edits, read_message, saved
 
 HIP = bs.joints["hip-28"]
 
@@ -353,8 +352,8 @@ def test_a_click_runs_once_for_all_pages_and_a_change_of_inputs_keeps_the_result
     with pytest.raises(ValueError, match="press 'Square the force' first"):
         page.view.result(page.screen)
     assert edits(page, "press.run", True)["=press.run"]["share"] == 0.0
-    messages = []
-    page.channel.write = lambda text: messages.append(json.loads(text))
+    messages, seen = [], dict(page.channel._sent)
+    page.channel.write = lambda text: messages.append(read_message(text, seen))
     finish(*jobs[-1])
     assert "squaring" in messages[0]["=press.run"]["words"]
     assert shown(page, "numbers") == "9e+06"

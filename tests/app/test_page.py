@@ -127,6 +127,7 @@ def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
 def test_only_what_has_changed_is_shown_and_sent(monkeypatch):
     page, shown = Page(""), []
     answer = edits(page, "load", 2900)
+    assert answer["=load"] == page.channel.shown_value("=load")
     assert answer["=load"]["value"] == 2900
     assert "data-value='2900.0'" in answer["#press-numbers"]
     assert not {"=clearance", "order", "view", "#trouble"} & set(answer)

@@ -25,8 +25,26 @@ def read_request(text: str | bytes) -> dict[str, Any] | None:
     return dict(json.loads(json.dumps(words, ensure_ascii=False).encode(errors="replace")))
 
 
+def difference(old: Any, new: Any) -> Any:
+    """Return the changes from one plain value to another: `[new]`, or changes by key or index where both have the same.
+
+    Examples
+    --------
+    >>> difference({"unit": "N", "ends": [0, 1]}, {"unit": "N", "ends": [0, 2]})
+    {'ends': {1: [2]}}
+    """
+    if isinstance(old, dict) and isinstance(new, dict) and old.keys() == new.keys():
+        keys: Iterable[Any] = new
+    elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        keys = range(len(new))
+    else:
+        return [new]
+    inside = {key: difference(old[key], new[key]) for key in keys if old[key] != new[key]}
+    return min([new], inside, key=lambda change: len(json.dumps(change)))
+
+
 class Channel:
-    """Connection to one browser that sends only changed values.
+    """Connection to one browser that sends only what has changed since the last message.
 
     `question` numbers the screens: each message carries the number of the screen that its values belong to. `number` is
     that of the last request.
@@ -36,6 +54,7 @@ class Channel:
         self._handle_request, self.write = handle_request, write
         self._current: dict[str, Any] = {}
         self._pending: dict[str, Any] = {}
+        self._sent: dict[str, Any] = {}
         self._expected: set[str] = set()
         self._refused: dict[str, tuple[Any, Field]] = {}
         self.number = self._answered = self.question = 0
@@ -93,13 +112,19 @@ class Channel:
         return self._current.get(name)
 
     def send(self) -> None:
-        """Send all changed values in one message, with the number of the last request; nothing if it has no news."""
+        """Send all changed values in one message, with the number of the last request; nothing if it has no news.
+
+        Those that were sent before are in `changes`, as their differences.
+        """
         self.put("expected", sorted(self._expected) or None)
         if not self._pending and self._answered == self.number:
             return
-        values, self._pending = self._pending, {}
+        news, self._pending = self._pending, {}
         self._answered = self.number
-        self.write(json.dumps({"n": self.number, "question": self.question, **values}, ensure_ascii=False))
+        changes = {name: difference(self._sent[name], news.pop(name)) for name in [*news] if name in self._sent}
+        self._sent |= {name: value for name, value in self._current.items() if name in news or name in changes}
+        message = {"n": self.number, "question": self.question, **news, **({"changes": changes} if changes else {})}
+        self.write(json.dumps(message, ensure_ascii=False, separators=(",", ":")))
 
     def receive(self, request: Mapping[str, Any]) -> None:
         """Handle one request of the browser, and answer it."""

@@ -9,8 +9,9 @@ import socket
 import sys
 import time
 import webbrowser
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from graphlib import TopologicalSorter
 from html import escape
 from importlib.resources import files
 from ipaddress import ip_address
@@ -124,10 +125,9 @@ def page_files() -> dict[str, tuple[str, str]]:
     contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
     contents["style.css"] = "".join(contents.pop(f"{name}.css") for name in ("drawing", "parts", "page", "views"))
     kinds = {name: view_class(name) for name in VIEW_CLASSES}
-    modules = sorted(name for name in contents if name.endswith(".js"))
+    modules = {name: contents.pop(name) for name in sorted(contents) if name.endswith(".js")}
+    contents["page.js"] = _script(modules)
     parts = {
-        "<!--modules-->": "".join(f'<link rel="modulepreload" href="assets/{name}">\n' for name in modules),
-        "<!--scripts-->": "".join(f'<script type="module" src="assets/{name}"></script>\n' for name in modules),
         "<!--views-->": _buttons("view", {name: kind.title for name, kind in kinds.items()}),
         "<!--files-->": _buttons("file", {kind: kind for kind in FILE_KINDS}),
         "<!--sections-->": "".join(
@@ -139,6 +139,21 @@ def page_files() -> dict[str, tuple[str, str]]:
     for mark, html in parts.items():
         contents["page.html"] = contents["page.html"].replace(mark, html)
     return {name: (_KINDS[name[name.rindex(".") :]], content) for name, content in contents.items()}
+
+
+_IMPORT = re.compile(r'^import (\{.*\}) from "\./(\w+)\.js";$', re.MULTILINE)
+_EXPORT = re.compile(r"^export (function|const) (\w+)", re.MULTILINE)
+
+
+def _script(modules: Mapping[str, str]) -> str:
+    """Join modules to one script: each is a function that returns its exports, after those that it imports."""
+    imports = {name: [f"{other}.js" for _, other in _IMPORT.findall(text)] for name, text in modules.items()}
+    parts = []
+    for name in TopologicalSorter(imports).static_order():
+        text = _EXPORT.sub(r"\1 \2", _IMPORT.sub(r"const \1 = module_\2;", modules[name]))
+        exports = ", ".join(name for _, name in _EXPORT.findall(modules[name]))
+        parts.append(f"const module_{name.removesuffix('.js')} = (() => {{\n{text}return {{ {exports} }};\n}})();\n")
+    return "".join(parts)
 
 
 def _buttons(kind: str, words: dict[str, str]) -> str:

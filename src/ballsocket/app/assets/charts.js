@@ -1,6 +1,6 @@
 // @ts-check
 // Charts, drawn from their numbers, and the point of a curve under the pointer.
-import { digits, lines, part, pointIn } from "./svg.js";
+import { digits, lines, part, pointIn } from "./elements.js";
 
 const LEFT = 58, RIGHT = 12, TOP = 10, FOOT = 44, THICK = 2, THIN = 1, NEAR = 18;
 /**

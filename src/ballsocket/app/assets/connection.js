@@ -11,6 +11,8 @@ const page = document.body;
 const handlers = new Set();
 /** @type {Map<string, Request>} */
 const pending = new Map(); // by action and name: the latest request that has not been sent
+/** @type {Message} */
+const latest = {}; // values by name, to which the server sends changes
 /** @type {WebSocket | null} */
 let socket = null;
 /** @type {Request | null} */
@@ -59,6 +61,13 @@ function mark() {
   else page.dataset.updating = "yes";
   if (left > 0 && left <= SLOW) slow = setTimeout(mark, left);
 }
+/** Return a value after its changes: another one as a list, or changes by key or index. @returns {any} */
+function changed(value, changes) {
+  if (Array.isArray(changes)) return changes[0];
+  const next = Array.isArray(value) ? [...value] : { ...value };
+  for (const [key, inside] of Object.entries(changes)) next[key] = changed(next[key], inside);
+  return next;
+}
 function receive(text) {
   const message = JSON.parse(text);
   pinged = 0;
@@ -66,6 +75,8 @@ function receive(text) {
   if (open) delete page.dataset.lost;
   if (message.pong) return;
   if (message.fresh) question = -1;
+  for (const [name, changes] of Object.entries(message.changes ?? {})) message[name] = changed(latest[name], changes);
+  Object.assign(latest, message);
   if (message.question < question) return;
   question = message.question;
   const answered = current && message.n === current.n ? current : null;

@@ -1,8 +1,8 @@
 // @ts-check
 // Handles of the drawing: what is dragged, or moved by the arrow keys, is the number of an input.
 import { pendingValue } from "./connection.js";
+import { STEPS, hit, pointIn } from "./elements.js";
 import { known, move } from "./fields.js";
-import { STEPS, hit, pointIn } from "./svg.js";
 
 let held = null, latest = null;
 /** @returns {any} */

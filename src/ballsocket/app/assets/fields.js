@@ -1,6 +1,7 @@
 // @ts-check
 // Inputs made of plain data: each asks for its change, and shows what the server says of it.
 import { ask, listen, pendingValue } from "./connection.js";
+import { confirmTyped, element } from "./elements.js";
 import { limits } from "./limits.js";
 
 /**
@@ -12,13 +13,6 @@ const inputs = new Map(); // by name: the element, what the server said last, an
 const stale = new Set(); // inputs that show an edit, until the server has answered it
 const UNITS = ["units", "size", "angle"]; // choices that change what a number means
 
-/** @param {string} tag  @param {Record<string, any>} attributes  @param {(string | Node)[]} content  @returns {any} */
-export function element(tag, attributes = {}, ...content) {
-  const node = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-  node.append(...content);
-  return node;
-}
 function edit(name, value) {
   stale.add(name);
   ask("edit", name, value, { units: inputs.get(name).units }); // another choice of units may be on its way
@@ -39,18 +33,6 @@ function errorBelow(node, box, name) {
     else box.removeAttribute("aria-describedby");
     box.setAttribute("aria-invalid", Boolean(sentence));
   };
-}
-
-/** Mark a box with text that nobody has confirmed; confirm it once, also if it is the text before the typing. */
-export function confirmTyped(box, confirm) {
-  const once = () => {
-    if (!box.dataset.typing) return;
-    delete box.dataset.typing;
-    confirm();
-  };
-  box.addEventListener("input", () => { box.dataset.typing = "yes"; });
-  for (const event of ["change", "blur"]) box.addEventListener(event, once);
-  box.addEventListener("keydown", (event) => { if (event.key === "Enter" && box.matches("input")) once(); });
 }
 
 function number(name) {

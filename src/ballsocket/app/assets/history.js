@@ -1,7 +1,7 @@
 // @ts-check
 // Undo and redo: each settled change of the screen is one entry of the browser's history.
 import { ask, isPending, listen, withdraw } from "./connection.js";
-import { hit } from "./svg.js";
+import { hit } from "./elements.js";
 
 const SETTLED = 600; // ms after the last change by the same input
 let last = { gesture: null, time: 0 };

@@ -1,6 +1,6 @@
 // @ts-check
 // Limits as rows: a quantity, at most or at least, a value with its unit, and a button that removes the row.
-import { confirmTyped, element } from "./fields.js";
+import { confirmTyped, element } from "./elements.js";
 
 /** @param {string} name  @param {(name: string, rows: string[][]) => void} edit */
 export function limits(name, edit) {

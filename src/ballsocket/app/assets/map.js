@@ -1,8 +1,8 @@
 // @ts-check
 // Contour maps: the number under the pointer, a point picked by click or keyboard, and limits dragged by their squares.
 import { ask, pendingValue } from "./connection.js";
+import { STEPS, digits, hit, lines, pointIn } from "./elements.js";
 import { known } from "./fields.js";
-import { STEPS, digits, hit, lines, pointIn } from "./svg.js";
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 /** @type {Map<string, number[]>} */

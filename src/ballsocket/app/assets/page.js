@@ -2,9 +2,9 @@
 // The page: what the server answers is shown, and what a server cannot do: clipboard, files, the theme, news.
 import { drawCharts } from "./charts.js";
 import { ask, listen } from "./connection.js";
+import { hit } from "./elements.js";
 import { arrange, showField } from "./fields.js";
 import { isVisit, record, redo, theme, undo } from "./history.js";
-import { hit } from "./svg.js";
 
 const LARGEST = 100000; // bytes of a joint file or a table; the server has the same limit
 const NEWS = 6000; // ms for which a sentence is shown

@@ -1,7 +1,7 @@
 // @ts-check
 // A cycle that is played: one instant of it in all charts, in the numbers and on the bore.
 import { ask } from "./connection.js";
-import { digits, part } from "./svg.js";
+import { digits, part } from "./elements.js";
 import { showFrame } from "./viewer.js";
 
 const DURATION = 5000; // ms that a cycle takes here

@@ -1,7 +1,7 @@
 // @ts-check
 // Numbers under a load that is moved, from the curve of the present joint, until the server confirms them.
 import { listen, pendingValue } from "./connection.js";
-import { digits } from "./svg.js";
+import { digits } from "./elements.js";
 
 /** @type {{load: number[], values: Record<string, (number | null)[]>} | null} */
 let curve = null;

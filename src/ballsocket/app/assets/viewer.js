@@ -1,6 +1,6 @@
 // @ts-check
 // Cup, ball and load in three dimensions by WebGL: geometry is built once, and drawn only when something changes.
-import { hit } from "./svg.js";
+import { hit } from "./elements.js";
 
 const KINDS = [0, 1, 2, 3, 4, 5], [PLAIN, BORE, SECTION, BALL, LINE, ARROW] = KINDS; // of parts, as in the shader
 const FLOATS = 8; // of a vertex: position, normal, place on the bore's field

@@ -1,8 +1,15 @@
 // @ts-check
-// Parts of SVG pictures, and the pointer in their coordinates.
+// Elements of the page and parts of SVG pictures, text that is typed, and the pointer in coordinates of a picture.
 const SVG = "http://www.w3.org/2000/svg";
 /** Steps of a handle by the key that moves it. */
 export const STEPS = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
+/** @param {string} tag  @param {Record<string, any>} attributes  @param {(string | Node)[]} content  @returns {any} */
+export function element(tag, attributes = {}, ...content) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...content);
+  return node;
+}
 /** @param {string} tag  @param {Record<string, any>} attributes */
 export function part(tag, attributes = {}, words = "") {
   const node = document.createElementNS(SVG, tag);
@@ -19,3 +26,14 @@ export const pointIn = (picture, event) =>
 /** Return the nearest element at an event or around it that fits a selector. @returns {any} */
 export const hit = (event, selector) => /** @type {Element} */ (event.target).closest?.(selector);
 export const digits = (value, count = 4) => String(Number(value.toPrecision(count)));
+/** Mark a box with text that nobody has confirmed; confirm it once, also if it is the text before the typing. */
+export function confirmTyped(box, confirm) {
+  const once = () => {
+    if (!box.dataset.typing) return;
+    delete box.dataset.typing;
+    confirm();
+  };
+  box.addEventListener("input", () => { box.dataset.typing = "yes"; });
+  for (const event of ["change", "blur"]) box.addEventListener(event, once);
+  box.addEventListener("keydown", (event) => { if (event.key === "Enter" && box.matches("input")) once(); });
+}
