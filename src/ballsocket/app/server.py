@@ -141,7 +141,7 @@ def page_files() -> dict[str, tuple[str, str]]:
     return {name: (_KINDS[name[name.rindex(".") :]], content) for name, content in contents.items()}
 
 
-_IMPORT = re.compile(r'^import (\{.*\}) from "\./(\w+)\.js";$', re.MULTILINE)
+_IMPORT = re.compile(r'^import (?:(\{.*\}) from )?"\./(\w+)\.js";', re.MULTILINE)
 _EXPORT = re.compile(r"^export (function|const) (\w+)", re.MULTILINE)
 
 
@@ -150,7 +150,8 @@ def _script(modules: Mapping[str, str]) -> str:
     imports = {name: [f"{other}.js" for _, other in _IMPORT.findall(text)] for name, text in modules.items()}
     parts = []
     for name in TopologicalSorter(imports).static_order():
-        text = _EXPORT.sub(r"\1 \2", _IMPORT.sub(r"const \1 = module_\2;", modules[name]))
+        text = _IMPORT.sub(lambda found: f"const {found[1] or '{}'} = module_{found[2]};", modules[name])
+        text = _EXPORT.sub(r"\1 \2", text)
         exports = ", ".join(name for _, name in _EXPORT.findall(modules[name]))
         parts.append(f"const module_{name.removesuffix('.js')} = (() => {{\n{text}return {{ {exports} }};\n}})();\n")
     return "".join(parts)
