@@ -111,7 +111,7 @@ def _law_control(key: str, part: LawField, value: float, title: str, change: Cal
 
 
 class Wear(LongView):
-    """View of wear that runs on request and shows stored results at once."""
+    """View of wear over millions of cycles, which shows stored results at once."""
 
     title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
     body = long_body(
@@ -174,8 +174,8 @@ class Wear(LongView):
 
 
 _NOTHING = (
-    "<p class='quiet'>The chart will show how deep the head moves into the liner. A run of springs takes some seconds, "
-    "of a real cup a minute. Patients with a new hip walk one to two million cycles a year.</p>"
+    "<p class='quiet'>A run of springs takes some seconds, of a real cup a minute. Patients with a new hip walk one to "
+    "two million cycles a year.</p>"
 )
 
 
