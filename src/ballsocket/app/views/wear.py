@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -37,7 +36,6 @@ from ..widgets.controls import (
     choice,
     chosen,
     cycle_controls,
-    named,
     number,
     segments,
 )
@@ -51,10 +49,7 @@ _FIELDS = (
     *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
     *(*CREEP_INPUTS, "beside"),
 )
-_WORD = re.compile("[A-Z][a-z]+")
-_LAW_LABELS = [
-    (name, named(name, " ".join(_WORD.findall(law.__name__)).capitalize())) for name, law in WEAR_LAWS.items()
-]
+_LAWS = [(name, capital(law.title)) for name, law in WEAR_LAWS.items()]
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
@@ -123,7 +118,7 @@ class Wear(LongView):
     def controls(self, screen: Screen) -> list[Control]:
         return [
             *cycle_controls(screen),
-            chosen(screen, "use.law", "Wear law", _LAW_LABELS),
+            chosen(screen, "use.law", "Wear law", _LAWS),
             _coefficient(screen),
             *(_law_number(screen, key) for key in LAW_INPUTS),
             amount(screen, "use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
