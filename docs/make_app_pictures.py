@@ -14,7 +14,7 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from tests.app.browser import opened_browser, served_explorer  # noqa: E402
+from tests.app.browser import explorer_process, opened_browser  # noqa: E402
 
 from ballsocket.app.views.registry import VIEW_CLASSES  # noqa: E402
 
@@ -80,7 +80,7 @@ def make_all(address: str, browser: Any, folder: Path, views: Sequence[str]) -> 
 
 
 def main(words: Sequence[str]) -> None:
-    with served_explorer() as address, opened_browser() as browser:
+    with explorer_process() as (address, _), opened_browser() as browser:
         if words:
             make_all(address, browser, Path(words[0]), words[1:] or list(VIEW_CLASSES))
         else:

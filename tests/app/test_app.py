@@ -84,6 +84,24 @@ def test_changes_are_undone_and_done_again(user):
     assert shows("hip-36", 2800.0, clearance=0.105)
 
 
+def test_the_history_says_what_each_step_changed_and_did_and_leads_back(user):
+    page = user.open("?preset=hip-28&load.force=3000").page
+    page.get_by_text("History", exact=True).click()
+    user.enters("load", "9000")
+    assert user.shows("max_pressure", pressure(force=9000.0))
+    user.enters("ball_radius", "36")
+    steps = page.locator("#step-list button")
+    expect(steps).to_have_count(3)
+    first, last = (f"{pressure(force=force):.4g} MPa" for force in (3000.0, 9000.0))
+    expect(steps.nth(1)).to_contain_text("Normal force 3000 N → 9000 N")
+    expect(steps.nth(1)).to_contain_text(f"{first} ✓ → {last} ✗")
+    expect(steps.first).to_contain_text("Head diameter 28 mm → 36 mm")
+    steps.last.click()
+    assert user.answered().shows("max_pressure", pressure())
+    expect(steps).to_have_count(3)
+    expect(steps.last).to_have_attribute("aria-current", "true")
+
+
 def test_a_typed_number_is_marked_counts_as_it_stands_and_is_undone_from_its_box(user):
     box = user.open("?preset=hip-28&load.force=2222&units=imperial").page.locator("[data-name=load] input[type=text]")
     shown = box.input_value()  # 2222 N, rounded

@@ -186,7 +186,7 @@ def test_a_backing_is_built_from_bone_to_shell_of_at_most_twenty_layers():
     assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
     assert "behind.0" not in page.channel.shown_value("order")
     layers = "".join(f"&backing.{place}.material=titanium&backing.{place}.thickness=3" for place in range(19))
-    page = Page(f"view=judge&{OWN}{layers}")  # where nothing is pressed before a click
+    page = Page(f"view=judge&{OWN}{layers}")  # where nothing is pressed
     edits(page, "behind.add", "titanium")
     assert len(page.screen.file.joint.backing) == 20
     edits(page, "behind.add", "titanium")

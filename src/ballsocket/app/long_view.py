@@ -41,7 +41,7 @@ class LongWork:
     question_of: Callable[[Screen], Hashable]  # equal keys of one `kind` have one result on all pages
     work: Callable[[Screen], Work]  # raises ValueError if the inputs of a screen allow none
     show_result: Callable[[Screen, Any], None]  # shows the result for a screen; None clears it
-    automatic: bool = False  # starts without a click
+    automatic: bool = False  # starts without a click after each change, not only for the first result
     longest: float = MAX_SECONDS  # s
     kind: str = ""  # of the result, by default the name
     _shown: Any = field(default=None, init=False)
@@ -68,10 +68,10 @@ class LongWork:
         self.show_result(screen, self._shown)
         if self.automatic and result is not None:
             self._job.stop()
-        elif self.automatic and question != self._cancelled:
+        elif (self.automatic or self._shown is None) and question != self._cancelled:
             self.run()
         if not self._job.works:
-            self.put_button(hidden=self.automatic and result is not None)
+            self.put_button(hidden=result is not None)
 
     def result(self, screen: Screen) -> Any:
         """Return the result for a screen; None without one."""
@@ -137,7 +137,7 @@ class LongWork:
 
 
 class LongView(View):
-    """View whose result takes long; it runs on a click, or by itself if it is `automatic`.
+    """View whose result takes long; the first comes by itself, later ones on a click unless it is `automatic`.
 
     A subclass has the words of its button `run_label`, and a `body` of `long_body`.
     """

@@ -151,6 +151,26 @@ _MATERIALS: dict[str, Material] = {
     "cancellous-bone": CANCELLOUS_BONE,
 }
 
+_LABELS = {
+    UHMWPE.name: "UHMWPE, conventional",
+    CROSSLINKED_PE.name: "UHMWPE, cross-linked",
+    POM.name: "POM, acetal copolymer",
+    PEEK.name: "PEEK, unfilled",
+    STRUCTURAL_STEEL.name: "structural steel, S235",
+    COCR.name: "CoCrMo",
+    ALUMINA.name: "alumina ceramic",
+    ALUMINA_COMPOSITE.name: "alumina, zirconia-toughened",
+    TITANIUM.name: "titanium alloy, Ti-6Al-4V",
+    BONE_CEMENT.name: "bone cement, PMMA",
+}
+"""Names on pages for readers, by the short name."""
+
+
+def material_label(material: Material | None, unnamed: str) -> str:
+    """Return the plain name of a material for pages: "rigid" for None, and a word for one without a name."""
+    return "rigid" if material is None else _LABELS.get(material.name, material.name) or unnamed
+
+
 _ALIASES = {
     "uhmwpe": ("pe-uhmw", "conventional-pe", "conventional-uhmwpe", "conventional-polyethylene"),
     "crosslinked-pe": (

@@ -25,6 +25,7 @@ from ..files.schema import Text
 from ..press_answer import describe_press
 from ..problem import Material
 from ..problem.cup import Cup
+from ..problem.presets import material_label
 from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.sensitivity_answer import uncertainty_tables
@@ -227,7 +228,7 @@ def _material(material: Material, units: Units) -> str:
     values = {MATERIAL[name]: getattr(material, name) for name in ("young", "poisson")}
     values |= {STRESS_LIMITS[name]: limit for name, limit in material.stress_limits.items()}
     numbers = (f"{quantity.title} {units.text_of(quantity, float(number))}" for quantity, number in values.items())
-    return f"{material.name or 'a material'}: {', '.join(numbers)}"
+    return f"{material_label(material, 'a material')}: {', '.join(numbers)}"
 
 
 _ORIENTATION = ("inclination", "anteversion")  # angles of a cup in the body
@@ -329,9 +330,9 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     yield "head diameter", units.length(2 * float(joint.ball_radius))
     yield "diametral fit", f"{fit} {units.length(2 * float(radial_fit))}"
     layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
-    parts = (f"{units.length(float(thickness))} {material.name or 'liner'}" for thickness, material in layers)
+    parts = (f"{units.length(float(thickness))} {material_label(material, 'liner')}" for thickness, material in layers)
     yield "liner and backing", " on ".join(parts)
-    yield "ball", "rigid" if joint.ball is None else joint.ball.name or "elastic"
+    yield "ball", material_label(joint.ball, "elastic")
     angles = [f"{degrees(float(getattr(file.cup, name))):.3g}° {name}" for name in _ORIENTATION if file.cup.oriented]
     angles += [f"load {degrees(file.aim['tilt']):.3g}° from its axis"] if "tilt" in file.aim else []
     yield "cup", ", ".join(angles) or "load along its axis"

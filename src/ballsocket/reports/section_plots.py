@@ -12,6 +12,7 @@ from ..core.quantities import FIELD
 from ..core.unit_systems import Amount, Sentence, Units
 from ..elasticity.finite_elements.model import MeshedContact
 from ..model_catalogue import JUDGE, reference
+from ..problem.presets import material_label
 from . import svg
 from .style import BLUE, INK, LEGEND, bytes_by_units, finish, in_matplotlib, line_of, new_figure
 
@@ -135,7 +136,8 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
         )
         nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
         material = materials[part.name]
-        text = f"{part.name}: {material.name}" if material is not None and material.name else part.name
+        label = "" if material is None else material_label(material, "")
+        text = f"{part.name}: {label}" if label else part.name
         x, y = part.position[:, nearest]
         arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
         where = (0.02, 0.98 - 0.07 * number)

@@ -399,7 +399,8 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     joint = bs.joints["hip-28"].replace(backing=(TITANIUM,))
     figure = section_figure(replace(ONE_MESH, spacing=bs.Adapted(elements=24)).press(joint, force=3000.0))
     section, _, *bars = figure.axes
-    assert {text.get_text() for text in section.texts} == {"liner: UHMWPE", "backing 1: titanium", "ball: CoCr"}
+    names = {"liner: UHMWPE, conventional", "backing 1: titanium alloy, Ti-6Al-4V", "ball: CoCrMo"}
+    assert {text.get_text() for text in section.texts} == names
     for bar, kind in zip(bars, ("backing", "liner", "ball"), strict=True):
         assert kind in bar.get_ylabel()
     assert len({bar.get_ylim()[1] for bar in bars}) == 3

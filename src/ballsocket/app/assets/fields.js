@@ -108,7 +108,7 @@ function choice(name) {
       list.dataset.options = JSON.stringify(field.options);
       list.replaceChildren(...field.options.map(([value, words]) => element("option", { value }, words)));
     }
-    list.value = field.value;
+    list.value = list.title = field.value; // the short name, as files and links have it
   }
   return { node: element("div", { class: "field choice" }, label, list), show };
 }

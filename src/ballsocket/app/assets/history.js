@@ -7,12 +7,13 @@ const SETTLED = 600; // ms after the last change by the same input
 let last = { gesture: null, time: 0 };
 
 export const theme = () => (document.body.classList.contains("dark") ? "dark" : "light");
-const step = () => (history.state && history.state.step) || 0;
+export const step = () => (history.state && history.state.step) || 0;
 const TOP = "ballsocket.steps"; // key of the number of the latest entry in the storage of this window
+export const latest = () => Number(sessionStorage.getItem(TOP));
 /** Let the buttons show if there is something to undo or redo. */
 function showSteps() {
   document.getElementById("undo").toggleAttribute("disabled", !step());
-  document.getElementById("redo").toggleAttribute("disabled", step() >= Number(sessionStorage.getItem(TOP)));
+  document.getElementById("redo").toggleAttribute("disabled", step() >= latest());
 }
 function markLatest() {
   sessionStorage.setItem(TOP, String(step()));

@@ -64,7 +64,7 @@ class EvidenceQuestion:
     influence: str = "medium"
     consequence: str = "medium"
     accuracy: str = "10 %"
-    limits: str = ""  # phrases separated by ;, also in matrix and tolerances
+    limits: str = "utilisation <= 1"  # phrases separated by ;, also in matrix and tolerances
     matrix: str = "force = 2, 3 kN"
     tolerances: str = ""
     friction: str = ""

@@ -44,7 +44,7 @@ from ..state.use import Use
 from ..view import Document, field_places
 from ..widgets.controls import Changes, Control, changed, chosen, segments, text
 from ..widgets.limit_rows import limits_control, present_value
-from ..widgets.words import VERDICT_KINDS, alert
+from ..widgets.words import VERDICT_KINDS
 
 _NO_YES = ("no", "yes")
 _INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
@@ -140,11 +140,11 @@ def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
 
 
 def _case_table(screen: Screen) -> str:
-    """List the cases of the question, or the error in it, before there is a result."""
+    """List the cases of the question before there is a result; empty for an invalid question."""
     try:
         axes = axes_of(screen.asked, screen.file, screen.use)
-    except ValueError as error:
-        return alert(str(error).removeprefix("question.toml: "))
+    except ValueError:  # the refusal of the work states it
+        return ""
     number = prod(map(len, axes.values()))
     rows = [
         [PARAMETERS[name].title, ", ".join(screen.reading.with_unit(PARAMETERS[name], value) for value in values)]
@@ -156,8 +156,7 @@ def _case_table(screen: Screen) -> str:
 
 
 _OFFER = (
-    "<p class='trust no'>✗ No limit is stated. "
-    "<button type='button' class='plain' data-tell='evidence.allowable'>Use the liner's allowable pressure</button>"
+    "<p><button type='button' class='plain' data-tell='evidence.allowable'>Use the liner's allowable pressure</button>"
     "</p>"
 )
 _CONTENTS = (
@@ -265,7 +264,10 @@ class EvidencePack:
 def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tuple[float, ...]]:
     """Return the values of each axis of a question's matrix; raise ValueError if the question is invalid."""
     with tempfile.TemporaryDirectory() as folder:
-        return dict(write_question(inputs, file, use, Path(folder)).axes)
+        try:
+            return dict(write_question(inputs, file, use, Path(folder)).axes)
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix(f"{_QUESTION}: ")) from error
 
 
 def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str, report: Report) -> EvidencePack:

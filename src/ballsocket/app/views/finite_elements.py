@@ -41,16 +41,11 @@ from ..widgets.words import checked, distinct_quantities, notes_list, percent
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
-_TO_COME = (
-    "A run meshes this section with its rim, chamfer and backing, presses the ball in four load steps and shows the "
-    "von Mises stress, the pressure beside the exact one of a complete shell, and the error of the mesh. It takes some "
-    "seconds."
-)
 _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
 
 class ElementCheck(LongView):
-    """View that runs finite elements on request."""
+    """View that presses the joint by finite elements."""
 
     name, title, run_label = _NAME, "Check by finite elements", "Run finite elements"
     body = long_body(
@@ -71,8 +66,7 @@ class ElementCheck(LongView):
     def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:
             drawing = section(screen.file, None, extent_of(screen.file), 1.0)
-            preview = f"<div class='beside'><figure>{drawing}</figure><p class='quiet'>{_TO_COME}</p></div>"
-            self.put(numbers="", picture=preview)
+            self.put(numbers="", picture=f"<div class='beside elements'><figure>{drawing}</figure></div>")
         else:
             self.put(numbers=_numbers(result, screen), picture=_pictures(result, screen))
 

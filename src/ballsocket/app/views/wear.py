@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -37,7 +36,6 @@ from ..widgets.controls import (
     choice,
     chosen,
     cycle_controls,
-    named,
     number,
     segments,
 )
@@ -51,10 +49,7 @@ _FIELDS = (
     *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
     *(*CREEP_INPUTS, "beside"),
 )
-_WORD = re.compile("[A-Z][a-z]+")
-_LAW_LABELS = [
-    (name, named(name, " ".join(_WORD.findall(law.__name__)).capitalize())) for name, law in WEAR_LAWS.items()
-]
+_LAWS = [(name, capital(law.title)) for name, law in WEAR_LAWS.items()]
 _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 
@@ -111,7 +106,7 @@ def _law_control(key: str, part: LawField, value: float, title: str, change: Cal
 
 
 class Wear(LongView):
-    """View of wear that runs on request and shows stored results at once."""
+    """View of wear over millions of cycles, which shows stored results at once."""
 
     title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
     body = long_body(
@@ -123,7 +118,7 @@ class Wear(LongView):
     def controls(self, screen: Screen) -> list[Control]:
         return [
             *cycle_controls(screen),
-            chosen(screen, "use.law", "Wear law", _LAW_LABELS),
+            chosen(screen, "use.law", "Wear law", _LAWS),
             _coefficient(screen),
             *(_law_number(screen, key) for key in LAW_INPUTS),
             amount(screen, "use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
@@ -174,8 +169,8 @@ class Wear(LongView):
 
 
 _NOTHING = (
-    "<p class='quiet'>The chart will show how deep the head moves into the liner. A run of springs takes some seconds, "
-    "of a real cup a minute. Patients with a new hip walk one to two million cycles a year.</p>"
+    "<p class='quiet'>A run of springs takes some seconds, of a real cup a minute. Patients with a new hip walk one to "
+    "two million cycles a year.</p>"
 )
 
 

@@ -44,11 +44,6 @@ def capital(title: str) -> str:
     return f"{title[:1].upper()}{title[1:]}"
 
 
-def named(name: str, plain: str) -> str:
-    """Return a plain name, with the word for it in files and links behind."""
-    return plain if plain.casefold().replace(" ", "-") == name else f"{plain} ({name})"
-
-
 def choice(name: str, label: str, options: Options, value: str) -> Field:
     """Return a list for one choice."""
     pairs = [[option, option] if isinstance(option, str) else list(option) for option in options]

@@ -14,6 +14,7 @@ from ...core.answers import Check
 from ...core.quantities import CONTACT, JOINT
 from ...design_checks import checks_of, verdict_of
 from ...files.joint_file import JointFile
+from ...problem.presets import material_label
 from ...question import real_cup_reason
 from ...reports.joint_drawing import largest_drawn
 from ..pictures.section import extent_of, section
@@ -141,9 +142,9 @@ def design_rows(
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
         rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
-    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
-    balls = [design.file.joint.ball for design in listed]
-    rows.append(("ball", [Cell(text="rigid" if ball is None else ball.name or "custom numbers") for ball in balls]))
+    for part in ("liner", "ball"):
+        materials = [getattr(design.file.joint, part) for design in listed]
+        rows.append((part, [Cell(text=material_label(material, "custom numbers")) for material in materials]))
     for quantity in (CONTACT[name] for name in CONTACT if name in names):
         unit = reading.unit(quantity)
         values = [float(getattr(design.contact, quantity.name, nan)) * unit.factor for design in listed]

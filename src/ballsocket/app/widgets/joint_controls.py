@@ -16,15 +16,15 @@ from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Material, Support
 from ...problem.cup import UP, Side
 from ...problem.dimensions import DIAMETERS, LENGTHS, give
-from ...problem.presets import joints, materials
+from ...problem.presets import joints, material_label, materials
 from ...question import complete
 from ..pressing import same_load
 from ..state.screen import Screen
-from .controls import Control, Number, choice, file_choice, named, number_of, segments, tick, words
+from .controls import Control, Number, choice, file_choice, number_of, segments, tick, words
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _CUSTOM_NUMBERS = "– custom numbers –"
-_NAMED = [(name, named(name, material.name)) for name, material in materials.items()]
+_NAMED = [(name, material_label(material, name)) for name, material in materials.items()]
 _MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *_NAMED)
 _CHANGED = " (changed)"
 _DIAMETERS = {single: double for double, single in DIAMETERS.items()}
@@ -110,7 +110,7 @@ def _moduli(screen: Screen, part: str) -> Iterator[Control]:
 def _thicknesses(screen: Screen) -> Iterator[Control]:
     for index, layer in enumerate(screen.file.joint.backing):
         if not isinf(float(layer.thickness)):
-            spec = number_of("backing.thickness", label=f"{layer.material.name or 'Layer'} thickness")
+            spec = number_of("backing.thickness", label=f"{material_label(layer.material, 'Layer')} thickness")
             edit = partial(_with_thickness, screen.file, index)
             yield _number(screen, f"layer{index}", spec, float(layer.thickness), edit)
 
@@ -190,7 +190,7 @@ def layer_controls(screen: Screen) -> list[Control]:
     file, listed = screen.file, []
     for index, layer in enumerate(file.joint.backing):
         known = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
-        custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if known == _CUSTOM else []
+        custom = [(_CUSTOM, material_label(layer.material, _CUSTOM_NUMBERS))] if known == _CUSTOM else []
         options = [*custom, *_NAMED, (_REMOVE, "– remove –")]
         field = choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, known)
         listed.append(_control(field, partial(_with_layer, file, index)))
