@@ -91,6 +91,7 @@ WORKERS = Workers()  # of all pages
 
 
 def end(process: Any, pipe: Connection) -> None:
+    """Kill the process of a run and close the connection to it."""
     process.kill()
     process.join()
     pipe.close()
