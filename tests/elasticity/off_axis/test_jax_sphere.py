@@ -67,10 +67,10 @@ def double_precision():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("tilt", [0.72, 1.1], ids=["near the rim", "cut off by the rim"])
-def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(tilt, double_precision):
-    """Slopes are central differences over 1e-5, in which an edge hardly ever passes a cell, within 1e-3 of the largest.
+def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(double_precision):
+    """Near the rim, and cut off by it.
 
+    Slopes are central differences over 1e-5, in which an edge hardly ever passes a cell, within 1e-3 of the largest.
     Edges, which few secants find, and sums over the cells that they pass are known to 1e-2.
     """
     cup = JaxSphere(model=RIM, joint=HIP, tolerance=1e-9, dtype="float64")
@@ -85,24 +85,25 @@ def test_a_real_cup_has_the_contact_of_numpy_and_its_slopes(tilt, double_precisi
         outputs = {name: getattr(c, name)[0] for name in OUTPUTS}
         return outputs | {"pressure": (c.pressure[0] * weights).sum()}
 
-    values = jax.tree.map(jax.numpy.asarray, NUMBERS | {"x": np.sin(tilt), "z": np.cos(tilt)})
+    slopes_of = jax.jit(jax.jacrev(press))
     cup_of_values = replace(RIM.cup, **{name: NUMBERS[name] for name in ("inclination", "anteversion")})
-    known = replace(RIM, cup=cup_of_values).press(HIP, force=3000.0, direction=[float(values[name]) for name in "xyz"])
-    pressed, slopes = press(values), jax.jacrev(press)(values)
-    for output in ("displacement", "force_vector", "max_pressure", "half_angle"):
-        expected = getattr(known, output)
-        assert np.asarray(pressed[output]) == pytest.approx(expected, abs=1e-3 * np.max(abs(expected))), output
-    assert float(pressed["edge_margin"]) == pytest.approx(max(float(known.edge_margin), 0.0), abs=1e-3)
-    for name, value in values.items():
-        step = 1e-5 * max(abs(float(value)), 0.1)
-        low, high = (press(values | {name: value + change}) for change in (-step, step))
-        for output in OUTPUTS:
-            difference = np.asarray(high[output] - low[output]) / (2 * step)
-            error = np.max(abs(slopes[output][name] - difference)) / slope_scale(output, name, difference)
-            assert error < (1e-3 if output in ("displacement", "force_vector", "max_pressure") else 1e-2), (
-                name,
-                output,
-            )
+    for tilt in (0.72, 1.1):
+        values = jax.tree.map(jax.numpy.asarray, NUMBERS | {"x": np.sin(tilt), "z": np.cos(tilt)})
+        direction = [float(values[name]) for name in "xyz"]
+        known = replace(RIM, cup=cup_of_values).press(HIP, force=3000.0, direction=direction)
+        pressed, slopes = press(values), slopes_of(values)
+        for output in ("displacement", "force_vector", "max_pressure", "half_angle"):
+            expected = getattr(known, output)
+            assert np.asarray(pressed[output]) == pytest.approx(expected, abs=1e-3 * np.max(abs(expected))), output
+        assert float(pressed["edge_margin"]) == pytest.approx(max(float(known.edge_margin), 0.0), abs=1e-3)
+        for name, value in values.items():
+            step = 1e-5 * max(abs(float(value)), 0.1)
+            low, high = (press(values | {name: value + change}) for change in (-step, step))
+            for output in OUTPUTS:
+                difference = np.asarray(high[output] - low[output]) / (2 * step)
+                error = np.max(abs(slopes[output][name] - difference)) / slope_scale(output, name, difference)
+                limit = 1e-3 if output in ("displacement", "force_vector", "max_pressure") else 1e-2
+                assert error < limit, (tilt, name, output)
 
 
 def test_first_press_may_be_traced():
