@@ -184,13 +184,13 @@ class User:
 AT_REST = """async () => {
   const frame = () => new Promise(requestAnimationFrame);
   const place = document.documentElement;
-  const size = () => `${place.scrollWidth} ${place.scrollHeight} ${document.body.dataset.idle}`;
+  const size = () => `${place.scrollWidth} ${place.scrollHeight}`;
   for (let same = 0, last = ""; same < 20; await frame()) {
-    [same, last] = size() === last ? [same + 1, last] : [0, size()];
+    [same, last] = size() === last && document.body.dataset.idle === "yes" ? [same + 1, last] : [0, size()];
   }
   return place.scrollWidth;
 }"""
-"""The width of what is on the page, once twenty frames have changed nothing."""
+"""The width of what is on the page, once nothing was asked or changed for twenty frames."""
 
 
 class Proxy:
