@@ -25,6 +25,7 @@ PICTURES = os.environ.get("BALLSOCKET_SCREENSHOTS")
 WIDE, NARROW = 1280, 390
 WAIT = 1000 * PATIENCE
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
+BROWSERS = ("chromium-headless-shell", "chromium", "google-chrome")  # the first takes a fifth less processor time
 NEEDED = os.environ.get("BALLSOCKET_BROWSER") == "needed"
 """Set where a browser must be there: then nothing is skipped."""
 
@@ -40,7 +41,7 @@ def opened_browser():
         from playwright.sync_api import expect, sync_playwright
     except ImportError:
         skip_or_fail("playwright is not installed: pip install '.[browser]'")
-    path = os.environ.get("BALLSOCKET_CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
+    path = os.environ.get("BALLSOCKET_CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
         skip_or_fail("no chromium")
     expect.set_options(timeout=WAIT)
