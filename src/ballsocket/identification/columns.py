@@ -14,8 +14,8 @@ from ..core.arrays import Numbers
 from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
+from ..files.cells import UNCERTAINTY
 from ..files.columns import ALL_COLUMNS, HeadChoice, NumberTable, read_columns
-from ..files.head_names import UNCERTAINTY
 from ..files.units import parse
 from .machine import IDEAL_MACHINE, Machine
 from .measured import MEASURED, Measured
