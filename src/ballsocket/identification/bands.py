@@ -1,4 +1,4 @@
-"""Bands of 95 %: uncertainties widened by the scatter, profile likelihood intervals, and their coverage of known truths."""
+"""Bands of 95 %: uncertainties widened by the scatter, profile likelihood intervals, and their coverage of a truth."""
 
 from __future__ import annotations
 
