@@ -6,9 +6,9 @@ from ..studies.calibration import calibrate as calibrate
 from .information import Estimate as Estimate
 from .information import Information as Information
 from .information import Product as Product
-from .machine import Machine as Machine
 from .maximum_likelihood import identify as identify
 from .measured import MEASURED as MEASURED
+from .measured import Machine as Machine
 from .measured import Measured as Measured
 from .observables import CustomObservable as CustomObservable
 from .observables import oscillation as oscillation

@@ -17,8 +17,7 @@ from ..core.quantities import FIELD, LOADS, Quantity
 from ..files.cells import UNCERTAINTY
 from ..files.columns import ALL_COLUMNS, HeadChoice, NumberTable, read_columns
 from ..files.units import parse
-from .machine import IDEAL_MACHINE, Machine
-from .measured import MEASURED, Measured
+from .measured import IDEAL_MACHINE, MEASURED, Machine, Measured
 
 _QUANTITIES = {**MEASURED, "angle": FIELD["angle"]}
 _KINDS = {name + end: quantity.kind for name, quantity in _QUANTITIES.items() for end in ("", UNCERTAINTY)}
