@@ -11,7 +11,7 @@ from . import report
 from .timing import MissingError
 
 BENCHMARKS = {
-    "start": "time until the first answer, in a fresh process",
+    "start": "whole processes: the first answer, and the whole paper",
     "question": "one press or one force at a time",
     "curve": "one joint, a million loads",
     "joints": "a joint of its own for each load",
@@ -28,7 +28,6 @@ BENCHMARKS = {
     "identify": "clearance and modulus from 20 points",
     "gpu": "on a GPU, through JAX",
     "explorer": "the explorer in a browser",
-    "reproduce": "the whole paper by one command",
     "scaling": "cost against size; draws docs/scaling.png",
 }
 """Title by name; the module has the same name."""

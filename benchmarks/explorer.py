@@ -1,38 +1,35 @@
-"""The explorer in headless Chromium: first load and slider moves; beside an empty page of each installed library.
+"""The explorer in headless Chromium: first load and slider moves.
 
-An empty page has one slider and one number. Times are taken inside the page, from the key that moves a slider to the
-frame in which the new text stands: median, and 95th percentile in brackets. Servers, browser and this program share
-the machine.
+Times are taken inside the page, from the key that moves a slider to the frame in which the new text stands: median, and
+95th percentile in brackets. Server, browser and this program share the machine.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.util import find_spec
+from pathlib import Path
 from statistics import median, quantiles
 from typing import Any
 
-from .explorer_pages import LIBRARIES, Server, served_explorer, served_library
 from .report import Row, digits
+from .start import checkout_environment
 from .timing import MissingError
 
 VISITS, MOVES, PATIENCE = 3, 50, 120.0
 SLOW_LINE = {"offline": False, "latency": 150, "downloadThroughput": 50_000, "uploadThroughput": 50_000}
 READY = "fieldset#inputs:not([disabled]) [data-name=load] input[type=range]"
 SLIDER, NUMBER, TABLE = "[data-name=load] input[type=range]", "dd[data-name=max_pressure]", ".models"
-EMPTY_SLIDER = "[role=slider][tabindex], [role=slider] [tabindex], input[type=range]"
 
 WATCH = """
-window.inside = (root, selector) => root.querySelector(selector) ??
-  [...root.querySelectorAll("*")].filter((node) => node.shadowRoot)
-    .map((node) => window.inside(node.shadowRoot, selector)).find(Boolean) ?? null;
 window.textOf = (selector) => {
-  const element = window.inside(document, selector);
+  const element = document.querySelector(selector);
   return element && (element.dataset.value || element.textContent);
 };
 window.watch = (selector) => {
@@ -59,39 +56,54 @@ window.watch = (selector) => {
 
 @dataclass
 class Load:
-    """First load of a page: seconds to its inputs, and kB as sent."""
+    """First load of the page: seconds to its inputs, and kB as sent."""
 
     seconds: float = 0.0
     sent: float = 0.0
 
 
+@dataclass(frozen=True)
+class Server:
+    """Running explorer with its address and its process."""
+
+    address: str
+    process: int
+
+    def processor_time(self) -> float:
+        """Processor time of the server and its child processes, in seconds."""
+        processes = [self.process]
+        for process in processes:
+            tasks = Path(f"/proc/{process}/task").glob("*/children")
+            processes += [int(child) for task in tasks for child in task.read_text().split()]
+        stats = (Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split() for process in processes)
+        return sum(int(tick) for stat in stats for tick in stat[11:15]) / os.sysconf("SC_CLK_TCK")
+
+
 def measure() -> list[Row]:
-    missing = [library for library in LIBRARIES if find_spec(library) is None]
-    with ExitStack() as stack:
-        browser = stack.enter_context(_opened_browser())
-        ours = stack.enter_context(served_explorer())
-        empty = {name: stack.enter_context(served_library(name)) for name in LIBRARIES if name not in missing}
-        pages = {"": (ours.address, READY), **{name: (server.address, EMPTY_SLIDER) for name, server in empty.items()}}
-        loads = {name: _first_load(browser, *page) for name, page in pages.items()}
-        slow = {name: _first_load(browser, *page, line=SLOW_LINE) for name, page in pages.items()}
-        number, cpu = _moves(browser, ours, SLIDER, NUMBER)
-        table, _ = _moves(browser, ours, SLIDER, TABLE, final=True)
-        moves = {name: _moves(browser, server, EMPTY_SLIDER, ".number") for name, server in empty.items()}
-    rows = []
-    for work, found in (
-        ("first load, sent", {name: f"{digits(load.sent)} kB" for name, load in loads.items()}),
-        ("first load, to the inputs", {name: f"{digits(load.seconds)} s" for name, load in loads.items()}),
-        ("first load, 50 kB/s and 150 ms", {name: f"{digits(load.seconds)} s" for name, load in slow.items()}),
-        ("move of a slider, to the number", {"": number, **{name: move for name, (move, _) in moves.items()}}),
-        ("move of a slider, processor time", {"": cpu, **{name: its for name, (_, its) in moves.items()}}),
-    ):
-        rows += [Row(work, found[""], f"empty page of {name}: {found[name]}") for name in empty]
-        rows += [
-            Row(work, found[""], f"empty page of {name}: skipped, not installed", skipped=True) for name in missing
-        ]
-        if not empty:
-            rows.append(Row(work, found[""]))
-    return [*rows, Row("move of a slider, to the table", table)]
+    with _opened_browser() as browser, _served_explorer() as server:
+        load, slow = _first_load(browser, server), _first_load(browser, server, SLOW_LINE)
+        number, cpu = _moves(browser, server, NUMBER)
+        table, _ = _moves(browser, server, TABLE, final=True)
+    return [
+        Row("first load, sent", f"{digits(load.sent)} kB"),
+        Row("first load, to the inputs", f"{digits(load.seconds)} s"),
+        Row("first load, 50 kB/s and 150 ms", f"{digits(slow.seconds)} s"),
+        Row("move of a slider, to the number", number),
+        Row("move of a slider, processor time", cpu),
+        Row("move of a slider, to the table", table),
+    ]
+
+
+@contextmanager
+def _served_explorer() -> Iterator[Server]:
+    """Run the explorer of this checkout on a free port, which its first line states."""
+    words = [sys.executable, "-m", "ballsocket", "app", "--no-browser", "--port", "0"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=checkout_environment()) as process:
+        assert process.stdout is not None
+        try:
+            yield Server(process.stdout.readline().split()[0], process.pid)
+        finally:
+            process.terminate()
 
 
 @contextmanager
@@ -112,13 +124,13 @@ def _new_page(browser: Any) -> Any:
     return browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
 
 
-def _first_load(browser: Any, address: str, ready: str, line: dict[str, Any] | None = None) -> Load:
+def _first_load(browser: Any, server: Server, line: dict[str, Any] | None = None) -> Load:
     """Median of some visits; one by a slow line."""
-    visits = [_visit(browser, address, ready, line) for _ in range(1 if line else VISITS)]
+    visits = [_visit(browser, server.address, line) for _ in range(1 if line else VISITS)]
     return sorted(visits, key=lambda load: load.seconds)[len(visits) // 2]
 
 
-def _visit(browser: Any, address: str, ready: str, line: dict[str, Any] | None) -> Load:
+def _visit(browser: Any, address: str, line: dict[str, Any] | None) -> Load:
     page, load = _new_page(browser), Load()
     tools = page.context.new_cdp_session(page)
     tools.send("Network.enable")
@@ -135,21 +147,21 @@ def _visit(browser: Any, address: str, ready: str, line: dict[str, Any] | None) 
     tools.on("Network.webSocketFrameReceived", message)
     start = time.perf_counter()
     page.goto(address, wait_until="commit", timeout=1e3 * PATIENCE)
-    page.locator(ready).first.wait_for(timeout=1e3 * PATIENCE)
+    page.locator(READY).first.wait_for(timeout=1e3 * PATIENCE)
     load.seconds = time.perf_counter() - start
     page.wait_for_timeout(0 if line else 2000)  # for bytes that come after the inputs
     page.context.close()
     return load
 
 
-def _moves(browser: Any, server: Server, slider: str, text: str, final: bool = False) -> tuple[str, str]:
-    """Move a slider by keys, to and fro: ms to the first or the final change of a text, and of the processor."""
+def _moves(browser: Any, server: Server, text: str, final: bool = False) -> tuple[str, str]:
+    """Move the slider by keys, to and fro: ms to the first or the final change of a text, and of the processor."""
     page = _new_page(browser)
     page.add_init_script(WATCH)
     page.goto(server.address)
     page.locator(text).first.wait_for()
     page.wait_for_timeout(1500)
-    page.locator(slider).first.focus()
+    page.locator(SLIDER).first.focus()
     before, found = server.processor_time(), []
     for number in range(MOVES):
         page.evaluate("(selector) => window.watch(selector)", text)

@@ -12,10 +12,6 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-
 from .timing import Clock, Job, Spread, in_turns, processor_time
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
@@ -119,11 +115,12 @@ def machine() -> str:
 
 
 def show(name: str, title: str, rows: Iterable[Row]) -> None:
-    console = Console(width=None if Console().is_terminal else 160, highlight=False, markup=False)
-    table = Table("work", "ours", "rival", "ratio", title=f"{name}: {title}", title_justify="left", box=box.SIMPLE_HEAD)
-    for row in rows:
-        table.add_row(*row.cells[:4])
-    console.print(table)
+    """Print the rows without their machine, in aligned columns."""
+    cells = [("work", "ours", "rival", "ratio"), *(row.cells[:4] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    print(f"\n{name}: {title}")
+    for row in cells:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 def write(name: str, rows: Sequence[Row], path: Path = RESULTS) -> None:

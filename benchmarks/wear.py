@@ -15,9 +15,14 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, iso_14242_1, socket_foundation
-from ballsocket.hip.jax_springs import join_contacts, solve_patients
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING
-from ballsocket.hip.spring_equilibrium import SpringContact, solve_in_blocks, spring_solver
+from ballsocket.hip.spring_equilibrium import (
+    SpringContact,
+    join_contacts,
+    solve_in_blocks,
+    solve_patients,
+    spring_solver,
+)
 
 from .report import Pair, Row, compare
 from .timing import Job

@@ -20,7 +20,7 @@ register_plots()
 _DOORS = ("dynamics", "evidence", "export", "hip", "identification", "studies")
 """Subpackages for users, which are imported on first use."""
 
-_import_name, _NAMES = names_of_stub(__name__, __file__)
+_import_name, _, _NAMES = names_of_stub(__name__, __file__)
 
 __all__ = ["studies", *_NAMES]
 

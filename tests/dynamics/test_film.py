@@ -10,8 +10,8 @@ from scipy.sparse.linalg import splu
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
-from ballsocket.lubrication.balance import balance_cells
 from ballsocket.lubrication.mesh import polar_mesh
+from ballsocket.lubrication.newton_system import balance_cells
 
 from ..extent import either
 from ..joints import HIP

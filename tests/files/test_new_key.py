@@ -14,10 +14,9 @@ from ballsocket.core.unit_systems import Units
 from ballsocket.files import inputs, joint_options
 from ballsocket.files.inputs import Typical, inputs_of
 from ballsocket.files.joint_file import CupTable, JointFileTable
-from ballsocket.files.json_schema import json_schema
 from ballsocket.files.refusals import values_of
 from ballsocket.files.schema import Length, meaning
-from ballsocket.files.tables import read_table
+from ballsocket.files.tables import json_schema, read_table
 from ballsocket.hip.schema import FilmTable
 from ballsocket.mcp.tools import TOOLS, schema
 

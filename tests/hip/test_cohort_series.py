@@ -13,9 +13,9 @@ from ballsocket.core.chebyshev import chebyshev_points
 from ballsocket.core.executors import Serial, processes
 from ballsocket.hip import Archard, FilmLimit, iso_14242_4, logarithmic, population
 from ballsocket.hip import cohort_series as module
-from ballsocket.hip.chebyshev_fit import Box, basis, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
+from ballsocket.hip.patient_series import Box, basis, exponents_of, interpolation_weights
 from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
 from ballsocket.hip.similarity import Similarity, find_obstacle
 from ballsocket.hip.variability import RESULT_COLUMNS, result_table

@@ -12,9 +12,15 @@ from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
 from ballsocket.hip import socket_foundation, spring_equilibrium
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import interpolate_loads, smooth_fields
-from ballsocket.hip.jax_springs import join_contacts, solve_patients
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING, grid_neighbours, neighbours_in_subset, spring_foundation
-from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
+from ballsocket.hip.spring_equilibrium import (
+    join_contacts,
+    load_blocks,
+    newton_step,
+    solve_in_blocks,
+    solve_patients,
+    spring_solver,
+)
 from ballsocket.hip.wear_integrator import WearIntegrator
 
 from .hips import QUICK, hip, socket_force

@@ -9,7 +9,7 @@ from scipy.stats import binom
 from ballsocket.files.columns import HeadChoice
 from ballsocket.hip import Archard, FrictionEnergyWear, MeasuredWear, fit_wear_coefficient, logarithmic
 from ballsocket.hip.config import read_wear_test
-from ballsocket.hip.station_file import read_stations
+from ballsocket.hip.measured_wear import read_stations
 from ballsocket.reports.hip_comparison import wear_fit_figure
 
 from ..cli.command import answer, printed, refusal

@@ -7,8 +7,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identification import HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification.bands import trials
 from ballsocket.identification.misfit import by_tracing
-from ballsocket.identification.synthetic import trials
 from ballsocket.studies import LogNormal, Normal
 
 from .rigid import JOINT, MODEL

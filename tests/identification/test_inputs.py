@@ -7,8 +7,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identification import CustomObservable, HeavyTailed, Machine, Measured, oscillation, sliding_torque
+from ballsocket.identification.bands import trials
 from ballsocket.identification.misfit import by_tracing
-from ballsocket.identification.synthetic import trials
 from ballsocket.identification.unknowns import ParameterTransform, collect_unknowns, log_prior
 from ballsocket.studies import LogNormal, Normal
 

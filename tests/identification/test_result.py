@@ -8,9 +8,9 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identification import HeavyTailed, Machine, Measured, NormalScatter
+from ballsocket.identification.bands import Trials, draw_data_sets, trials
 from ballsocket.identification.experiment import Candidate, Experiment, Gain, experiment, standard_candidates
 from ballsocket.identification.result import von_neumann_ratio
-from ballsocket.identification.synthetic import Trials, draw_data_sets, trials
 from ballsocket.reports.identify_results import corner_figure
 
 from .rigid import JOINT, MODEL

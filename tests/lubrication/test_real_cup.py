@@ -11,9 +11,9 @@ import ballsocket as bs
 from ballsocket.core.validity import Status
 from ballsocket.elasticity.off_axis.compliance import cached_compliance
 from ballsocket.elasticity.off_axis.grid import Grid
-from ballsocket.lubrication.balance import balance_cells
 from ballsocket.lubrication.dry_contact import CupCorrection, ElasticSoftness, frame_about
 from ballsocket.lubrication.mesh import polar_mesh
+from ballsocket.lubrication.newton_system import balance_cells
 from ballsocket.problem.cup import Interface
 
 from .. import extent

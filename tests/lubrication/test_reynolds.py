@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from ballsocket.lubrication.balance import add_storage, balance_cells
 from ballsocket.lubrication.mesh import FilmMesh, polar_mesh
+from ballsocket.lubrication.newton_system import add_storage, balance_cells
 from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, solve_steady
 
 from ..extent import either

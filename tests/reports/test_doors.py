@@ -16,14 +16,13 @@ from ballsocket.core.answers import PAGE, Answer, named_records, records
 from ballsocket.core.unit_systems import Amount, Sentence, Units
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip import Archard, MeasuredWear, fit_wear_coefficient
-from ballsocket.hip.bands_answer import describe_bands
-from ballsocket.hip.history_answer import HipRun, describe_hips, describe_history
+from ballsocket.hip.answers import HipRun, describe_bands, describe_hips, describe_history
 from ballsocket.identification import Measured
 from ballsocket.identification.result_answer import describe_identification
 from ballsocket.lubrication import Lubricant
-from ballsocket.lubrication.film_answer import describe_films
+from ballsocket.lubrication.film import describe_films
 from ballsocket.planning import fit_liner, make_plan, measure_wear, read_mesh, read_points
-from ballsocket.planning.plan_answer import describe_plan
+from ballsocket.planning.plan import describe_plan
 from ballsocket.press_answer import describe_curve, describe_press, press_remarks
 from ballsocket.problem.cup import Cup
 from ballsocket.question import PressQuestion, answer
@@ -45,9 +44,8 @@ from ballsocket.studies.distributions import Rectangular, tolerance
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.optimisation import optimise, pareto
 from ballsocket.studies.orientation_answer import describe_orientations
-from ballsocket.studies.sensitivity_answer import describe_sensitivity, uncertainty_tables
 from ballsocket.studies.study_answer import describe_front, describe_map, describe_optimum, describe_study
-from ballsocket.studies.variance_shares import sensitivity
+from ballsocket.studies.variance_shares import describe_sensitivity, sensitivity, uncertainty_tables
 
 from ..hip.hips import QUICK, hip
 from ..hip.test_uncertainty import bands

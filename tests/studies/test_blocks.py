@@ -9,13 +9,12 @@ import pytest
 from scipy.stats import qmc
 
 import ballsocket as bs
-from ballsocket.studies import Progress, axes, run, sampling
+from ballsocket.studies import Progress, axes, distributions, run
 from ballsocket.studies.axes import ListedAxis
 from ballsocket.studies.design import Design, Span, grid, sample
-from ballsocket.studies.distributions import Normal, Rectangular, tolerance
+from ballsocket.studies.distributions import Method, Normal, Rectangular, draw_chunk, permute, tolerance
 from ballsocket.studies.metadata import _as_plain_data
 from ballsocket.studies.run import _create_task, memory_size
-from ballsocket.studies.sampling import Method, permute
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
 
 HIP = bs.joints["hess-forsbach"]
@@ -61,9 +60,9 @@ def test_the_time_left_is_the_rest_over_the_rate():
 @pytest.fixture
 def small_chunks(monkeypatch):
     """Chunks of 64 samples, and hypercubes that are drawn in parts."""
-    for module in (axes, sampling):
+    for module in (axes, distributions):
         monkeypatch.setattr(module, "CHUNK_SIZE", 64)
-    monkeypatch.setattr(sampling, "_MAX_SCIPY_COUNT", 0)
+    monkeypatch.setattr(distributions, "_MAX_SCIPY_COUNT", 0)
     axes._draw_samples.cache_clear()
     yield
     axes._draw_samples.cache_clear()
@@ -83,7 +82,7 @@ def test_any_section_of_samples_is_that_of_all_samples(method, small_chunks):
     ("method", "scipy", "count"), [("sobol", "Sobol", 1024), ("latin-hypercube", "LatinHypercube", 1050)]
 )
 def test_sobol_samples_and_small_hypercubes_are_those_of_scipy(method, scipy, count, small_chunks, monkeypatch):
-    monkeypatch.setattr(sampling, "_MAX_SCIPY_COUNT", 2000)
+    monkeypatch.setattr(distributions, "_MAX_SCIPY_COUNT", 2000)
     values = sample(count, seed=7, method=Method(method), **SCATTER).values_in(EVERYTHING)
     points = getattr(qmc, scipy)(2, rng=7).random(count)
     for column, (name, distribution) in zip(points.T, SCATTER.items(), strict=True):
@@ -92,13 +91,13 @@ def test_sobol_samples_and_small_hypercubes_are_those_of_scipy(method, scipy, co
 
 def test_a_permutation_has_each_number_once_and_large_hypercubes_one_sample_in_each_stratum(small_chunks):
     count = 5003
-    chunks = [sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 1, number) for number in range(-(-count // 64))]
+    chunks = [draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 1, number) for number in range(-(-count // 64))]
     points = np.concatenate(chunks, axis=1)
     for coordinate in points:
         assert sorted(np.floor(coordinate * count).astype(int)) == list(range(count))
     assert abs(np.corrcoef(points) - np.eye(3)).max() < 4 / count**0.5
     assert np.mean(points * count % 1.0) == pytest.approx(0.5, abs=0.02)
-    other = sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
+    other = draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
     assert not np.isclose(other, chunks[0]).any()
     keys = np.random.SeedSequence(0).generate_state(8, np.uint64)
     for count in (1, 2, 65, 1000):

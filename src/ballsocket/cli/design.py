@@ -26,9 +26,9 @@ from ..studies.optimisation import optimise as find_optimum
 from ..studies.optimisation import pareto
 from ..studies.parameters import LOADS
 from ..studies.run import check_model_domain, default_model, study
-from ..studies.sensitivity_answer import describe_sensitivity, index_table, sensitivity_summary
 from ..studies.study_answer import describe_front, describe_map, describe_optimum, front_summary, map_summary
 from ..studies.task import DEFAULT_QUANTITIES
+from ..studies.variance_shares import describe_sensitivity, index_table, sensitivity_summary
 from ..studies.variance_shares import sensitivity as find_sensitivity
 from .elasticity_options import Yielding
 from .options import (

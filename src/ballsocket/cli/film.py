@@ -16,9 +16,8 @@ from ..files.joint_options import PARTS
 from ..files.schema import FileTable, Length, RotationRate, Viscosity, Word, meaning
 from ..files.tables import quantities_of, written_in
 from ..files.units import as_given
-from ..lubrication.film import METHODS
+from ..lubrication.film import METHODS, describe_films
 from ..lubrication.film import film as compute_film
-from ..lubrication.film_answer import describe_films
 from ..lubrication.lubricant import Lubricant
 from ..model_catalogue import with_gap
 from ..question import PressQuestion

@@ -19,10 +19,10 @@ from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor, pr
 from .root import app, echo_path, fail
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
+    from ..hip.answers import HipRun
     from ..hip.bands import Bands
     from ..hip.config import HipFile
     from ..hip.history import History
-    from ..hip.history_answer import HipRun
 
 
 @app.command()
@@ -65,9 +65,8 @@ def hip(
 
     Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
-    from ..hip.bands_answer import describe_bands
+    from ..hip.answers import HipRun, describe_bands, describe_hips, describe_history
     from ..hip.config import read_hip
-    from ..hip.history_answer import HipRun, describe_hips, describe_history
     from ..reports.figure_files import check_format
     from ..reports.hip_comparison import comparison_figure, write_table
     from ..reports.hip_report import hip_report
@@ -182,7 +181,7 @@ def _simulate_cohort(
     units: Units,
 ) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
-    from ..hip.bands_answer import describe_cohort
+    from ..hip.answers import describe_cohort
     from ..hip.cohort import cohort_store, write_csv
     from ..hip.wear_uncertainty import population
 

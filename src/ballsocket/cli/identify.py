@@ -98,9 +98,9 @@ def _has_measured_wear(file: Path) -> bool:
 
 
 def _fit_wear(file: Path, figure: Path | None, units: Units, as_json: bool) -> None:
+    from ..hip.answers import describe_wear_fit
     from ..hip.config import read_wear_test
     from ..hip.wear_fit import fit_wear_coefficient
-    from ..hip.wear_fit_answer import describe_wear_fit
     from ..reports.hip_comparison import wear_fit_figure
 
     hip_file = read_wear_test(file)

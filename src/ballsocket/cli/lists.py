@@ -18,7 +18,7 @@ from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import cite as bibtex_of
 from ..core.unit_systems import Amount, Sentence, Units
 from ..core.validity import Range
-from ..files.json_schema import json_schema
+from ..files.tables import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..model_catalogue import listed_models
 from ..problem import Joint, Material

@@ -14,13 +14,11 @@ from ..files.joint_file import Direction
 from ..files.joint_toml import toml_of
 from ..files.schema import Angle, FileTable, Force, Length, Text, Word, meaning
 from ..files.tables import quantities_of
-from ..planning.clouds import read_points
 from ..planning.implants import fit_head, fit_liner
 from ..planning.landmarks import read_landmarks
-from ..planning.meshes import read_mesh
 from ..planning.pelvis import pelvic_frame
-from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
-from ..planning.plan_answer import describe_plan
+from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, describe_plan, make_plan
+from ..planning.surfaces import read_mesh, read_points
 from ..planning.worn_bores import measure_wear
 from .elasticity_options import orientation_remark, orientation_summary
 from .options import AsJson, UnitSystem, expand_groups, print_result

@@ -29,8 +29,10 @@ else:
             return values[self.attrname]
 
 
-def names_of_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], tuple[str, ...]]:
-    """Return the function `__getattr__` of a package, which imports its names for users on first use, and these names.
+def names_of_stub(
+    package: str, init_file: str
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], tuple[str, ...]]:
+    """Return `__getattr__` of a package, which imports its names for users on first use, `__dir__`, and these names.
 
     They are those of the stub beside `__init__.py`, which type checkers read: `from .module import Name as Name`.
     """
@@ -45,4 +47,4 @@ def names_of_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], t
         setattr(sys.modules[package], name, value)
         return value
 
-    return get_name, tuple(modules)
+    return get_name, lambda: sorted({*vars(sys.modules[package]), *modules}), tuple(modules)

@@ -22,17 +22,20 @@ from ..core.kinds import Kind
 from .cells import (
     EXCEL,
     OLD_EXCEL,
+    UNCERTAINTY,
     Cell,
     NumberedRow,
     cell_number,
+    count_factor,
     count_words,
     decimal_mark,
     decode_text,
     is_data,
+    known_head,
+    plain_name,
     read_excel,
     split_text,
 )
-from .head_names import UNCERTAINTY, count_factor, known_head, plain_name
 from .schema import FileTable, HeadMap, Texts, meaning
 from .units import Units, parse, parse_units
 

@@ -2,9 +2,4 @@
 
 from ..core.lazy import names_of_stub
 
-__getattr__, __all__ = names_of_stub(__name__, __file__)
-
-
-def __dir__() -> list[str]:
-    """List the names for users."""
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = names_of_stub(__name__, __file__)

@@ -18,9 +18,8 @@ from ..core.storage.folders import ArrayPieceStore
 from ..core.storage.pieces import PieceRun
 from ..studies.axes import SampleAxis
 from ..studies.variance_indices import sobol_indices
-from .chebyshev_fit import Box
 from .cohort import CohortRun, CohortStore, ProgressCallback
-from .patient_series import MEMBERS_PER_PIECE, FamilyRun, NoSeriesError, PatientSeries, fit_series, members_of
+from .patient_series import MEMBERS_PER_PIECE, Box, FamilyRun, NoSeriesError, PatientSeries, fit_series, members_of
 from .series_accuracy import SeriesAccuracy, estimate_accuracy
 from .similarity import CLEARANCE, Similarity, find_obstacle
 from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_COLUMNS, CohortResult

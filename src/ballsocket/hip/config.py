@@ -30,10 +30,9 @@ from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
 from .film_limit import FilmLimit
 from .law_fields import select_law_class
-from .measured_wear import MILLION, RATES, MeasuredWear
+from .measured_wear import MILLION, RATES, MeasuredWear, read_stations
 from .schema import FilmTable, HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles
-from .station_file import read_stations
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 from .wear_law import COEFFICIENT, coefficient_field, wear_factor
 from .wear_laws import MATERIAL, WEAR_LAWS, read_ball_law, read_wear_law

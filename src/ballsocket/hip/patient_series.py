@@ -1,24 +1,100 @@
-"""Results of similar patients from a series: polynomials fitted to some hundred simulations of their family."""
+"""Results of similar patients from a series: polynomials in a box, fitted to some hundred simulations of them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
+from itertools import product
 from math import ceil, log
 
 import numpy
+from numpy.polynomial.chebyshev import chebvander
 
 from ..core.arrays import Numbers
-from ..core.chebyshev import chebyshev_points
+from ..core.chebyshev import chebyshev_coefficients, chebyshev_points
 from ..core.display import counted
 from ..core.storage.pieces import check_worker_code, fingerprint
-from .chebyshev_fit import Box, basis, exponents_of, interpolation_weights
+from ..studies.distributions import draw_points
 from .contact_checks import check_rows
 from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
 from .simulation import MAX_WORN_LINERS
 from .variability import RESULT_COLUMNS, RESULT_UNITS, CohortResult
+
+_BOX_MARGIN = 1e-9  # margin of the ends of a box, whose numbers are logarithms and angles
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Box:
+    """Ranges of named variables."""
+
+    ranges: Mapping[str, tuple[float, float]]  # lower and upper end of each variable
+
+    @cached_property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the variables whose ends differ."""
+        return tuple(name for name, (low, high) in self.ranges.items() if high > low)
+
+    def contains(self, numbers: Mapping[str, Numbers]) -> Numbers:
+        """Return the mask of the points inside the box, up to rounding; NaN is outside."""
+        masks = [
+            (numbers[name] >= low - _BOX_MARGIN) & (numbers[name] <= high + _BOX_MARGIN)
+            for name, (low, high) in self.ranges.items()
+        ]
+        inside: Numbers = numpy.logical_and.reduce(masks)
+        return inside
+
+    def scale(self, numbers: Mapping[str, Numbers]) -> Numbers:
+        """Map points to -1 to 1 on each axis, and those outside to its ends: (axes, points)."""
+        count = len(next(iter(numbers.values())))
+        scaled = numpy.zeros((len(self.axes), count))
+        for row, name in zip(scaled, self.axes, strict=True):
+            low, high = self.ranges[name]
+            row[:] = numpy.clip((2 * numbers[name] - low - high) / (high - low), -1.0, 1.0)
+        return scaled
+
+    def sample(self, count: int) -> list[dict[str, float]]:
+        """Return points of a Sobol sequence, denser at the ends like Chebyshev points.
+
+        A larger count has the same first points. A box without axes has a single point.
+        """
+        from scipy.stats.qmc import Sobol
+
+        if not self.axes:
+            return [{name: low for name, (low, _) in self.ranges.items()}][:count]
+        scaled = -numpy.cos(numpy.pi * draw_points(Sobol(len(self.axes), rng=0), count))
+        points = [{name: low for name, (low, _) in self.ranges.items()} for _ in range(count)]
+        for column, name in zip(scaled.T, self.axes, strict=True):
+            low, high = self.ranges[name]
+            for point, position in zip(points, column, strict=True):
+                point[name] = float((low + high + (high - low) * position) / 2)
+        return points
+
+
+def exponents_of(weights: Sequence[int], degree: int) -> Numbers:
+    """List the exponents of all terms up to a total degree, in which each axis has a weight: (terms, axes)."""
+    powers = product(*(range(degree // weight + 1) for weight in weights))
+    terms = [power for power in powers if sum(a * weight for a, weight in zip(power, weights, strict=True)) <= degree]
+    return numpy.array(terms, dtype=int).reshape(len(terms), len(weights))
+
+
+def basis(scaled: Numbers, exponents: Numbers) -> Numbers:
+    """Compute products of Chebyshev polynomials at points (axes, points) from -1 to 1: (points, terms)."""
+    columns = numpy.ones((len(exponents), scaled.shape[1]))
+    for row, powers in zip(scaled, exponents.T, strict=True):
+        columns *= chebvander(row, int(powers.max(initial=0))).T[powers]
+    return columns.T
+
+
+def interpolation_weights(points: Numbers, low: float, high: float, count: int) -> Numbers:
+    """Compute weights (points, count) that interpolate values at Chebyshev points of a range to other points."""
+    if count == 1:
+        return numpy.ones((len(points), 1))
+    scaled = numpy.clip((2 * points - low - high) / (high - low), -1.0, 1.0)
+    weights: Numbers = chebvander(scaled, count - 1) @ chebyshev_coefficients(numpy.eye(count), 0)
+    return weights
+
 
 MEMBERS_PER_PIECE = 8  # simulations of one piece of work: about half a second
 
@@ -28,7 +104,7 @@ _MEMBERS_PER_TERM = 2  # simulations per term of the polynomial
 _WEIGHTS = {CLEARANCE: 4}  # weights in the degree; the modulus, and with it creep, hardly depends on clearance
 _MIN_MEMBERS_PER_TERM = 1.5  # least number of simulations with a result per term of the polynomial
 _WEAR_SAFETY = 0.95  # fraction of the largest allowed wear up to which a patient takes its result from the series
-_ROUNDING = 1e-12  # margin of the range of the logarithm of the exposure
+_EXPOSURE_MARGIN = 1e-12  # margin of the range of the logarithm of the exposure
 _BLOCK = 2048  # patients whose results are computed at once
 _CONTACT_FIELDS = 3  # numbers of each worst contact: indentation, half angle, pressure
 
@@ -125,7 +201,9 @@ class PatientSeries:
         inside = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
         inside &= box.contains(numbers)
         for count in (counts[0], counts[-1]):
-            inside &= (exposure + log(count) >= low - _ROUNDING) & (exposure + log(count) <= high + _ROUNDING)
+            inside &= (exposure + log(count) >= low - _EXPOSURE_MARGIN) & (
+                exposure + log(count) <= high + _EXPOSURE_MARGIN
+            )
         return self._table(stages, values), self._contacts(unworn, stages, values), inside
 
     def _table(self, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:

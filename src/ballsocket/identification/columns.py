@@ -14,11 +14,10 @@ from ..core.arrays import Numbers
 from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
+from ..files.cells import UNCERTAINTY
 from ..files.columns import ALL_COLUMNS, HeadChoice, NumberTable, read_columns
-from ..files.head_names import UNCERTAINTY
 from ..files.units import parse
-from .machine import IDEAL_MACHINE, Machine
-from .measured import MEASURED, Measured
+from .measured import IDEAL_MACHINE, MEASURED, Machine, Measured
 
 _QUANTITIES = {**MEASURED, "angle": FIELD["angle"]}
 _KINDS = {name + end: quantity.kind for name, quantity in _QUANTITIES.items() for end in ("", UNCERTAINTY)}

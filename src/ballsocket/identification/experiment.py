@@ -13,8 +13,7 @@ from ..core.arrays import Numbers
 from .fit import FittedModel
 from .forward_model import ForwardModel
 from .information import MAX_WIDTH_RATIO
-from .machine import IDEAL_MACHINE, Machine
-from .measured import OF_JOINT, Measured
+from .measured import IDEAL_MACHINE, OF_JOINT, Machine, Measured
 
 STANDARD_QUANTITIES = ("indentation", "half_angle", "max_pressure", "diametral_clearance")
 """Quantities of the default candidates: the last is the free play of a joint, and needs no load."""

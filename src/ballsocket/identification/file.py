@@ -36,9 +36,8 @@ from ..problem import Joint
 from ..studies.expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_ends
 from ..studies.file import ModelGap, ModelName
 from .columns import Gaps, parse_uncertainty, read_measured
-from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .maximum_likelihood import identify
-from .measured import ALIASES, MEASURED, Measured
+from .measured import ALIASES, IDEAL_MACHINE, MEASURED, Machine, Measured, NumberOrRange
 from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS
 from .result import IdentificationResult

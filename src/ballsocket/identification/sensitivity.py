@@ -10,8 +10,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.unit_systems import Amount, Sentence
 from .fit import FittedModel
-from .machine import Machine
-from .measured import Measured
+from .measured import Machine, Measured
 from .registry import MACHINE_ERRORS
 from .unknown_kinds import MachineError
 

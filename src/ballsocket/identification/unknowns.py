@@ -17,7 +17,7 @@ from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from ..model_catalogue import catalogue
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
-from .machine import Machine
+from .measured import Machine
 from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
 
 Prior = Any

@@ -5,7 +5,6 @@ edge of the dry contact, `wave` carries it over the contact, and `reynolds` solv
 `transient.film_over_steps` solves it over steps of load and motion.
 """
 
-from .friction import Stribeck
-from .lubricant import Lubricant
+from .lubricant import Lubricant, Stribeck
 
 __all__ = ["Lubricant", "Stribeck"]

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..core.arrays import Numbers
-from .balance import add_storage, balance_cells
 from .mesh import FilmMesh
-from .newton_system import CellUnknown, NewtonSystem
+from .newton_system import CellUnknown, NewtonSystem, add_storage, balance_cells
 
 if TYPE_CHECKING:
     from .dry_contact import ElasticSoftness

@@ -12,8 +12,8 @@ from types import MappingProxyType, NoneType, UnionType
 from typing import Any, get_args, get_origin
 
 from ..core.checks import known_name
-from ..files.json_schema import json_schema
 from ..files.schema import FileTable
+from ..files.tables import json_schema
 from ..model_catalogue import OFF_AXIS
 
 FILE_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(

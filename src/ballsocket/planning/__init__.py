@@ -7,33 +7,6 @@
 Lengths are in mm, angles in rad.
 """
 
-from .clouds import PointCloud, read_points
-from .implants import ImplantFit, fit_head, fit_liner
-from .landmarks import Landmarks, read_landmarks
-from .meshes import Mesh, read_mesh
-from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis, pelvic_frame
-from .plan import HipPlan, make_plan
-from .rims import RimPlane
-from .worn_bores import WornBore, measure_wear
+from ..core.lazy import names_of_stub
 
-__all__ = [
-    "CupOrientation",
-    "HipPlan",
-    "ImplantFit",
-    "Landmarks",
-    "Mesh",
-    "PelvicFrame",
-    "PointCloud",
-    "RimPlane",
-    "WornBore",
-    "cup_orientation",
-    "fit_head",
-    "fit_liner",
-    "make_plan",
-    "measure_wear",
-    "orientation_of_axis",
-    "pelvic_frame",
-    "read_landmarks",
-    "read_mesh",
-    "read_points",
-]
+__getattr__, __dir__, __all__ = names_of_stub(__name__, __file__)

@@ -12,7 +12,6 @@ from ..core.kinds import MILLIMETRES, Kind
 from ..core.unit_systems import Amount, Sentence
 from ..elasticity.off_axis.scans import fit_sphere
 from .geometry import angle_between, polar, robust_scale
-from .meshes import Mesh
 from .rims import (
     DISTINCT_AXES,
     RIM_TOLERANCE,
@@ -24,6 +23,7 @@ from .rims import (
     rim_deviation,
     rim_planes,
 )
+from .surfaces import Mesh
 
 RADII = (7.0, 40.0)
 """Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""

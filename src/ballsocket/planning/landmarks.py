@@ -20,7 +20,7 @@ from ..core.input_files import open_input
 from ..core.records import Input
 from ..files.cells import decode_text
 from ..problem.cup import Side
-from .meshes import LENGTH_UNITS, MICRON
+from .surfaces import LENGTH_UNITS, MICRON
 
 _MAX_FILE_SIZE = 10_000_000  # largest size of a landmark file in bytes
 _MAX_POINTS = 10_000

@@ -9,7 +9,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from .geometry import Plane, angle_between, fit_plane_robustly
-from .meshes import Mesh
+from .surfaces import Mesh
 
 _RIM_SECTORS = 120
 

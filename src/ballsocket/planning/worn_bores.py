@@ -19,9 +19,9 @@ from ..core.records import Record
 from ..core.unit_systems import Amount, Sentence
 from ..elasticity.off_axis.directions import tangents
 from ..elasticity.off_axis.scans import MIN_POINTS, MIN_REACH, fit_sphere
-from .clouds import PointCloud
 from .geometry import polar, robust_scale
 from .implants import RADII
+from .surfaces import PointCloud
 
 _SEED = 20260103
 _THINNING = radians(3.0)  # distance of the points for the first sphere: dense parts count as much as sparse ones

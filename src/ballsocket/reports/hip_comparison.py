@@ -13,8 +13,8 @@ from ..core.answers import named_records
 from ..core.kinds import Unit
 from ..core.storage.atomic_files import write_csv
 from ..core.unit_systems import Amount, Sentence
+from ..hip.answers import HipRun
 from ..hip.history import History
-from ..hip.history_answer import HipRun
 from ..hip.measured_wear import WEAR_QUANTITIES
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, new_figure
 

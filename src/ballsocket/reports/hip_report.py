@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 
 from ..core.unit_systems import Units
 from ..files.joint_file import NO_DETAILS, ReportDetails
+from ..hip.answers import describe_bands, describe_history
 from ..hip.bands import Bands
-from ..hip.bands_answer import describe_bands
 from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
 from ..hip.history import History
-from ..hip.history_answer import describe_history
 from . import hip_plots
 from .figure_files import figure_bytes
 from .pages import answer_lede, answer_sections, letterhead, picture, render_page, trusted_html

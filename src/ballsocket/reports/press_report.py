@@ -28,8 +28,8 @@ from ..problem.cup import Cup
 from ..problem.presets import material_label
 from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
-from ..studies.sensitivity_answer import uncertainty_tables
 from ..studies.task import EDGE_DISTANCE
+from ..studies.variance_shares import uncertainty_tables
 from . import press_plots
 from .joint_drawing import DrawnLoad, joint_svg
 from .pages import (

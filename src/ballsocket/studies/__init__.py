@@ -15,7 +15,7 @@ from ..core.display import load_plot
 from ..core.lazy import names_of_stub
 
 _PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
-_import_name, _NAMES = names_of_stub(__name__, __file__)
+_import_name, _, _NAMES = names_of_stub(__name__, __file__)
 
 __all__ = [*_NAMES, *_PLOTS]
 

@@ -8,6 +8,7 @@ from .design import grid as grid
 from .design import sample as sample
 from .design import table as table
 from .distributions import LogNormal as LogNormal
+from .distributions import Method as Method
 from .distributions import Normal as Normal
 from .distributions import Rectangular as Rectangular
 from .distributions import tolerance as tolerance
@@ -22,7 +23,6 @@ from .optimisation import pareto as pareto
 from .parameters import PARAMETERS as PARAMETERS
 from .run import Progress as Progress
 from .run import study as study
-from .sampling import Method as Method
 from .store import read as read
 from .variance_shares import sensitivity as sensitivity
 

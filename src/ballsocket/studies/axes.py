@@ -13,8 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.quantities import QUANTITIES
-from .distributions import Distribution, copula_matrix, correlate
-from .sampling import CHUNK_SIZE, Method, draw_chunk
+from .distributions import CHUNK_SIZE, Distribution, Method, copula_matrix, correlate, draw_chunk
 
 MAX_COUNT = 10**15
 """Largest number of values along an axis."""

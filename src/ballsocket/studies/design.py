@@ -18,9 +18,8 @@ from ..core.storage.atomic_files import check_local
 from ..files.columns import ALL_COLUMNS, HeadChoice, read_columns
 from ..problem import Joint, Material
 from .axes import MAX_COUNT, Axis, ListedAxis, SampleAxis, Span, SpanAxis, check_allowed, parameter_values
-from .distributions import Correlation, Distribution, copula_matrix
+from .distributions import MAX_SOBOL_COUNT, Correlation, Distribution, Method, copula_matrix
 from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions, hold
-from .sampling import MAX_SOBOL_COUNT, Method
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,10 +36,9 @@ from ..problem.gaps import GAP_KINDS
 from ..problem.presets import materials, named_material
 from .axes import Span
 from .design import Design, grid, sample, table
-from .distributions import Distribution
+from .distributions import Distribution, Method
 from .expressions import DISTRIBUTION_SCHEMA, distribution_of, parse_correlations
 from .parameters import LOADS, PARAMETERS
-from .sampling import Method
 from .task import QUANTITIES
 
 

@@ -25,9 +25,9 @@ from ..problem import Joint
 from ..problem.gaps import MAX_LINEAR_CLEARANCE_RATIO
 from .axes import CACHED_CHUNKS, Axis, SampleAxis
 from .design import Design, check_samples, grid, is_number
+from .distributions import CHUNK_SIZE
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
-from .sampling import CHUNK_SIZE
 from .store import StudyStore, read
 from .task import (
     DEFAULT_QUANTITIES,

@@ -15,8 +15,8 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceStore
+from .distributions import CHUNK_SIZE
 from .metadata import list_differences, order_coordinates, study_attributes, study_identity, variable_attributes
-from .sampling import CHUNK_SIZE
 from .task import DTYPES, VERDICT, Task
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.executors.processes import check_memory
-from .distributions import Distribution, normal_quantiles
-from .sampling import draw_points
+from .distributions import Distribution, draw_points, normal_quantiles
 
 SampledFunction = Callable[[Numbers], Numbers]
 """Function from samples, shape (n_parameters, n_points), to quantities, shape (n_quantities, n_points)."""

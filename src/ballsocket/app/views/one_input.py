@@ -13,8 +13,8 @@ from ...reports.pages import answer_table
 from ...reports.study_plots import result_figure
 from ...reports.style import INK, VERMILLION, LineStyle
 from ...studies.limits import verdicts
-from ...studies.sensitivity_answer import uncertainty_tables
 from ...studies.study_answer import describe_study
+from ...studies.variance_shares import uncertainty_tables
 from ..pictures.chart import Curve, chart, legend, spans
 from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen

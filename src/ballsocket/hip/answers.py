@@ -1,9 +1,12 @@
-"""Descriptions of one wear simulation (first cycle, wear, contacts, film), and of several hips side by side."""
+"""Descriptions of the wear of one hip or of several side by side, of bands of a cohort, and of a fitted coefficient."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, isfinite, isnan
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -23,14 +26,17 @@ from ..core.kinds import (
     PLAIN,
     Unit,
 )
-from ..core.quantities import QUANTITIES
+from ..core.quantities import QUANTITIES, WEAR
 from ..core.unit_systems import Amount, Sentence, holders_of
-from ..lubrication.friction import Stribeck
-from ..lubrication.lubricant import Lubricant
+from ..lubrication.lubricant import Lubricant, Stribeck
 from .bands import Bands
 from .contact_checks import ContactCheck, largest_utilisation, worst_verdict
 from .film import Film
 from .history import History
+from .variability import INFLUENCED_RESULTS
+
+if TYPE_CHECKING:
+    from .wear_fit import WearFit
 
 
 def describe_history(history: History, name: str = "") -> Answer:
@@ -221,3 +227,113 @@ def describe_hips(runs: Sequence[HipRun]) -> Answer:
 
 def _band(run: HipRun, name: str, report: int) -> Cell:
     return None if run.bands is None else tuple(float(end[report]) for end in run.bands.band(name))
+
+
+_ANY = "any"  # wear coefficient of a row that holds for all coefficients
+
+
+def describe_bands(bands: Bands) -> Answer:
+    """Describe the bands of patients who differ."""
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
+    among = "predictions from " if bands.subject == "predictions" else ""
+    held = f"{share} of {among}{patients} {bands.noun}"
+    if bands.shared is not None:
+        held = (
+            f"{share} of {patients} {bands.noun} for a low, median and high wear coefficient, and {share} of the "
+            f"predictions for {_ANY} coefficient,"
+        )
+    tables = [band_table(bands)] + ([] if bands.indices is None else [_influence_table(bands)])
+    return Answer(title=f"{held} lie between", tables=tables, notes=bands.notes)
+
+
+def describe_cohort(bands: Bands) -> Answer:
+    """Describe the bands of a cohort, with the notes on its nominal patient."""
+    answer = describe_bands(bands)
+    return replace(answer, notes=[*answer.notes, *bands.nominal_notes])
+
+
+def band_table(bands: Bands) -> Table:
+    """List the band of each result at each report, and its median in data; a shared coefficient has rows of its own."""
+    per_year, shared, (low, high) = bands.variability.cycles_per_year, bands.shared, bands.ends
+    columns = [
+        Column.of(WEAR["cycles"]),
+        *([] if shared is None else [Column.of_words("coefficient")]),
+        *([] if per_year is None else [Column.of(WEAR["years"], digits=3, rank=1)]),
+        *(Column.of(WEAR[name], digits=3) for name in INFLUENCED_RESULTS),
+        Column.of_number("edge_loading", "edge loading", PERCENT, digits=3),
+    ]
+
+    def row(report: int, coefficient: str, quantile: Callable[[str, float], Numbers], edge: float | None) -> Row:
+        count, years = bands.counts[report], [] if per_year is None else [bands.counts[report] / per_year]
+        ranges = [(quantile(name, low)[report], quantile(name, high)[report]) for name in INFLUENCED_RESULTS]
+        return Row([count, *([] if shared is None else [coefficient]), *years, *ranges, edge])
+
+    rows = []
+    for report in range(len(bands.counts)):
+        if shared is not None:
+            rows += [row(report, name, partial(shared.quantile, name), None) for name in shared.values]
+        rows.append(row(report, _ANY, bands.quantile, bands.edge_loaded_fraction(report)))
+    text = "contact at the rim, worn to it or edge loading: {} after {} cycles"
+    lines: list[str] = [
+        Sentence(text, Amount(bands.edge_loading(report), PERCENT, 3), Amount(count, MILLIONS))
+        for report, count in enumerate(bands.counts)
+    ]
+    least, largest = (bands.utilisation_quantile(share)[-1] for share in bands.ends)
+    patients = bands.variability.coarse_simulation
+    reasons = [check.utilisation_note for check in patients.unworn_checks] or ["nothing is pressed"]
+    peak = reasons[0] if isnan(least) else f"estimated utilisation σv/σy {least:.3g} to {largest:.3g}"
+    model, valid = patients.contact_model.name, f"{100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}"
+    lines.append(f"contact ({model}): valid in {valid}; {peak}")
+    return Table("bands", "Bands of different patients", columns, rows, lines)
+
+
+def _influence_table(bands: Bands) -> Table:
+    """List the first and total Sobol indices of each result with their intervals, the largest total first."""
+    from ..studies.variance_shares import IndexEntry, share_table  # slow to import
+
+    indices, names = bands.indices or {}, list(bands.variability.distributions)
+    shares = indices.items()
+    entries = [
+        IndexEntry(result, [names[i].replace("_", " ")], {key: float(values[number, i]) for key, values in shares})
+        for number, result in enumerate(INFLUENCED_RESULTS)
+        for i in numpy.argsort(-numpy.nan_to_num(indices["total_order"][number], nan=-inf))
+    ]
+    return share_table("sobol", "Sobol indices: shares of the variance", ("result", "quantity"), entries)
+
+
+def describe_wear_fit(fit: WearFit) -> Answer:
+    """Describe a fitted wear coefficient."""
+    use = fit.simulation
+    law = str(getattr(use.wear, "name", type(use.wear).__name__))
+    title, unit = "{}; {}: coefficient of the wear law {}", Unit(fit.unit)
+    columns = [Column.of_words("coefficient"), Column.of_number("best", unit=unit)]
+    columns += [Column.of_number("band", "95 %", unit)]
+    rows = [Row(["coefficient", fit.coefficient, (fit.low, fit.high) if isfinite(fit.high) else None])]
+    if len(fit.stations) > 1:
+        rows += [Row([station, coefficient, None]) for station, coefficient in fit.stations.items()]
+    tables = [Table("coefficient", "Coefficient", columns, rows)]
+    if fit.readings:
+        heads = [Column.of_words("rate", "the same as another rate"), Column.of_number("coefficient", unit=unit)]
+        tables.append(Table("readings", "Rates of other kinds", heads, list(map(Row, fit.readings.items()))))
+    return Answer(
+        title=Sentence(title, str(use.joint), use.cycle.name, repr(law)),
+        tables=[*tables, _measured(fit)],
+        notes=fit.notes,
+    )
+
+
+def _measured(fit: WearFit) -> Table:
+    several = len(fit.specimens) > 1
+    columns = [Column.of_words("measured"), Column.of_number("value"), Column.of_number("fit")]
+    columns += [Column.of_words("station")] if several else []
+    stations = {int(row): station for station, indices in fit.specimens.items() for row in indices}
+    rows: list[Row] = []
+    for measured, results in zip(fit.data, fit.results, strict=True):
+        factor = measured.density or 1.0
+        unit = Unit(measured.unit if measured.density is None else measured.unit.replace("mm³", "mg"), factor)
+        for number, (value, result) in enumerate(zip(measured.values, results, strict=True)):
+            after = "" if measured.rate else f" after {counted(measured.cycles[number], 'cycle')}"
+            title = measured.description if measured.rate else f"{measured.measured_quantity}{after}"
+            cells: list[Cell] = [title, Amount(float(value), unit), Amount(float(result), unit)]
+            rows.append(Row([*cells, stations[len(rows)]] if several else cells))
+    return Table("measured", "Measured wear", columns, rows)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ballsocket.core.runge_kutta_chebyshev import integrate_step, max_step_length, stage_count
+from ballsocket.hip.wear_integrator import integrate_step, max_step_length, stage_count
 
 
 @pytest.mark.parametrize("stages", [2, 3, 5, 12, 60])
