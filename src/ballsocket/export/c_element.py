@@ -10,7 +10,7 @@ from itertools import chain
 from math import inf
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import Any, cast
 
 import numpy
 
@@ -26,7 +26,8 @@ from ..core.storage.atomic_files import write_text
 from ..core.validity import Status
 from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
 from ..dynamics.ball_centre import BallCentre, Constants, Vector
-from ..dynamics.load import contact_state_of
+from ..dynamics.bristles import Bristles, Deflections
+from ..dynamics.load import Load, add_bristle_loads, contact_state_of
 from ..dynamics.potential import CurvePotential, curve_potential
 from ..dynamics.reaction import Elastic
 from ..models.closed_form import ClosedFormSolution
@@ -34,11 +35,12 @@ from ..problem import Joint
 from ..version import __version__
 from .c_text import C, c_number
 from .recorder import Part, Recorded, Tape, directional_derivatives
-from .tunable import TUNABLES, Tunable, joint_of_inputs, reason_of_fixed_joint, tunables_of
+from .tunable import Tunable, joint_of_inputs, loss_tunables, reason_of_fixed_joint, tunables_of
 
 ENERGY, HALF_ANGLE, MAX_PRESSURE = "energy_curve", "half_angle_curve", "max_pressure_curve"
 STRESS_RATIO = "stress_ratio_curve"
 STATE = ("position", "velocity", "spin")
+BRISTLES = 4  # number of deflections of bristles
 BEYOND = {
     "extend": "the indentation exceeds the wall thickness or the range of the model; the force has its last stiffness",
     "stop": ContactState.THROUGH_WALL.sentence,
@@ -71,6 +73,11 @@ class Recording:
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
 
+    @property
+    def deflection(self) -> Deflections | tuple[()]:
+        """Deflections of bristles as inputs of the tape; empty without bristles."""
+        return ()
+
     @cached_property
     def joint(self) -> Joint | None:
         """Joint with its tunable numbers as inputs of the tape; None if the law is that of one joint."""
@@ -80,9 +87,11 @@ class Recording:
     def constants(self) -> Constants:
         """Constants of the force element, in which the tunable parameters are inputs of the tape."""
         tuned: dict[str, Any] = {
-            parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True) for parameter in TUNABLES
+            parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True)
+            for parameter in loss_tunables(self.element)
         }
-        tuned["static"] = where(tuned["static"] > tuned["sliding"], tuned["static"], tuned["sliding"])
+        if "static" in tuned:
+            tuned["static"] = where(tuned["static"] > tuned["sliding"], tuned["static"], tuned["sliding"])
         if self.joint is not None:
             R2, L = self.joint.socket_radius, self.joint.liner_thickness
             tuned |= {"ball_radius": self.joint.ball_radius, "socket_radius": R2, "clearance": self.joint.clearance}
@@ -225,12 +234,38 @@ class Recording:
 
     @cached_property
     def slope(self) -> Outputs:
-        """Recorded directional derivatives of load, half angle and pressure with respect to the state."""
-        names = (f"way[{index}]" for index in range(9))
-        direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
-        return _by_array_element(
-            "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
-        )
+        """Recorded directional derivatives of load, half angle, pressure and rates with respect to the state."""
+        inputs, load = (*chain(*self.state), *self.deflection), list(self.load.values())
+        direction = {part: self.tape.input(f"way[{index}]") for index, part in enumerate(inputs)}
+        outputs = [*load[:_LOADS], *self.contact_size.values(), *load[_LOADS:]]
+        return _by_array_element("slope", directional_derivatives(outputs, direction))
+
+
+_LOADS = 7  # number of components of force, moment and energy
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BristleRecording(Recording):
+    """Recorded formulas of a force element with bristles, whose deflections are part of the state."""
+
+    @cached_property
+    def deflection(self) -> Deflections:
+        """Deflections of the bristles as inputs of the tape."""
+        return tuple(self.tape.input(f"deflection[{index}]") for index in range(BRISTLES))  # type: ignore[return-value]
+
+    @cached_property
+    def load(self) -> Outputs:
+        """Recorded force, moment, elastic energy and rates of the deflections, by C variable."""
+        parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
+        recorded: Any = self  # it has the constants of the element
+        smooth = Load(parts[:3], parts[3:], self.contact.energy, recorded, self.centre, self.contact, *self.state)
+        load = add_bristle_loads(smooth, cast(Bristles, self.element.friction), self.deflection)
+        return {
+            **_by_array_element("force", load.force),
+            **_by_array_element("moment", load.moment),
+            "*energy": load.energy,
+            **_by_array_element("rate", load.deflection_rate),
+        }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -344,14 +379,21 @@ class CElement:
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
             )
-        if self.element.internal_state:
-            raise ValueError(f"{self.element.internal_state}; exported elements have no state")
+        if self.element.internal_state and not self.has_bristles:
+            raise ValueError(f"{self.element.internal_state}; exported elements do not have it")
+
+    @property
+    def has_bristles(self) -> bool:
+        """True if the deflections of bristles are part of the state."""
+        return isinstance(self.element.friction, Bristles)
 
     @cached_property
     def recording(self) -> Recording:
         """Recorded formulas of the force element."""
         if isinstance(self.element, PreloadedElement):
             return PreloadRecording(element=self.element, beyond=self.beyond)
+        if self.has_bristles:
+            return BristleRecording(element=self.element, beyond=self.beyond)
         return Recording(element=self.element, beyond=self.beyond)
 
     @cached_property
@@ -374,6 +416,7 @@ class CElement:
             failed=str(self.first_failure.value),
             through_wall=f"{ContactState.THROUGH_WALL.value}: {BEYOND[self.beyond]}",
             **names,
+            **self._arguments,
             **self.about,
         )
 
@@ -381,8 +424,9 @@ class CElement:
     def source(self) -> str:
         """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
-        # distance in mm; a lubricated ball has a force at all distances
-        unloaded = recording.constants.clearance - constants.smoothing if constants.film_damping == 0.0 else -1.0
+        # distance in mm; a lubricated ball has a force at all distances, and bristles a rate
+        always = constants.film_damping > 0.0 or self.has_bristles
+        unloaded = -1.0 if always else recording.constants.clearance - constants.smoothing
         domain = {f"allowed[{index}]": holds for index, holds in enumerate(recording.domain.values())}
         checks = [_range_check_statement(parameter.name, parameter.above) for parameter in self.tunables]
         if domain:
@@ -407,9 +451,22 @@ class CElement:
             pressed=C.statements({**recording.status, **recording.contact_size}),
             tangent=C.statements({**recording.status, **recording.tangent}),
             slope=C.statements({**recording.status, **recording.slope}),
+            no_rate=f"\n        fill(rate, {BRISTLES}, NAN, 0);" if self.has_bristles else "",
+            **self._arguments,
             sentences="\n".join(f'    case {state.value}: return "{text}";' for state, text in sentences.items()),
             **self.about,
         )
+
+    @property
+    def _arguments(self) -> dict[str, str]:
+        """Further arguments of the functions in C for the deflections of bristles, and the sizes of their arrays."""
+        count = BRISTLES if self.has_bristles else 0
+        return {
+            "deflection": f", const double deflection[{count}]" if count else "",
+            "not_finite": " || !is_finite(deflection) || !is_finite(deflection + 1)" if count else "",
+            "rate": f", double rate[{count}]" if count else "",
+            "count": str(9 + count),
+        }
 
     @property
     def first_failure(self) -> ContactState:
