@@ -14,6 +14,7 @@ from .c_element import fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
 from .job import NOT_CENTRAL, ExportJob, Texts
 from .law_tables import pivot_texts, table_texts, two_axes_note
+from .recording import bristle_count
 from .warp import warp_texts
 
 
@@ -76,7 +77,7 @@ class Target:
 
         Raises ValueError: bristles, whose state the program cannot represent.
         """
-        if job.c_program.has_bristles and not self.bristles:
+        if bristle_count(job.element) and not self.bristles:
             raise ValueError(f"{job.element.internal_state}, which {self.name} cannot represent: export c or an FMU")
         notes = "\n".join(filter(None, (self._omitted_features(job), self.note(job))))
         page = job.readme(self.title, self.beyond_range, notes)

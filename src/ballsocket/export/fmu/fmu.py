@@ -21,10 +21,11 @@ from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library, cross_compilers
+from ..recording import bristle_count
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
 from .reference_results import STEP, reference_tables, suggested_stop
-from .variables import UNITS, Variable, bristle_count, variables
+from .variables import UNITS, Variable, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
 

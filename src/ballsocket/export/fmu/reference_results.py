@@ -12,7 +12,8 @@ from ...core.arrays import Numbers
 from ...core.storage.atomic_files import write_text
 from ...dynamics import ForceElement, PreloadedElement
 from ...dynamics.motion import TONNE
-from .variables import bristle_count, variables
+from ..recording import bristle_count
+from .variables import variables
 
 _MM, _MPA = 1e-3, 1e6
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ...dynamics import Bristles, ContactState, ForceElement, PreloadedElement
-from ..c_element import BRISTLES
+from ...dynamics import ContactState, ForceElement, PreloadedElement
+from ..recording import bristle_count
 from ..tunable import Tunable, joint_tunables, reason_of_fixed_joint, tunables_of
 
 UNITS: Mapping[str, Mapping[str, int]] = {
@@ -109,11 +109,6 @@ def variables(element: ForceElement | PreloadedElement, ball_mass: float | None 
     ]
     rows = [*values, *outputs, *rates, *_parameters(element, ball_mass)]
     return tuple(Variable(reference=reference, **row) for reference, row in enumerate(rows, 1))
-
-
-def bristle_count(element: ForceElement | PreloadedElement) -> int:
-    """Return the number of deflections of bristles of an element, 4 or 0."""
-    return BRISTLES if isinstance(element.friction, Bristles) else 0
 
 
 def _values(element: ForceElement | PreloadedElement, ball_mass: float | None) -> list[dict]:
