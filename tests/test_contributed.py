@@ -97,7 +97,7 @@ def test_a_new_view_is_a_file_and_a_line(tmp_path):
     checked_run(tmp_path, "-c", OPENED)
 
 
-IMPORTS, FIRST = "from .tunable import TUNABLES\n", '        Target(\n            name="table"'
+IMPORTS, FIRST = "from .warp import warp_texts\n", '        Target(\n            name="table"'
 
 
 def test_the_command_lists_and_writes_a_new_target(tmp_path):

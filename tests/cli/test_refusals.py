@@ -167,6 +167,10 @@ fmu {rod} --model exact --out a.fmu => the model exact does not solve a preloade
 {fmu} --restitution 0.5 => a restitution and the speed of its impact belong together
 {fmu} --viscosity '2.5 mm' => viscosity = '2.5 mm' is not a viscosity, such as '2.5 mPa s'
 {fmu} --roughness '1 um' => add --viscosity
+{fmu} --bristle-stiffness 100 => add --friction
+{fmu} --ball-mass 0 => ball_mass = 0 is not allowed: a mass (kg) must be above 0
+fmu {rod} --friction 0.1 --bristle-stiffness 100 --out a.fmu => a preloaded joint has no bristles
+export drake hip-28 --friction 0.1 --bristle-stiffness 100 --out a => bristles have a state, which drake cannot
 """
 """Commands, and words of the message after the arrow."""
 

@@ -11,10 +11,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import ballsocket as bs
-from ballsocket.dynamics import Damping, ForceElement, Friction
+from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction, simulate
 from ballsocket.export.compiler import shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.variables import reference_loads, states_in_si, trajectory
+from ballsocket.export.fmu.reference_results import reference_loads, states_in_si, trajectory
 
 from ..cli.command import run
 from ..extent import some
@@ -319,3 +319,139 @@ def test_a_unit_that_stops_discards_a_step_through_the_wall(tmp_path):
     host = Host(tmp_path / "stops.fmu", tmp_path)
     host.set(position=(0.0, 0.0, 8e-3))
     assert host.get("energy")[0] == DISCARD
+
+
+BALLS = {
+    "friction": ForceElement(bs.HessForsbach(), HIP, **LOSSES),
+    "bristles": ForceElement(bs.HessForsbach(), HIP, LOSSES["damping"], Bristles(coefficient=0.05)),
+    "table": ForceElement(bs.Tabulated(), HIP),
+}
+THROWN = {"mass": 1.0, "velocity": (10.0, 0.0, 0.0), "spin": (0.0, 1.0, 0.0), "pull": (3.0, 0.0, 10.0)}  # kg, mm/s, N
+
+
+def thrown(element):
+    """Last position in mm of the ball in Python, extrapolated to a vanishing step; three bounces in 20 ms."""
+    steps = (2e-5,) if element.internal_state else (8e-6, 4e-6)  # LSODA controls its own error
+    ends = [simulate(element, position=(0,) * 3, duration=0.02, step=step, **THROWN).position[-1] for step in steps]
+    return ends[-1] + (ends[-1] - ends[0]) / 3
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", some(VERSIONS, 1))
+@pytest.mark.parametrize("name", some(BALLS, 2))
+def test_a_ball_inside_moves_as_in_python(name, version, fmpy, tmp_path):
+    from fmpy.validation import validate_fmu
+
+    made = Fmu(element=BALLS[name], name="ball", version=version, ball_mass=THROWN["mass"])
+    path = str(made.write(tmp_path / "ball.fmu").path)
+    assert validate_fmu(path) == []
+    fields = ["time", *(f"applied_{each}[{axis}]" for each in ("force", "torque") for axis in (1, 2, 3))]
+    given = np.array([(0.0, *THROWN["pull"], 0.0, 0.0, 0.0)], dtype=[(field, float) for field in fields])
+    start = {"velocity[1]": 1e-3 * THROWN["velocity"][0], "spin[2]": THROWN["spin"][1]}
+    options = {"stop_time": 0.02, "output_interval": 1e-3, "relative_tolerance": 1e-10}
+    wanted = thrown(BALLS[name])
+    for kind in ("CoSimulation", "ModelExchange"):
+        found = fmpy.simulate_fmu(path, fmi_type=kind, input=given, start_values=start, **options)[-1]
+        end = [1e3 * found[f"position[{axis}]"] for axis in (1, 2, 3)]
+        assert_allclose(end, wanted, rtol=0, atol=1e-5)  # 10 nm
+
+
+@pytest.mark.long
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_sources_with_states_are_compiled_without_warnings(version, fmpy, tmp_path):
+    official = ("-DFMI_HEADERS", "-isystem", str(Path(fmpy.__file__).parent / "c-code"))
+    for name, mass in (("bristles", None), ("bristles", 1.0), ("friction", 1.0)):
+        made = Fmu(element=BALLS[name], name="hip", version=version, ball_mass=mass)
+        for file, text in made.sources.items():
+            (tmp_path / file).write_text(text, encoding="utf-8")
+        for options in (official, ("-pedantic-errors",)):
+            strict = (*options, "-Wall", "-Wextra", "-Werror")
+            assert shared_library(made.c_sources, tmp_path / "hip.so", tmp_path, strict).exists()
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_derivatives_of_the_rates_of_states_equal_differences(version, tmp_path):
+    Fmu(element=BALLS["bristles"], name="ball", version=version, ball_mass=0.7).write(tmp_path / "ball.fmu")
+    host = Host(tmp_path / "ball.fmu", tmp_path)
+    start = {"position[3]": 1.2e-4, "position[2]": 1e-5, "velocity[1]": 1e-3, "spin[2]": 2.0, "deflection[1]": 1e-7}
+    host.set(**start)
+    for unknown in (
+        "der(position[1])",
+        "der(velocity[1])",
+        "der(spin[2])",
+        "der(deflection[1])",
+        "force[1]",
+        "spin[2]",
+    ):
+        for known, step in (("position[3]", 1e-9), ("velocity[1]", 1e-6), ("spin[2]", 1e-4), ("deflection[1]", 1e-10)):
+            ends = []
+            for by in (-step, step):
+                host.set(**{**start, known: start[known] + by})
+                ends.append(host.get(unknown)[1][0])
+            host.set(**start)
+            status, slope = host.directional(unknown, known)
+            assert status == GOOD
+            size = abs(host.get(unknown)[1][0]) * 1e-15 / step
+            assert_allclose(slope, (ends[1] - ends[0]) / (2 * step), rtol=1e-4, atol=1e3 * size)
+    assert host.directional("der(velocity[3])", "applied_force[3]")[1] == pytest.approx(1 / 0.7)
+    host.set(mass=-1.0)
+    assert host.get("der(velocity[1])")[0] == ERROR
+
+
+def experiments(path):
+    """Stimuli and references of the experiments in an archive, by the manifest of FMI-LS-REF."""
+    folder = "extra/org.fmi-standard.fmi-ls-ref/"
+    with zipfile.ZipFile(path) as archive:
+        manifest = fromstring(archive.read(f"{folder}fmi-ls-manifest.xml"))
+        (related,) = [each for each in manifest.iter("Related") if each.get("role").startswith("experiment")]
+        for experiment in fromstring(archive.read(folder + related.get("source"))).iter("Experiment"):
+            tables = [archive.read(folder + experiment.find(tag).get("source")) for tag in ("Stimuli", "References")]
+            yield experiment.find("TransientSimulation"), *(table(text.decode().splitlines()) for text in tables)
+
+
+@needs_compiler
+@pytest.mark.parametrize(("name", "mass"), some([("bristles", None), ("friction", None), ("bristles", 1.0)], 2))
+def test_an_archive_has_its_reference_results(name, mass, fmpy, tmp_path):
+    path = Fmu(element=BALLS[name], name="hip", ball_mass=mass).write(tmp_path / "hip.fmu").path
+    ((times, given, reference),) = experiments(path)
+    options = {"stop_time": float(times.get("stopTime")), "output_interval": float(times.get("stepSize"))}
+    kind = "CoSimulation" if name == "bristles" else "ModelExchange"  # of which the other is in the test above
+    found = fmpy.simulate_fmu(str(path), fmi_type=kind, input=given, relative_tolerance=1e-10, **options)
+    assert list(found["time"]) == pytest.approx(list(reference["time"]))
+    outputs = reference.dtype.names[1:]
+    sizes = dict.fromkeys((output.partition("[")[0] for output in outputs), 0.0)
+    for output in outputs:
+        quantity = output.partition("[")[0]
+        sizes[quantity] = max(sizes[quantity], abs(reference[output]).max())
+    for output in outputs:  # both integrate with a tolerance of 1e-10 at a step, and small loads depend on 1e-12 m
+        size = sizes[output.partition("[")[0]]
+        assert_allclose(found[output], reference[output], rtol=0, atol=1e-5 * size)
+
+
+def test_the_manifest_of_reference_results_has_the_form_of_the_layered_standard(folder):
+    with zipfile.ZipFile(folder / "hip3.fmu") as archive:
+        manifest = fromstring(archive.read("extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"))
+    names = "{http://fmi-standard.org/fmi-ls-manifest}fmi-ls-"
+    assert manifest.tag == "fmiReferences"
+    assert manifest.get(f"{names}name") == "org.fmi-standard.fmi-ls-ref"
+    assert {f"{names}version", f"{names}description"} <= set(manifest.keys())
+    assert [(each.get("role"), each.get("type")) for each in manifest] == [
+        ("experiment/smoke-test", "application/x-ma-hs-experiments")
+    ]
+
+
+def test_a_mass_of_zero_is_refused():
+    with pytest.raises(ValueError, match="ball_mass = 0"):
+        Fmu(element=ELEMENT, ball_mass=0.0)
+
+
+def test_the_command_writes_a_unit_with_a_ball_and_bristles(tmp_path):
+    options = ("--ball-mass", "2", "--friction", "0.05", "--bristle-stiffness", "200")
+    done = run("fmu", "hip-28", "--out", "ball.fmu", *options, folder=tmp_path)
+    assert done.stdout.splitlines()[:4] == ["ball.fmu", "ball_in.csv", "ball_ref.csv", "ball_ref.opt"]
+    listed = {each.get("name"): each for each in description(tmp_path / "ball.fmu").find("ModelVariables")}
+    assert listed["mass"].get("start") == "2.0"
+    assert listed["deflection[4]"].get("causality") == "local"
+    assert "StopTime, 0.02" in (tmp_path / "ball_ref.opt").read_text()

@@ -368,18 +368,19 @@ def test_an_invalid_compiler_command_is_reported_and_the_sources_are_written(var
     assert all(path.exists() for path in paths)
 
 
-@pytest.mark.parametrize(
-    ("element", "said"),
-    [
-        (ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05)), "bristles have a state; "),
-        (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "an adhesive ball has a state; "),
-    ],
-)
-def test_elements_with_a_state_are_not_exported_or_compiled(element, said):
-    with pytest.raises(ValueError, match=said):
-        CElement(element=element)
-    with pytest.raises(ValueError, match=said):
-        pytest.importorskip("ballsocket.dynamics.compiled").CompiledElement(element)
+def test_elements_with_a_state_are_refused_by_programs_that_cannot_represent_it():
+    adhesive = ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP)
+    with pytest.raises(ValueError, match="an adhesive ball has a state; "):
+        CElement(element=adhesive)
+    bristles = ForceElement(bs.HessForsbach(), HIP, friction=Bristles(coefficient=0.05))
+    job = ExportJob(element=bristles, name="hip", depth=0.1)
+    assert "hip.c" in TARGETS["c"].file_texts(job)
+    for name in TARGETS.keys() - {"c"}:
+        with pytest.raises(ValueError, match=f"bristles have a state, which {name} cannot represent"):
+            TARGETS[name].file_texts(job)
+    for element, said in ((adhesive, "an adhesive ball has a state; "), (bristles, "bristles have a state; ")):
+        with pytest.raises(ValueError, match=said):
+            pytest.importorskip("ballsocket.dynamics.compiled").CompiledElement(element)
 
 
 @pytest.mark.long

@@ -14,7 +14,7 @@ import typer
 
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_ending
-from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
+from ..dynamics import Bristles, Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis.model import Sphere
 from ..export import TARGETS, ExportJob
 from ..files.joint_file import JointFile
@@ -55,6 +55,9 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         ),
     ] = None
     friction: Annotated[PlainNumber | None, meaning("coefficient of friction", default="no friction")] = None
+    bristle_stiffness: Annotated[
+        PlainNumber | None, meaning("stiffness of bristles in 1/mm, for --friction with a state", default="no bristles")
+    ] = None
     viscosity: Annotated[
         Viscosity | None, meaning("viscosity of a lubricant", example="2.5 mPa s", default="a dry socket")
     ] = None
@@ -69,7 +72,7 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
 
         Raises ValueError: the model has no force law, or a value is not allowed.
         """
-        friction = None if self.friction is None else Friction(coefficient=float(self.friction))
+        friction = self._friction()
         if file.joint.clearance < 0:
             return self._preloaded_element(file, name, friction)
         default = default_model(file.joint, {}) if gap is None else reference
@@ -82,10 +85,14 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
-    def _preloaded_element(self, file: JointFile, name: str | None, friction: Friction | None) -> PreloadedElement:
+    def _preloaded_element(
+        self, file: JointFile, name: str | None, friction: Friction | Bristles | None
+    ) -> PreloadedElement:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
         if name not in (None, OFF_AXIS):
             raise ValueError(f"the model {name} does not solve a preloaded joint: use {OFF_AXIS}")
+        if isinstance(friction, Bristles):
+            raise ValueError("a preloaded joint has no bristles: omit --bristle-stiffness")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
         assumed, sentences = complete(file)
@@ -98,6 +105,15 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         if error > _NOTED_ERROR:
             print_message(f"the tabulated forces differ from the solver's by up to about {100 * error:.2g} %")
         return element
+
+    def _friction(self) -> Friction | Bristles | None:
+        if self.friction is None and self.bristle_stiffness is not None:
+            raise ValueError("--bristle-stiffness is that of friction: add --friction")
+        if self.friction is None:
+            return None
+        if self.bristle_stiffness is None:
+            return Friction(coefficient=float(self.friction))
+        return Bristles(coefficient=float(self.friction), stiffness=float(self.bristle_stiffness))
 
     def _lubricant(self) -> Lubricant | None:
         if self.viscosity is None:
@@ -188,6 +204,9 @@ def fmu(
     fmi: Annotated[int, typer.Option(help="Version of the FMI standard: 2 or 3.")] = 3,
     beyond: Beyond = "extend",
     mass: Mass = 1.0,
+    ball_mass: Annotated[
+        float | None, typer.Option(help="Mass in kg of a ball inside that the unit moves. Default: no ball.")
+    ] = None,
 ) -> None:
     """Write a joint as a functional mock-up unit (FMI).
 
@@ -197,14 +216,14 @@ def fmu(
 
     check_ending("out", out, ".fmu")
     element = inputs.element(joint_options.read(joint), model, gap)
-    unit = Fmu(element=element, name=identifier(out), version=fmi, beyond=beyond, mass=mass)
+    unit = Fmu(element=element, name=identifier(out), version=fmi, beyond=beyond, mass=mass, ball_mass=ball_mass)
     written = unit.write(out)
     start = ""
     if isinstance(unit.element, PreloadedElement):
         position = ", ".join(f"{1e-3 * component:.4g}" for component in unit.element.rest_position)
         start = f": starts at rest, with force 0 at position ({position}) m"
     echo_path(written.path, start)
-    for extra_path in write_cross_check(unit.element, out):
+    for extra_path in write_cross_check(unit.element, out, ball_mass):
         echo_path(extra_path)
     typer.echo(unit.time_steps)
     if written.missing:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import cast
 
-from ..dynamics import ForceElement, PreloadedElement
+from ..dynamics import Bristles, ForceElement, PreloadedElement
 from ..dynamics.potential import FormulaPotential, SpringPotential
 from ..models.closed_form import ClosedForm, ClosedFormSolution
 from ..problem import Joint
@@ -38,9 +38,12 @@ class Tunable:
 
 
 # name, attribute of the element, unit here, unit and factor in the International System, meaning
-TUNABLES = (
+DAMPING_TUNABLES = (
     Tunable("hysteresis", "constants.hysteresis", "s/mm", "s/m", 1e3, "damping force per contact force and speed"),
     Tunable("retardation_time", "constants.time", "s", "s", 1.0, "retardation time of the liner"),
+)
+TUNABLES = (
+    *DAMPING_TUNABLES,
     Tunable("friction_coefficient", "constants.sliding", "1", "1", 1.0, "coefficient of sliding friction"),
     Tunable(
         "static_coefficient",
@@ -72,7 +75,7 @@ TUNABLES = (
         "viscous_friction", "constants.viscous", "s/mm", "s/m", 1e3, "viscous friction per contact force and speed"
     ),
 )
-"""Adjustable parameters of every exported element, in the order of the C structure."""
+"""Adjustable parameters of damping and friction, in the order of the C structure."""
 
 JOINT_TUNABLES = (
     Tunable("ball_radius", "joint.ball_radius", "mm", "m", 1e-3, "radius of the ball", above=True),
@@ -113,6 +116,12 @@ def reason_of_fixed_joint(element: ForceElement | PreloadedElement) -> str:
     return ""
 
 
+def loss_tunables(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
+    """List the adjustable parameters of damping and friction; the numbers of bristles are constants."""
+    return DAMPING_TUNABLES if isinstance(element.friction, Bristles) else TUNABLES
+
+
 def tunables_of(element: ForceElement | PreloadedElement) -> tuple[Tunable, ...]:
     """List the adjustable parameters of an exported element, in the order of the C structure."""
-    return TUNABLES if reason_of_fixed_joint(element) else (*TUNABLES, *joint_tunables(element))
+    losses = loss_tunables(element)
+    return losses if reason_of_fixed_joint(element) else (*losses, *joint_tunables(element))

@@ -12,9 +12,10 @@ from ..contact.octave_curve import OctaveCurve
 from ..core.checks import require
 from ..dynamics.ball_centre import Constants
 from ..dynamics.potential import CurvePotential, curve_potential
-from .c_element import ENERGY, Recording, fill_template
+from .c_element import fill_template
 from .c_text import CURVE_SLOPES, Language
 from .job import ExportJob, Texts
+from .recording import ENERGY, Recording
 
 
 def _warp_number(value: float) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from html import escape
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
@@ -20,9 +21,11 @@ from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library, cross_compilers
+from ..recording import bristle_count
 from ..targets import ExportJob
 from ..time_steps import TimeStepAdvice
-from .variables import STEP, STOP, UNITS, Variable, start_inputs, variables
+from .reference_results import STEP, reference_tables, suggested_stop
+from .variables import UNITS, Variable, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)  # fixed date of all files, so that equal elements give equal archives
 
@@ -50,15 +53,15 @@ def fmi2_description(fmu: Fmu) -> bytes:
     for parent in (SubElement(root[0], "SourceFiles"), files):
         for source in fmu.c_sources:
             SubElement(parent, "File", name=source)
-    variables_element = _add_units_and_logs(root)
+    variables_element = _add_units_and_logs(root, fmu.ball_mass)
     for variable in fmu.variables:
         scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
-        SubElement(scalar_variable, "Real", _unit_and_start_attributes(variable))
+        SubElement(scalar_variable, "Real", _number_attributes(variable))
     structure = SubElement(root, "ModelStructure")
-    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
-    for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
-        for variable in outputs:
-            dependencies = _dependency_attributes(variable.needs, parent.tag)
+    for tag, unknowns in _unknowns(fmu, ("Outputs", "Derivatives", "InitialUnknowns")):
+        parent = SubElement(structure, tag)
+        for variable in unknowns:
+            dependencies = _dependency_attributes(variable.needs, tag)
             SubElement(parent, "Unknown", {"index": str(variable.reference), **dependencies})
     return _xml_bytes(root)
 
@@ -66,20 +69,25 @@ def fmi2_description(fmu: Fmu) -> bytes:
 def fmi3_description(fmu: Fmu) -> bytes:
     """Return the XML file `modelDescription.xml` of an FMU for FMI 3.0, as bytes."""
     root = _description_root(fmu, {"instantiationToken": fmu.guid})
-    variables_element = _add_units_and_logs(root)
+    variables_element = _add_units_and_logs(root, fmu.ball_mass)
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
     SubElement(variables_element, "Float64", time, unit="s")
     for variable in fmu.variables:
-        SubElement(
-            variables_element, "Float64", {**_variable_attributes(variable), **_unit_and_start_attributes(variable)}
-        )
+        SubElement(variables_element, "Float64", {**_variable_attributes(variable), **_number_attributes(variable)})
     structure = SubElement(root, "ModelStructure")
-    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
-    for tag in ("Output", "InitialUnknown"):
-        for variable in outputs:
+    for tag, unknowns in _unknowns(fmu, ("Output", "ContinuousStateDerivative", "InitialUnknown")):
+        for variable in unknowns:
             dependencies = _dependency_attributes(variable.needs, tag)
             SubElement(structure, tag, {"valueReference": str(variable.reference), **dependencies})
     return _xml_bytes(root)
+
+
+def _unknowns(fmu: Fmu, tags: tuple[str, str, str]) -> Iterator[tuple[str, list[Variable]]]:
+    """Yield the outputs, the rates of the states, and what is computed at the start, after their names in XML."""
+    outputs = [variable for variable in fmu.variables if variable.causality == "output"]
+    rates = [variable for variable in fmu.variables if variable.state]
+    computed = [variable for variable in (*outputs, *rates) if not variable.is_exact]
+    yield from ((tag, unknowns) for tag, unknowns in zip(tags, (outputs, rates, computed), strict=True) if unknowns)
 
 
 def build_description(fmu: Fmu) -> bytes:
@@ -103,6 +111,35 @@ def terminals_description(fmu: Fmu) -> bytes:
     return _xml_bytes(root)
 
 
+def layered_standard_files(fmu: Fmu) -> dict[str, bytes]:
+    """Return the files of FMI-LS-REF by their paths in an archive: a manifest, an experiment, and its two tables."""
+    name, (given, reference) = fmu.name, reference_tables(fmu.element, fmu.ball_mass)
+    manifest_names = {
+        "xmlns:fmi-ls": "http://fmi-standard.org/fmi-ls-manifest",
+        "fmi-ls:fmi-ls-name": "org.fmi-standard.fmi-ls-ref",
+        "fmi-ls:fmi-ls-version": "1.0.0-alpha.1",
+        "fmi-ls:fmi-ls-description": "Layered Standard providing information on related files included in an FMU.",
+    }
+    manifest, experiments = Element("fmiReferences", manifest_names), Element("Experiments", name=name)
+    about = "inputs, and the outputs of the element in Python"
+    related = {"type": "application/x-ma-hs-experiments", "source": f"{name}.exp", "role": "experiment/smoke-test"}
+    SubElement(manifest, "Related", related, description=about)
+    experiment = SubElement(experiments, "Experiment", name=name)
+    times = {"startTime": "0", "stopTime": str(suggested_stop(fmu.ball_mass)), "stepSize": str(STEP)}
+    SubElement(experiment, "TransientSimulation", times)
+    SubElement(experiment, "Stimuli", source=f"{name}_in.csv")
+    SubElement(experiment, "References", source=f"{name}_ref.csv")
+    return {
+        f"{_LS_REF}/fmi-ls-manifest.xml": _xml_bytes(manifest),
+        f"{_LS_REF}/{name}.exp": _xml_bytes(experiments),
+        f"{_LS_REF}/{name}_in.csv": given.encode(),
+        f"{_LS_REF}/{name}_ref.csv": reference.encode(),
+    }
+
+
+_LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
+
+
 def _description_root(fmu: Fmu, identifiers: dict[str, str]) -> Element:
     """Make the root element of a model description in XML, with the capabilities of the FMU."""
     description = f"ball in a socket, {fmu.element.model.title}"
@@ -123,7 +160,7 @@ def _description_root(fmu: Fmu, identifiers: dict[str, str]) -> Element:
     return root
 
 
-def _add_units_and_logs(root: Element) -> Element:
+def _add_units_and_logs(root: Element, ball_mass: float | None) -> Element:
     """Add units, log categories and the default experiment to a model description, and return its variables."""
     units = SubElement(root, "UnitDefinitions")
     for name, powers in UNITS.items():
@@ -132,7 +169,7 @@ def _add_units_and_logs(root: Element) -> Element:
     categories = SubElement(root, "LogCategories")
     for name, meaning in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=meaning)
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(suggested_stop(ball_mass)), stepSize=str(STEP))
     return SubElement(root, "ModelVariables")
 
 
@@ -142,17 +179,14 @@ def _variable_attributes(variable: Variable) -> dict[str, str]:
         "valueReference": str(variable.reference),
         "description": variable.description,
         "causality": variable.causality,
-        "variability": _VARIABILITIES.get(variable.causality, "continuous"),
+        "variability": variable.variability,
     }
-    return attributes | ({"initial": "exact"} if variable.causality in _VARIABILITIES else {})
+    return attributes | ({"initial": "exact"} if variable.is_exact else {})
 
 
-_VARIABILITIES = {"parameter": "tunable", "local": "constant"}
-"""Variability of variables by their causality; "continuous" of the others."""
-
-
-def _unit_and_start_attributes(variable: Variable) -> dict[str, str]:
-    return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
+def _number_attributes(variable: Variable) -> dict[str, str]:
+    start = {} if variable.start is None else {"start": repr(variable.start)}
+    return {"unit": variable.unit, **start, **({"derivative": str(variable.state)} if variable.state else {})}
 
 
 def _dependency_attributes(inputs: Iterable[int], tag: str) -> dict[str, str]:
@@ -222,8 +256,8 @@ class Fmu:
     """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
-    has no states. Damping and friction are tunable parameters, and the joint if its law is a formula. The start
-    position of a preloaded ball is that at rest.
+    has no states but the deflections of bristles, and the motion of a ball inside. Damping and friction are tunable
+    parameters, and the joint if its law is a formula. The start position of a preloaded ball is that at rest.
 
     Parameters
     ----------
@@ -236,11 +270,14 @@ class Fmu:
         What follows an indentation beyond the range of the law, as in `CElement`.
     mass : float
         Mass of the ball in kg, for the advice on time steps.
+    ball_mass : float, optional
+        Mass in kg, above 0, of a ball inside, whose motion the unit integrates in a socket at rest. Its inputs are then
+        a force and a torque on the ball. None, the default, has no ball.
 
     Raises
     ------
     ValueError
-        An invalid name or version.
+        An invalid name, version or mass.
     """
 
     element: ForceElement | PreloadedElement
@@ -248,8 +285,11 @@ class Fmu:
     version: int = 3
     beyond: str = "extend"
     mass: float = 1.0
+    ball_mass: float | None = None
 
     def __post_init__(self) -> None:
+        if self.ball_mass is not None:
+            require("ball_mass", self.ball_mass, 0.0 < self.ball_mass < inf, "a mass (kg) must be above 0 and finite")
         require("FMI version", self.version, self.version in STANDARDS, "2 or 3")
         CElement(element=self.element, name=self.name, beyond=self.beyond)
 
@@ -291,15 +331,21 @@ class Fmu:
 
     @cached_property
     def _numbers(self) -> dict[str, str]:
-        """Start values, and the limit of validity with its message, for placeholders of the C template."""
-        element, depth = self.element, self._job.depth
+        """Numbers of variables, start values, and the message on validity, for placeholders of the C template."""
+        element, inside, bristles = self.element, self.ball_mass is not None, bristle_count(self.element)
+        parts = [("1e-3", 6), ("1.0", 3), ("1e-3", bristles), ("1.0", 6 * inside)]
+        fixed = [variable for variable in self.variables if variable.variability != "continuous"]
+        values = self.variables[: sum(count for _, count in parts)]
         return {
-            "inputs": ", ".join(map(c_number, start_inputs(element))),
-            "starts": ", ".join(
-                c_number(variable.start or 0.0) for variable in self.variables if variable.causality in _VARIABILITIES
-            ),
-            "fixed": str(sum(variable.causality == "local" for variable in self.variables)),
-            "beyond": f"{element.model.name} is not valid beyond {depth:.4g} mm in the exported joint",
+            "ball": str(int(inside)),
+            "bristles": str(bristles),
+            "fixed": str(sum(variable.variability == "constant" for variable in fixed)),
+            "at_deflection": ", s + 9" if bristles else "",
+            "into_bend": ", bend" if bristles else "",
+            "value_units": ", ".join(unit for unit, count in parts for _ in range(count)),
+            "values": ", ".join(c_number(variable.start) for variable in values if variable.start is not None),
+            "starts": ", ".join(c_number(variable.start) for variable in fixed if variable.start is not None),
+            "beyond": f"{element.model.name} is not valid beyond {self._job.depth:.4g} mm in the exported joint",
         }
 
     @property
@@ -307,10 +353,10 @@ class Fmu:
         """Names of the C files, which a tool compiles."""
         return [name for name in self.sources if name.endswith(".c")]
 
-    @property
+    @cached_property
     def variables(self) -> tuple[Variable, ...]:
-        """Inputs, outputs and parameters."""
-        return variables(self.element)
+        """Inputs, outputs, states, rates, parameters and constants."""
+        return variables(self.element, self.ball_mass)
 
     def write(self, path: Path) -> FmuFile:
         """Write the FMU archive, and return its path with a note on each binary that could not be made.
@@ -322,6 +368,7 @@ class Fmu:
         page = escape(self._job.readme(f"functional mock-up unit of FMI {self.standard.version}"))
         files["documentation/index.html"] = f'<!doctype html><meta charset="utf-8"><pre>{page}</pre>\n'.encode()
         files["documentation/licenses/license.txt"] = fill_template("license.txt").encode()
+        files |= layered_standard_files(self)
         if self.version == 3:
             files["sources/buildDescription.xml"] = build_description(self)
             files["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_description(self)

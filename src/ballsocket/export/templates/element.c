@@ -48,13 +48,13 @@ $unloaded
     return square > 0.0 && unloaded > 0.0 && square <= unloaded * unloaded;
 }
 
-int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3],
-                 double force[3], double moment[3], double *energy)
+int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3]$deflection,
+                 double force[3], double moment[3], double *energy$rate)
 {
     int status;
-    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)) {
+    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)$not_finite) {
         fill(force, 3, NAN, 0);
-        fill(moment, 3, NAN, 0);
+        fill(moment, 3, NAN, 0);$no_rate
         return fill(energy, 1, NAN, ${NAME}_NO_NUMBER);
     }
     if (apart(p, position)) {
@@ -101,14 +101,14 @@ $tangent
 }
 
 int ${name}_slope(const ${name}_parameters *p, const double position[3], const double velocity[3],
-                  const double spin[3], const double way[9], double slope[9])
+                  const double spin[3]$deflection, const double way[$count], double slope[$count])
 {
     int status;
-    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)
+    if (!is_finite(position) || !is_finite(velocity) || !is_finite(spin)$not_finite
         || !is_finite(way) || !is_finite(way + 3) || !is_finite(way + 6))
-        return fill(slope, 9, NAN, ${NAME}_NO_NUMBER);
+        return fill(slope, $count, NAN, ${NAME}_NO_NUMBER);
     if (apart(p, position))
-        return fill(slope, 9, 0.0, ${NAME}_FREE);
+        return fill(slope, $count, 0.0, ${NAME}_FREE);
 $slope
     return status;
 }

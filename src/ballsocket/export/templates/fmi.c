@@ -1,7 +1,12 @@
 /* The joint as an FMU of version $standard, for model exchange and co-simulation. Written by ballsocket $version.
-   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, 10..19 force, moment,
-   energy, half angle, largest pressure and status, from 20 on parameters, then constants. The unit has no continuous states. */
+   All quantities are in SI units. Value references: 0 time, 1..9 position, velocity and spin, then deflections of
+   bristles (4 or none), applied force and torque (6 with a ball inside), 10 outputs (force, moment, energy, half angle,
+   largest pressure and status), rates of the states, parameters, and constants. Deflections are states; position,
+   velocity and spin are states of a ball inside, otherwise inputs. */
 #define FMI $fmi
+#define BALL $ball
+#define BRISTLES $bristles
+#define STATES (BRISTLES + 9 * BALL)
 
 #include <math.h>
 #include <stdbool.h>
@@ -74,20 +79,22 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 #define UNIT fmi${fmi}$handle c
 #define REFERENCES const fmi${fmi}ValueReference vr[], size_t n
 
-enum { INPUTS = 9, OUTPUTS = 10, PARAMETERS = $parameters, FIXED = $fixed };
-enum { CONSTANTS = 1 + INPUTS + OUTPUTS + PARAMETERS, VARIABLES = CONSTANTS + FIXED };
+enum { MOTION = 9, APPLIED = MOTION + BRISTLES, VALUES = APPLIED + 6 * BALL, FIRST_STATE = MOTION * !BALL };
+enum { OUTPUTS = 10, LOADS = OUTPUTS - 1, RESULTS = OUTPUTS + STATES };
+enum { PARAMETERS = $parameters, MASS = PARAMETERS, INERTIA, TUNABLES = PARAMETERS + 2 * BALL, FIXED = $fixed };
+enum { CONSTANTS = 1 + VALUES + RESULTS + TUNABLES, VARIABLES = CONSTANTS + FIXED };
 typedef fmi${fmi}Status result;
 enum { OK = fmi${fmi}OK, WARNING = fmi${fmi}Warning, DISCARD = fmi${fmi}Discard, ERROR = fmi${fmi}Error };
 
 /* Numbers that a host can save and restore. */
 typedef struct {
-    double time, input[INPUTS], parameter[PARAMETERS + FIXED];
+    double time, step, value[VALUES], parameter[TUNABLES + FIXED];
 } memory;
 
 typedef struct {
     memory now;
-    double output[OUTPUTS];
-    int evaluated, status, logged[4];
+    double result[RESULTS];
+    int evaluated, status, trying, logged[4];
 #if FMI == 2
     const fmi2CallbackFunctions *host;
     char name[200];
@@ -98,15 +105,15 @@ typedef struct {
 } instance;
 
 /* Units of the force element in SI units. */
-static const double input_unit[INPUTS] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0};
+static const double value_unit[VALUES] = {$value_units};
 static const double output_unit[OUTPUTS] = {1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1e6, 1.0};
 static const double parameter_unit[PARAMETERS] = {$units};
 
-/* Log one message of each level, not one at each step; return the level. */
+/* Log one message of each level, not one at each step, and none on a trial step; return the level. */
 static result report(instance *i, int level, const char *message)
 {
     static const char *const categories[] = {"", "logStatusWarning", "logStatusDiscard", "logStatusError"};
-    if (i->logged[level]++)
+    if (i->trying || i->logged[level]++)
         return (result)level;
 #if FMI == 2
     if (i->host && i->host->logger)
@@ -120,10 +127,10 @@ static result report(instance *i, int level, const char *message)
 
 static void set_defaults(instance *i)
 {
-    const double defaults[PARAMETERS + FIXED] = {$starts};
-    const double at_rest[INPUTS] = {$inputs};
+    const double defaults[TUNABLES + FIXED] = {$starts};
+    const double at_rest[VALUES] = {$values};
     memset(&i->now, 0, sizeof i->now);
-    memcpy(i->now.input, at_rest, sizeof at_rest);
+    memcpy(i->now.value, at_rest, sizeof at_rest);
     memcpy(i->now.parameter, defaults, sizeof defaults);
     memset(i->logged, 0, sizeof i->logged);
     i->evaluated = 0;
@@ -139,12 +146,12 @@ static instance *check_token(instance *i, const char *token)
     return NULL;
 }
 
-static void convert_units(const instance *i, double state[INPUTS], ${name}_parameters *p)
+static void convert_units(const instance *i, double state[VALUES], ${name}_parameters *p)
 {
     double tuned[PARAMETERS];
     int k;
-    for (k = 0; k < INPUTS; k++)
-        state[k] = i->now.input[k] / input_unit[k];
+    for (k = 0; k < VALUES; k++)
+        state[k] = i->now.value[k] / value_unit[k];
     for (k = 0; k < PARAMETERS; k++)
         tuned[k] = i->now.parameter[k] / parameter_unit[k];
     memcpy(p, tuned, sizeof *p);
@@ -167,25 +174,115 @@ static result report_status(instance *i, const ${name}_parameters *p, int status
     return report(i, status == ${NAME}_THROUGH_WALL ? DISCARD : ERROR, text);
 }
 
+/* Rates of the states, linear in the values x and the loads y; `bend` has those of the bristles in package units. */
+static void find_rates(const instance *i, const double x[VALUES], double y[RESULTS], const double *bend)
+{
+    double *rate = y + OUTPUTS;
+    int k;
+    (void)i, (void)x, (void)bend, (void)rate, (void)k;
+#if BALL
+    for (k = 0; k < 3; k++) {
+        rate[k] = x[3 + k];
+        rate[3 + k] = (y[k] + x[APPLIED + k]) / i->now.parameter[MASS];
+        rate[6 + k] = (y[3 + k] + x[APPLIED + 3 + k]) / i->now.parameter[INERTIA];
+    }
+#endif
+#if BRISTLES
+    for (k = 0; k < BRISTLES; k++)
+        rate[9 * BALL + k] = bend[k] * value_unit[MOTION + k];
+#endif
+}
+
+static const char *complaint_of(const instance *i, const ${name}_parameters *p)
+{
+#if BALL
+    if (!(i->now.parameter[MASS] > 0.0 && i->now.parameter[INERTIA] > 0.0))
+        return "mass and inertia must be above 0";
+#endif
+    (void)i;
+    return ${name}_complaint(p);
+}
+
 static result evaluate(instance *i)
 {
-    double state[INPUTS], *y = i->output;
+    double s[VALUES], bend[BRISTLES + 1], *y = i->result;
     const char *complaint;
     ${name}_parameters p;
     int k, status;
     if (i->evaluated)
         return (result)i->status;
     i->evaluated = 1;
-    convert_units(i, state, &p);
-    complaint = ${name}_complaint(&p);
-    status = ${name}_load(&p, state, state + 3, state + 6, y, y + 3, y + 6);
-    ${name}_contact(&p, state, y + 7, y + 8);
+    convert_units(i, s, &p);
+    complaint = complaint_of(i, &p);
+    status = ${name}_load(&p, s, s + 3, s + 6$at_deflection, y, y + 3, y + 6$into_bend);
+    ${name}_contact(&p, s, y + 7, y + 8);
     y[9] = status;
     for (k = 0; k < OUTPUTS; k++)
-        y[k] = complaint ? NAN : y[k] * output_unit[k];
-    i->status = complaint ? report(i, ERROR, complaint) : report_status(i, &p, status, state);
+        y[k] *= output_unit[k];
+    find_rates(i, i->now.value, y, bend);
+    for (k = 0; complaint && k < RESULTS; k++)
+        y[k] = NAN;
+    i->status = complaint ? report(i, ERROR, complaint) : report_status(i, &p, status, s);
     return (result)i->status;
 }
+
+#if STATES
+/* Advance the states by the pair of Dormand and Prince of orders 5 and 4. The error of a step stays below 1e-10 of each
+   state and its unit, as in Python. */
+static result advance(instance *i, double end)
+{
+    static const double stage[6][6] = {{1.0 / 5},
+                                       {3.0 / 40, 9.0 / 40},
+                                       {44.0 / 45, -56.0 / 15, 32.0 / 9},
+                                       {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+                                       {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+                                       {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static const double error[7] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
+                                    -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+    double *x = i->now.value + FIRST_STATE, start[STATES], rate[7][STATES], h, worst, sum;
+    long trial;
+    int status, j, k, n;
+    for (trial = 0; i->now.time < end; trial++) {
+        h = i->now.step > 0.0 && i->now.step < end - i->now.time ? i->now.step : end - i->now.time;
+        if (trial == 10000000 || i->now.time + h == i->now.time)
+            return report(i, ERROR, "the states cannot be integrated: their rates are not finite, or too large");
+        if ((status = evaluate(i)) >= DISCARD)
+            return (result)status;
+        memcpy(start, x, sizeof start);
+        memcpy(rate[0], i->result + OUTPUTS, sizeof start);
+        i->trying = 1;
+        for (n = 0; n < 6; n++) {
+            for (k = 0; k < STATES; k++) {
+                for (j = 0, sum = 0.0; j <= n; j++)
+                    sum += stage[n][j] * rate[j][k];
+                x[k] = start[k] + h * sum;
+            }
+            i->evaluated = 0;
+            evaluate(i);
+            memcpy(rate[n + 1], i->result + OUTPUTS, sizeof start);
+        }
+        i->trying = i->evaluated = 0;
+        for (k = 0, worst = 1e-10; k < STATES; k++) {
+            for (j = 0, sum = 0.0; j < 7; j++)
+                sum += error[j] * rate[j][k];
+            sum = fabs(h * sum) / (1e-10 * (value_unit[FIRST_STATE + k] + fabs(x[k])));
+            worst = sum > worst || sum != sum ? sum : worst;
+        }
+        if (worst <= 1.0)
+            i->now.time = h < end - i->now.time ? i->now.time + h : end;
+        else
+            memcpy(x, start, sizeof start);
+        i->now.step = h * (worst > 1e-10 ? fmin(5.0, 0.9 * pow(worst, -0.2)) : worst > 0.0 ? 5.0 : 0.1);
+    }
+    return evaluate(i);
+}
+#else
+static result advance(instance *i, double end)
+{
+    i->now.time = end;
+    return evaluate(i);
+}
+#endif
 
 static result unknown_reference(UNIT)
 {
@@ -196,8 +293,18 @@ static result no_variables(UNIT, size_t n) { return n == 0 ? (result)OK : unknow
 static result too_few(UNIT) { return report((instance *)c, ERROR, "fewer values than value references"); }
 #endif
 
-static int is_input(unsigned number) { return number > 0 && number <= INPUTS; }
-static int is_output(unsigned number) { return number > INPUTS && number <= INPUTS + OUTPUTS; }
+/* Number with a value reference below VARIABLES: time, values, results, parameters and constants. */
+static double *place(instance *i, unsigned number)
+{
+    if (number == 0)
+        return &i->now.time;
+    if (number <= VALUES)
+        return i->now.value + number - 1;
+    if (number <= VALUES + RESULTS)
+        return i->result + number - 1 - VALUES;
+    return i->now.parameter + number - 1 - VALUES - RESULTS;
+}
+static int is_result(unsigned number) { return number > VALUES && number <= VALUES + RESULTS; }
 
 static result get_numbers(UNIT, REFERENCES, double *values)
 {
@@ -205,15 +312,11 @@ static result get_numbers(UNIT, REFERENCES, double *values)
     result worst = (result)OK, status;
     size_t k;
     for (k = 0; k < n; k++) {
-        const unsigned number = vr[k];
-        if (number >= VARIABLES)
+        if (vr[k] >= VARIABLES)
             return unknown_reference(c);
-        if (is_output(number) && (status = evaluate(i)) > worst)
+        if (is_result(vr[k]) && (status = evaluate(i)) > worst)
             worst = status;
-        values[k] = number == 0         ? i->now.time
-                    : is_input(number)  ? i->now.input[number - 1]
-                    : is_output(number) ? i->output[number - 1 - INPUTS]
-                                        : i->now.parameter[number - 1 - INPUTS - OUTPUTS];
+        values[k] = *place(i, vr[k]);
     }
     return worst;
 }
@@ -223,13 +326,9 @@ static result set_numbers(UNIT, REFERENCES, const double *values)
     instance *i = (instance *)c;
     size_t k;
     for (k = 0; k < n; k++) {
-        const unsigned number = vr[k];
-        if (number == 0 || is_output(number) || number >= CONSTANTS)
+        if (vr[k] == 0 || is_result(vr[k]) || vr[k] >= CONSTANTS)
             return unknown_reference(c);
-        if (is_input(number))
-            i->now.input[number - 1] = values[k];
-        else
-            i->now.parameter[number - 1 - INPUTS - OUTPUTS] = values[k];
+        *place(i, vr[k]) = values[k];
     }
     i->evaluated = 0;
     return (result)OK;
@@ -240,23 +339,28 @@ static result directional(UNIT, const fmi${fmi}ValueReference unknowns[], size_t
                           double *sensitivity)
 {
     instance *i = (instance *)c;
-    double direction[INPUTS] = {0.0}, slope[OUTPUTS] = {0.0}, state[INPUTS];
+    double direction[VALUES] = {0.0}, way[VALUES], slope[APPLIED], result_slope[RESULTS] = {0.0}, s[VALUES];
     ${name}_parameters p;
-    int status;
+    int status, j;
     size_t k;
     for (k = 0; k < known; k++) {
-        if (!is_input(knowns[k]))
+        if (knowns[k] == 0 || knowns[k] > VALUES)
             return unknown_reference(c);
-        direction[knowns[k] - 1] = seed[k] / input_unit[knowns[k] - 1];
+        direction[knowns[k] - 1] = seed[k];
     }
-    convert_units(i, state, &p);
-    status = ${name}_slope(&p, state, state + 3, state + 6, direction, slope);
+    for (j = 0; j < VALUES; j++)
+        way[j] = direction[j] / value_unit[j];
+    convert_units(i, s, &p);
+    status = ${name}_slope(&p, s, s + 3, s + 6$at_deflection, way, slope);
+    for (j = 0; j < LOADS; j++)
+        result_slope[j] = slope[j] * output_unit[j];
+    find_rates(i, direction, result_slope, slope + LOADS);
     for (k = 0; k < many; k++) {
-        if (!is_output(unknowns[k]))
+        if (unknowns[k] == 0 || unknowns[k] > VALUES + RESULTS)
             return unknown_reference(c);
-        sensitivity[k] = slope[unknowns[k] - 1 - INPUTS] * output_unit[unknowns[k] - 1 - INPUTS];
+        sensitivity[k] = is_result(unknowns[k]) ? result_slope[unknowns[k] - 1 - VALUES] : direction[unknowns[k] - 1];
     }
-    return report_status(i, &p, status, state);
+    return report_status(i, &p, status, s);
 }
 
 /* Functions of both versions. A name that differs in its letters stands in the template as a placeholder. */
@@ -316,12 +420,37 @@ API fmi${fmi}$deserialize(UNIT, const fmi${fmi}Byte bytes[], size_t size, fmi${f
     return (result)OK;
 }
 
-#define NO_STATES(function, type) API function(UNIT, type x[], size_t n) { (void)x; return no_variables(c, n); }
-NO_STATES(fmi${fmi}SetContinuousStates, const double)
-NO_STATES(fmi${fmi}GetContinuousStates, double)
-NO_STATES(fmi${fmi}GetNominalsOfContinuousStates, double)
-NO_STATES(fmi${fmi}GetEventIndicators, double)
-NO_STATES(fmi${fmi}Get$derivatives, double)
+static result wrong_count(UNIT) { return report((instance *)c, ERROR, "a wrong number of states"); }
+API fmi${fmi}SetContinuousStates(UNIT, const double x[], size_t n)
+{
+    if (n != STATES)
+        return wrong_count(c);
+    memcpy(((instance *)c)->now.value + FIRST_STATE, x, n * sizeof *x);
+    ((instance *)c)->evaluated = 0;
+    return (result)OK;
+}
+API fmi${fmi}GetContinuousStates(UNIT, double x[], size_t n)
+{
+    if (n != STATES)
+        return wrong_count(c);
+    memcpy(x, ((instance *)c)->now.value + FIRST_STATE, n * sizeof *x);
+    return (result)OK;
+}
+API fmi${fmi}GetNominalsOfContinuousStates(UNIT, double x[], size_t n)
+{
+    if (n != STATES)
+        return wrong_count(c);
+    memcpy(x, value_unit + FIRST_STATE, n * sizeof *x);
+    return (result)OK;
+}
+API fmi${fmi}Get$derivatives(UNIT, double x[], size_t n)
+{
+    const result status = n == STATES ? evaluate((instance *)c) : wrong_count(c);
+    if (n == STATES)
+        memcpy(x, ((instance *)c)->result + OUTPUTS, n * sizeof *x);
+    return status;
+}
+API fmi${fmi}GetEventIndicators(UNIT, double x[], size_t n) { (void)x; return no_variables(c, n); }
 
 #if FMI == 2
 EXPORTED const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -384,8 +513,8 @@ API fmi2GetRealOutputDerivatives(UNIT, REFERENCES, const fmi2Integer order[], fm
 API fmi2DoStep(UNIT, fmi2Real time, fmi2Real step, fmi2Boolean no_rollback)
 {
     (void)no_rollback;
-    fmi2SetTime(c, time + step);
-    return evaluate((instance *)c);
+    fmi2SetTime(c, time);
+    return advance((instance *)c, time + step);
 }
 API fmi2CancelStep(UNIT) { (void)c; return fmi2Error; }
 API fmi2GetStatus(UNIT, const fmi2StatusKind kind, fmi2Status *value)
@@ -524,7 +653,8 @@ API fmi3GetIntervalFraction(UNIT, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 
 
 API fmi3GetNumberOfVariableDependencies(UNIT, fmi3ValueReference number, size_t *count)
 {
-    *count = is_output(number) ? (number > INPUTS + 6 ? 3 : INPUTS) : 0;
+    const unsigned row = number - VALUES;
+    *count = !is_result(number) ? 0 : row > OUTPUTS ? VALUES : row > 6 ? 3 : APPLIED;
     return number < VARIABLES ? fmi3OK : unknown_reference(c);
 }
 API fmi3GetVariableDependencies(UNIT, fmi3ValueReference dependent, size_t dependent_elements[],
@@ -554,10 +684,10 @@ API fmi3GetAdjointDerivative(UNIT, const fmi3ValueReference unknowns[], size_t m
                              fmi3Float64 sensitivity[], size_t sensitivities)
 {
     const fmi3Float64 one = 1.0;
-    fmi3Float64 column[OUTPUTS];
+    fmi3Float64 column[VALUES + RESULTS];
     size_t k, u;
     fmi3Status worst = fmi3OK, status;
-    if (seeds < many || sensitivities < known || many > OUTPUTS)
+    if (seeds < many || sensitivities < known || many > VALUES + RESULTS)
         return too_few(c);
     for (k = 0; k < known; k++) {
         if ((status = directional(c, unknowns, many, knowns + k, 1, &one, column)) > worst)
@@ -583,7 +713,7 @@ API fmi3CompletedIntegratorStep(UNIT, fmi3Boolean no_rollback, fmi3Boolean *even
     return fmi3OK;
 }
 API fmi3GetNumberOfEventIndicators(UNIT, size_t *n) { (void)c; *n = 0; return fmi3OK; }
-API fmi3GetNumberOfContinuousStates(UNIT, size_t *n) { (void)c; *n = 0; return fmi3OK; }
+API fmi3GetNumberOfContinuousStates(UNIT, size_t *n) { (void)c; *n = STATES; return fmi3OK; }
 API fmi3GetOutputDerivatives(UNIT, REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[], size_t count)
 {
     (void)vr, (void)orders, (void)values, (void)count;
@@ -592,11 +722,13 @@ API fmi3GetOutputDerivatives(UNIT, REFERENCES, const fmi3Int32 orders[], fmi3Flo
 API fmi3DoStep(UNIT, fmi3Float64 time, fmi3Float64 step, fmi3Boolean no_rollback, fmi3Boolean *event,
                fmi3Boolean *end, fmi3Boolean *early, fmi3Float64 *last)
 {
+    fmi3Status status;
     (void)no_rollback;
     *event = *end = *early = false;
-    *last = time + step;
-    fmi3SetTime(c, *last);
-    return evaluate((instance *)c);
+    fmi3SetTime(c, time);
+    status = advance((instance *)c, time + step);
+    *last = ((instance *)c)->now.time;
+    return status;
 }
 API fmi3ActivateModelPartition(UNIT, fmi3ValueReference clock, fmi3Float64 time)
 {

@@ -1,0 +1,149 @@
+"""Reference results of an FMU: inputs, and outputs of the element in Python."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy
+
+from ...core.arrays import Numbers
+from ...core.storage.atomic_files import write_text
+from ...dynamics import ForceElement, PreloadedElement
+from ...dynamics.motion import TONNE
+from ..recording import bristle_count
+from .variables import variables
+
+_MM, _MPA = 1e-3, 1e6
+
+STEP = 1e-3  # suggested step of a simulation in s
+_STOP, _STOP_OF_BALL = 0.1, 0.02  # suggested ends of a simulation in s
+_TOUCH = 0.22  # time of the first touch of a pushed ball over the simulated time; between two outputs
+_TOLERANCE = 1e-10  # relative and absolute tolerance of the integration of states, as in `simulate`
+
+
+def suggested_stop(ball_mass: float | None) -> float:
+    """Return the suggested end of a simulation in s, without or with a ball inside."""
+    return _STOP if ball_mass is None else _STOP_OF_BALL
+
+
+def write_cross_check(
+    element: ForceElement | PreloadedElement, path: Path, ball_mass: float | None = None
+) -> tuple[Path, Path, Path]:
+    """Write the files of the FMI cross-check, NAME_in.csv, NAME_ref.csv and NAME_ref.opt, beside NAME.fmu.
+
+    Raises OSError: a folder that cannot be written to.
+    """
+    stem, (given, reference) = path.with_suffix(""), reference_tables(element, ball_mass)
+    options = f"StartTime, 0\nStopTime, {suggested_stop(ball_mass)}\nStepSize, {STEP}\nRelTol, 1e-6\n"
+    texts = {"in.csv": given, "ref.csv": reference, "ref.opt": options}
+    inputs, results, chosen = (write_text(Path(f"{stem}_{ending}"), text) for ending, text in texts.items())
+    return inputs, results, chosen
+
+
+@lru_cache(maxsize=1)  # of the archive, and of the files beside it
+def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float | None) -> tuple[str, str]:
+    """Return inputs and outputs over the time as CSV tables in SI units.
+
+    Without a ball inside, the inputs are a prescribed motion, which is constant for bristles: hosts differ in how
+    inputs vary in a step. With a ball they are a force, which pushes it through its clearance, and a torque.
+    """
+    time = numpy.arange(round(suggested_stop(ball_mass) / STEP) + 1) * STEP
+    if ball_mass is None:
+        count = bristle_count(element)
+        motion = trajectory(element, numpy.full(len(time), _STOP / 2) if count else time)
+        states = numpy.hstack([motion, _integrate_deflections(element, time, motion[0])]) if count else motion
+        given, results = states_in_si(motion), reference_loads(element, states)
+    else:
+        distance = max(_MM * element.constants.clearance, 1e-6 * element.constants.socket_radius)
+        acceleration = 2.0 * distance / (_TOUCH * time[-1]) ** 2
+        rates = numpy.array([0.3, 0.0, 1.0]) * acceleration, numpy.array([0.0, 50.0, 100.0])  # m/s², rad/s²
+        mass, inertia = ball_mass, 0.4 * ball_mass * (_MM * element.constants.ball_radius) ** 2
+        given = numpy.tile([*(mass * rates[0]), *(inertia * rates[1])], (len(time), 1))
+        states = _integrate_ball(element, time, ball_mass, rates)
+        results = numpy.hstack([states_in_si(states[:, :9]), reference_loads(element, states)])
+    listed = variables(element, ball_mass)
+    inputs, outputs = (
+        [variable.name for variable in listed if variable.causality == kind] for kind in ("input", "output")
+    )
+    return _csv_text(inputs, time, given), _csv_text(outputs, time, results)
+
+
+def _integrate_deflections(element: ForceElement | PreloadedElement, time: Numbers, motion: Numbers) -> Numbers:
+    """Integrate the deflections of bristles (times, 4) in mm at a constant position, velocity and spin (9,)."""
+
+    def rates(now: float, deflection: Numbers) -> Any:
+        return load_at(element, numpy.append(motion, deflection)).deflection_rate
+
+    return _integrate(rates, time, numpy.zeros(bristle_count(element)))
+
+
+def _integrate_ball(
+    element: ForceElement | PreloadedElement, time: Numbers, mass: float, applied: tuple[Numbers, Numbers]
+) -> Numbers:
+    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from rest at its start position.
+
+    Applied force and torque give it the accelerations `applied` in m/s² and rad/s².
+    """
+    count, inertia = bristle_count(element), 0.4 * TONNE * mass * element.constants.ball_radius**2
+    start = numpy.zeros(9 + count)
+    if isinstance(element, PreloadedElement):
+        start[:3] = element.rest_position
+
+    def rates(now: float, state: Numbers) -> Any:
+        load = load_at(element, state)
+        acceleration = numpy.array(load.force) / (TONNE * mass) + applied[0] / _MM
+        turning = numpy.array(load.moment) / inertia + applied[1]
+        return [*state[3:6], *acceleration, *turning, *(load.deflection_rate if count else ())]
+
+    return _integrate(rates, time, start)
+
+
+def _integrate(rates: Any, time: Numbers, start: Numbers) -> Numbers:
+    from scipy.integrate import solve_ivp  # slow to import
+
+    options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": STEP}
+    return solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, **options).y.T
+
+
+def load_at(element: ForceElement | PreloadedElement, state: Numbers) -> Any:
+    """Compute the load at states (..., 9 and 4) of motion and deflections, or of motion alone."""
+    parts = [state[..., :3], state[..., 3:6], state[..., 6:9], state[..., 9:]][: 4 if bristle_count(element) else 3]
+    return element(*(part.tolist() if state.ndim == 1 else part for part in parts))
+
+
+def trajectory(element: ForceElement | PreloadedElement, time: Numbers) -> Numbers:
+    """Compute the states (times, 9) in mm, mm/s and rad/s of a ball that touches, slides, spins and separates."""
+    constants = element.constants
+    clearance = constants.clearance
+    depth = 0.01 * min(clearance, constants.wall) or 0.001 * constants.socket_radius
+    if clearance < 0.0:  # a preloaded ball touches at every position
+        clearance = depth = -0.2 * clearance
+    phase = 2 * numpy.pi * time / _STOP
+    distance = clearance + depth * (1.0 - 2.0 * numpy.cos(phase))
+    rate = depth * 2.0 * numpy.sin(phase) * 2 * numpy.pi / _STOP
+    angle, angular_speed = 0.3 * numpy.sin(phase), 0.3 * numpy.cos(phase) * 2 * numpy.pi / _STOP
+    normal = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
+    tangent = numpy.stack([numpy.cos(angle), 0.0 * angle, -numpy.sin(angle)], axis=-1)
+    velocity = rate[:, None] * normal + (distance * angular_speed)[:, None] * tangent
+    spin = numpy.stack([0.0 * phase, 2.0 * numpy.sin(phase), 1.0 + 0.0 * phase], axis=-1)
+    return numpy.hstack([distance[:, None] * normal, velocity, spin])
+
+
+def states_in_si(state: Numbers) -> Numbers:
+    """Convert states (position, velocity, spin) from mm, mm/s and rad/s to m, m/s and rad/s."""
+    return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
+
+
+def reference_loads(element: ForceElement | PreloadedElement, state: Numbers) -> Numbers:
+    """Compute the outputs of the Python element at states of `load_at`, in the order and units of the FMU."""
+    load = load_at(element, state)
+    scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure, numpy.asarray(load.status, dtype=float))
+    return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
+
+
+def _csv_text(names: list[str], time: Numbers, values: Numbers) -> str:
+    head = ",".join(f'"{name}"' for name in ("time", *names))
+    rows = numpy.hstack([time[:, None], values]).tolist()
+    return "\n".join([head, *(",".join(map(repr, row)) for row in rows)]) + "\n"
