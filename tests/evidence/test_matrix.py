@@ -152,7 +152,7 @@ def test_the_joint_is_drawn_with_a_contact_about_its_axis(record):
     assert b" N<" not in figures.joint_drawing(off_axis, Units.SI)
     metal = bs.read_joint(EXAMPLES / "metal_backed_hip.toml").joint.summary()
     backed = {**record, "drawn": {**record["drawn"], "joint": json.loads(json.dumps(metal))}}
-    assert b">titanium<" in figures.joint_drawing(backed, Units.SI)
+    assert b">titanium alloy, Ti-6Al-4V<" in figures.joint_drawing(backed, Units.SI)
 
 
 def test_methods_bands_and_wear_are_drawn_at_their_numbers(record):

@@ -30,8 +30,8 @@ def difference(old: Any, new: Any) -> Any:
 
     Examples
     --------
-    >>> difference({"unit": "N", "ends": [0, 1]}, {"unit": "N", "ends": [0, 2]})
-    {'ends': {1: [2]}}
+    >>> difference({"unit": "N", "points": [0.0, 1.25, 2.5]}, {"unit": "N", "points": [0.0, 1.5, 2.5]})
+    {'points': {1: [1.5]}}
     """
     if isinstance(old, dict) and isinstance(new, dict) and old.keys() == new.keys():
         keys: Iterable[Any] = new
