@@ -56,5 +56,25 @@ def trouble(page):
 
 
 def told(page, name):
-    """Return a part of a page, such as "wear-numbers"; empty before it is shown."""
-    return page.channel.shown_value(f"#{name}") or ""
+    """Return a part of a page as text, such as "wear-numbers"; empty before it is shown."""
+    content = page.channel.shown_value(f"#{name}") or ""
+    return content if isinstance(content, str) else json.dumps(content, ensure_ascii=False)
+
+
+def blocks(page, name, kind):
+    """Return the blocks of a kind in a part of a page, such as the "charts" of "press-charts"."""
+    content = page.channel.shown_value(f"#{name}")
+    return [block for block in content if isinstance(block, dict) and block["kind"] == kind]
+
+
+def numbers(page, name):
+    """Return the values of the numbers in a part of a page by their names."""
+    rows = [row for block in blocks(page, name, "numbers") for row in block["rows"]]
+    return {key: value for key, _, _, _, _, value, _ in rows if value is not None}
+
+
+def cells(page, name):
+    """Return the texts of the first table in a part of a page, with its heads."""
+    table = blocks(page, name, "table")[0]
+    rows = [table["heads"], *(row["cells"] if isinstance(row, dict) else row for row in table["rows"])]
+    return [[cell if isinstance(cell, str) else cell[0] for cell in row] for row in rows]

@@ -1,7 +1,5 @@
 """A result over one input, explanations beside numbers, and marks of work on the buttons of views."""
 
-import json
-import re
 from dataclasses import replace
 from html import unescape
 from math import degrees
@@ -13,7 +11,7 @@ from ballsocket.app import results
 from ballsocket.app.running import RunFinished
 from ballsocket.studies.derivatives import local_uncertainty
 
-from .asking import does, edits, opened, saved, told, trouble
+from .asking import blocks, does, edits, opened, saved, told, trouble
 
 HIP = bs.joints["hip-28"]
 LINK = "view=curve&preset=hip-28&load.force=3000&limit=max_pressure<=16 MPa"
@@ -21,7 +19,7 @@ LINK = "view=curve&preset=hip-28&load.force=3000&limit=max_pressure<=16 MPa"
 
 def test_a_result_over_one_input_is_that_of_the_model_and_red_where_a_limit_is_exceeded():
     page = opened(LINK)
-    chart = json.loads(re.search(r"data-chart='([^']*)'", told(page, "curve-chart"))[1])
+    ((chart,),) = (block["charts"] for block in blocks(page, "curve-chart", "charts"))
     curve, limit = chart["curves"]
     ends = [0, -1]
     joints = [replace(HIP, ball_radius=curve["x"][end] / 2) for end in ends]
@@ -35,15 +33,24 @@ def test_a_result_over_one_input_is_that_of_the_model_and_red_where_a_limit_is_e
     crossing = next(x for x, y in zip(curve["x"], curve["y"], strict=True) if y < 16.0)
     assert end == pytest.approx(crossing, abs=step)
     effects = local_uncertainty(HIP, bs.Cup(), {"force": 3000.0}, {}).changes["max_pressure"]
-    assert f"<td>{effects['force']:.2f}</td>" in told(page, "curve-effects")
+    assert f'"{effects["force"]:.2f}"' in told(page, "curve-effects")
     assert saved(page, "CSV").startswith(b"head_diameter_mm,")
 
 
 def test_a_number_is_explained_by_its_formula_and_the_values_in_it():
     contact = bs.Exact().press(HIP, force=3000.0)
-    (area,) = re.findall(r"data-why='area'>.*?<p>(.*?)</p>", told(opened("preset=hip-28"), "press-numbers"))
-    assert "2π R1² (1 - cos ε)" in unescape(area)
-    assert f"R1 = 14 mm, ε = {degrees(contact.half_angle):.4g}°" in unescape(area)
+    page = opened("preset=hip-28")
+    assert "cos ε" not in told(page, "press-numbers")
+    edits(page, "press.why", ["area"])
+    rows = [row for block in blocks(page, "press-numbers", "numbers") for row in block["rows"]]
+    why = {name: text for name, *_, text in rows if text}
+    assert list(why) == ["area"]  # only what is open
+    assert "2π R1² (1 - cos ε)" in why["area"]
+    assert f"R1 = 14 mm, ε = {degrees(contact.half_angle):.4g}°" in why["area"]
+    edits(page, "press.why", [])
+    assert "cos ε" not in told(page, "press-numbers")
+    edits(page, "press.why", ["colour"])
+    assert "'colour'" in unescape(trouble(page))
 
 
 def test_a_view_is_marked_whose_work_ends_while_another_is_open(asked, monkeypatch):
@@ -71,7 +78,7 @@ def test_the_input_may_be_the_y_axis_of_the_map_whose_range_refuses_no_edit():
     edits(page, "curve.across", "liner_thickness")
     assert not trouble(page)
     assert (page.screen.across.name, page.screen.up.name) == ("liner_thickness", "head_diameter")
-    assert "data-chart" in told(page, "curve-chart")
+    assert blocks(page, "curve-chart", "charts")
     page = opened(f"{LINK}&up=liner_thickness=0.01..0.1&across=force=1000..3000&map_model=exact")
     edits(page, "curve.across_low", 2000)  # `exact` takes minutes over such liners
     assert (trouble(page), page.screen.across.low) == ("", 2000.0)

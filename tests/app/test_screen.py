@@ -37,7 +37,7 @@ from ballsocket.problem.cup import Cup, Interface, Side
 from ballsocket.problem.presets import materials
 
 from ..places import EXAMPLES
-from .asking import does, edits, saved, told, trouble
+from .asking import cells, does, edits, numbers, saved, told, trouble
 
 
 def screen_with(query="preset=hip-28", **changes):
@@ -525,12 +525,11 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     assert [said[name]["unit"] for name in said] == ["in", "lbf", "ksi", "psi"]
     assert said["ball_radius"]["value"] == pytest.approx(28 / 25.4)
     assert said["load"]["value"] == pytest.approx(3000 * LBF)
-    numbers, section, table = (told(page, f"press-{part}") for part in ("numbers", "section", "table"))
-    (first, *_) = re.findall(r"data-value='([^']+)'", numbers)
-    assert float(first) == pytest.approx(contact.max_pressure * PSI)
+    said, section = (told(page, f"press-{part}") for part in ("numbers", "section"))
+    assert numbers(page, "press-numbers")["max_pressure"] == pytest.approx(contact.max_pressure * PSI)
     assert {"⌀ 1.102 in", "674.4 lbf"} <= set(re.findall(r"<text[^>]*>([^<]*)</text>", section))
-    assert METRIC.findall(numbers + section + told(page, "press-charts")) == []
-    assert re.findall(r"\[[^\]]*\]", table)[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
+    assert METRIC.findall(said + section + told(page, "press-charts")) == []
+    assert [head.split()[-1] for head in cells(page, "press-table")[0][1:5]] == ["[lbf]", "[mil]", "[°]", "[psi]"]
     edits(page, "ball_radius", "28 mm")
     edits(page, "load", "3 kN")
     does(page, "edit", name="units", value="SI")
@@ -564,8 +563,8 @@ def test_a_new_quantity_of_a_contact_is_in_the_numbers_the_file_and_the_table_of
     screen, contact = screen_with("preset=hip-28", units=units), bs.Exact().press(HIP, force=3000.0)
     unit = screen.reading.unit(new)
     half, text = 1500.0 * unit.factor, number_text(1500.0 * unit.factor)
-    numbers = words.headline(contact, None, Cup(), screen.reading)
-    assert f"data-name='{new.name}' data-value='{half!r}'>{text} <span class='unit'>{unit.text}" in numbers
+    said = words.headline(contact, None, Cup(), screen.reading)
+    assert [new.name, new.title, text, f" {unit.text}", "", half, ""] in said[-3]["rows"]
     heads, row = words.number_rows("model", {"exact": contact}, screen.reading)
     assert row[heads.index(f"{new.name}_{unit.text}")] == pytest.approx(half)
     designs = {"design": design_table.ComparedDesign(file=screen.file, contact=contact)}

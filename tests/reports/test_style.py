@@ -2,8 +2,6 @@
 
 import csv
 import json
-import re
-from html import unescape
 from importlib.util import find_spec
 from itertools import combinations
 
@@ -92,13 +90,13 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
 
     page = Page(f"preset=hess-forsbach&shown={','.join(pressed)}")
     page.view.show(page.screen)
-    charts = re.findall(r"data-chart='([^']+)'", page.channel.shown_value("#press-charts"))
-    curves = [curve for text in charts for curve in json.loads(unescape(text))["curves"]]
+    (drawn,) = page.channel.shown_value("#press-charts")
+    curves = [curve for chart in drawn["charts"] for curve in chart["curves"]]
     assert {curve["name"] for curve in curves} == set(pressed)
     for curve in curves:
         line = pressed[curve["name"]]
-        assert curve["colour"] == ("var(--text)" if line.colour == INK else line.colour)
-        assert curve["dash"] == " ".join(f"{2 * length:g}" for length in line.dash)
+        colour = "var(--text)" if line.colour == INK else line.colour
+        assert curve["line"] == [colour, " ".join(f"{2 * length:g}" for length in line.dash)]
 
 
 ACCURACY = json.loads((DATA / "accuracy.json").read_text(encoding="utf-8"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import cbrt, ceil
 from typing import Any
@@ -25,8 +25,9 @@ from ..reports.style import LineStyle
 from ..reports.svg import rounded_up
 from ..studies.derivatives import LocalUncertainty, local_uncertainty
 from ..studies.run import default_model
-from .pictures.chart import Curve, chart, legend
+from .pictures.chart import Curve, chart, charts
 from .solving import heavy, solved, solved_curve
+from .widgets.blocks import Block, sentence
 from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
@@ -138,17 +139,17 @@ def axis_end(value: float) -> float:
     return rounded_up(value, _AXIS_ENDS) if value > _SMALLEST_AXIS else 1.0
 
 
-def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
+def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> Block:
     """Draw pressure over angle and force over indentation of several contacts, with a legend."""
     if not contacts:
-        return "<p class='quiet'>No curve to draw.</p>"
+        return sentence("No curve to draw.")
     profiles = {name: (*profile(contact), bool(contact.valid)) for name, contact in contacts.items()}
-    charts = pressure_chart(profiles, lines, reading), _force_chart(contacts, lines, reading)
-    figures = "".join(f"<figure>{picture}</figure>" for picture in charts)
-    return f"<div class='pair'>{figures}</div><p class='legend'>{legend({name: lines[name] for name in contacts})}</p>"
+    return charts(pressure_chart(profiles, lines, reading), _force_chart(contacts, lines, reading), legend=[])
 
 
-def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyle], reading: Reading) -> str:
+def pressure_chart(
+    profiles: Mapping[str, Profile], lines: Mapping[str, LineStyle], reading: Reading, caption: Sequence[str] = ()
+) -> Block:
     """Draw named pressures over their angles."""
     angle, pressure = reading.unit(FIELD["angle"]), reading.unit(FIELD["pressure"])
     curves = {
@@ -158,10 +159,10 @@ def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyl
     widest, highest = (max(float(getattr(curve, axis).max()) for curve in curves.values()) for axis in "xy")
     labels = FIELD["angle"].label(angle), FIELD["pressure"].label(pressure)
     ends = axis_end(1.02 * widest), axis_end(1.05 * highest)
-    return chart("pressure over angle, highest at the pole", *labels, curves, ends)
+    return chart("pressure over angle, highest at the pole", *labels, curves, ends, caption=caption)
 
 
-def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
+def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> Block:
     (x, y), (depth, force) = FORCE_CURVE, force_axes(reading.units)
     marks = {
         name: (float(values_of(contact, x, depth)), float(values_of(contact, y, force)))

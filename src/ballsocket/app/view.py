@@ -24,6 +24,7 @@ from .jobs import run_in_thread
 from .running import Report
 from .state.designs import file_stem
 from .state.screen import Screen
+from .widgets.blocks import Content, content_html
 from .widgets.controls import Control, Reader, by_name, fields_of
 from .widgets.words import alert
 
@@ -38,13 +39,13 @@ T = TypeVar("T")
 class Document:
     """Content of the screen for a file.
 
-    `picture` draws it as "png" or "svg"; `rows` are a table with its heading first; `sections` are titles and HTML of a
-    page by their id, below `lede`; `contact` is drawn in the section of the joint.
+    `picture` draws it as "png" or "svg"; `rows` are a table with its heading first; `sections` are titles and content
+    of a page by their id, below `lede`; `contact` is drawn in the section of the joint.
     """
 
     picture: Callable[[str], bytes] | None = None
     rows: Callable[[], Sequence[Sequence[Any]]]
-    sections: Callable[[], Mapping[str, tuple[str, str]]]
+    sections: Callable[[], Mapping[str, tuple[str, Content]]]
     lede: Callable[[], str] = str
     contact: Contact | None = None
 
@@ -90,10 +91,10 @@ class View(ABC):
         """Show the inputs of the view."""
         self.channel.put_fields(fields_of(self.named_controls(screen)))
 
-    def put(self, **parts: str) -> None:
-        """Fill elements of the view with HTML, by their ids without the view."""
-        for element, html in parts.items():
-            self.channel.put(f"#{self.name}-{element}", html)
+    def put(self, **parts: Content) -> None:
+        """Fill elements of the view with blocks or HTML, by their ids without the view."""
+        for element, content in parts.items():
+            self.channel.put(f"#{self.name}-{element}", content)
 
     def expect(self, *elements: str) -> None:
         """Mark elements that show an earlier screen until they are filled."""
@@ -123,9 +124,9 @@ class View(ABC):
         else:
             show(result)
 
-    def fail(self, sentence: str) -> None:
+    def fail(self, why: str) -> None:
         """Show why a computation has no result."""
-        self.put(trouble=alert(sentence))
+        self.put(trouble=alert(why))
 
     @abstractmethod
     def document(self, screen: Screen) -> Document:
@@ -185,7 +186,8 @@ def _report(content: ScreenContent) -> bytes:
     title = f"{content.title}: {joint.name or 'a joint'}"
     figure = "" if document.picture is None else picture(document.picture("png"), title)
     lede = f"{document.lede()}<p class='quiet'>In the explorer: <code>{escape(content.link)}</code></p>"
-    sections = {**({"figure": ("Figure", figure)} if figure else {}), **document.sections()}
+    written = {name: (head, content_html(content)) for name, (head, content) in document.sections().items()}
+    sections = {**({"figure": ("Figure", figure)} if figure else {}), **written}
     page = joint_report(content.file, sections, lede, content.units, contact=document.contact, title=title)
     return page.encode("utf-8")
 

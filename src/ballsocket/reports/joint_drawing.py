@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -37,7 +37,7 @@ _FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MAX_GAP = 0.09  # largest drawn gap beside the ball, relative to the socket radius
 _PETALS = 48
 _HIGHEST = 0.45  # of the liner, or of the radius
-_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
+_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 28))
 _QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
 
 _PAPER_COLOURS = {
@@ -126,7 +126,10 @@ def joint_svg(
     edges = [] if load is None else edge_lines(file, half_angle, load.tilt)
     style = files(__package__).joinpath("templates", "drawing.css").read_text(encoding="utf-8")
     style = re.sub(r"var\(--(\w+)\)", lambda name: _PAPER_COLOURS[name[1]], style)
-    parts = [f"<style>{style}</style>", *section_parts(file, contact, load, units), *edges]
+    frame, (below, above) = frame_of(file.joint), section_parts(file, contact, load, units)
+    pressure = [] if contact is None else frame.cells(petals(file, contact), largest_drawn(contact) or 1.0)
+    drawn_ball = ball(file, contact, frame, 0.0 if load is None else load.tilt)
+    parts = [f"<style>{style}</style>", *below, drawn_ball, *pressure, *above, *edges]
     drawing = svg.picture(SIZE, LABEL, parts, ' xmlns="http://www.w3.org/2000/svg"')
     return drawing.encode("utf-8")
 
@@ -136,24 +139,16 @@ def section_parts(
     contact: Contact | None,
     load: DrawnLoad | None,
     units: Units = Units.SI,
-    inside: Sequence[str] | None = None,
-    groups: Mapping[str, str] | None = None,
-) -> list[str]:
-    """Draw the parts of a joint in its `frame_of`, with diameters, magnified clearance, names, pressure and load.
+    load_attributes: str = "",
+) -> tuple[list[str], list[str]]:
+    """Draw the parts of a joint in its `frame_of` below and above ball and pressure.
 
-    `inside` replaces the pressure, such as by stresses. `groups` are further attributes of the "ball" and the "load".
+    Below are liner and backing, above diameters, magnified clearance, names and the load with its `load_attributes`.
     """
-    frame, groups, tilt = frame_of(file.joint), groups or {}, 0.0 if load is None else load.tilt
-    pressure = [] if contact is None else frame.cells(petals(file, contact), largest_drawn(contact) or 1.0)
-    return [
-        *layers(file, frame),
-        *(inside or ()),
-        f"<g {groups.get('ball', '')}>{ball(file, contact, frame, tilt)}</g>",
-        *(pressure if inside is None else ()),
-        *_names(file.joint, frame),
-        *_dimensions(file, frame, units),
-        *(() if load is None else _load(file, contact, frame, load, groups.get("load", ""))),
-    ]
+    frame = frame_of(file.joint)
+    words = [*_names(file.joint, frame), *_dimensions(file, frame, units)]
+    arrow = () if load is None else _load(file, contact, frame, load, load_attributes)
+    return layers(file, frame), [*words, *arrow]
 
 
 def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
@@ -165,16 +160,22 @@ def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
 
 
 def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
-    """Draw the loaded ball: the bore less the gap c - (c + d) cos φ from the load's axis, enlarged by `gap_factor`.
-
-    There is no gap in the contact.
-    """
-    clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
-    angle = numpy.linspace(0.0, 2 * pi, 97)
-    gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
-    radius = frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap)
+    """Draw the loaded ball by its `ball_radii`."""
+    radii = frame.scale * ball_radii(file, contact)
+    angle = numpy.linspace(0.0, 2 * pi, 2 * len(radii) - 1) - tilt
+    radius = numpy.concatenate([radii, radii[-2::-1]])
     outline = svg.closed(frame.x + radius * numpy.sin(angle), frame.y + radius * numpy.cos(angle))
     return f'<path class="part ball" d="{outline}"/>'
+
+
+def ball_radii(file: JointFile, contact: Contact | None) -> Numbers:
+    """Return radii (mm) of the drawn ball at even angles from the load's axis to the back.
+
+    They are the bore less the gap c - (c + d) cos φ, enlarged by `gap_factor`; there is no gap in the contact.
+    """
+    clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
+    gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(numpy.linspace(0.0, pi, 49)), 0.0, None)
+    return float(file.joint.socket_radius) - gap_factor(file.joint) * gap
 
 
 @lru_cache(maxsize=256)

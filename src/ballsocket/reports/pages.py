@@ -188,10 +188,11 @@ def answer_lede(answer: Answer, units: Units = Units.SI) -> str:
 
 def checks_html(rows: Sequence[Check], write: Writer) -> str:
     """Render checks as a table in HTML, with sign, word and style of each result; narrow pages stack its cells."""
-    return render_part("parts.html", "checks", [_cells(row, write) for row in rows])
+    return render_part("parts.html", "checks", [check_cells(row, write) for row in rows])
 
 
-def _cells(row: Check, write: Writer) -> dict[str, Any]:
+def check_cells(row: Check, write: Writer) -> dict[str, Any]:
+    """Return the texts of a check by name, with the width (%) and the state that its bar shows."""
     quantity, ratio = QUANTITIES[row.quantity], row.ratio
     return {
         "title": row.title,

@@ -1,14 +1,19 @@
 // @ts-check
-// Charts, drawn from their numbers, and the point of a curve under the pointer.
-import { digits, lines, part, pointIn } from "./elements.js";
+// Charts, drawn from their numbers: the point of a curve under the pointer, a zoom along x, and a copy as CSV.
+import { digits, element, hit, lines, part, pointIn, swatch, tell } from "./elements.js";
 
-const LEFT = 58, RIGHT = 12, TOP = 10, FOOT = 44, THICK = 2, THIN = 1, NEAR = 18;
+const LEFT = 58, RIGHT = 12, TOP = 10, FOOT = 44, THICK = 2, THIN = 1, NEAR = 18, DRAGGED = 8;
 /**
- * @typedef {{name: string, colour: string, dash: string, x: (number | null)[], y: (number | null)[],
+ * @typedef {{name: string, line: string[], x: (number | null)[], y: (number | null)[],
  *   trusted: number | number[], mark: number[] | null, band: number[][] | null}} Curve
  * @typedef {{label: string, x: string, y: string, start: number, ends: number[], size: number[], flagged: number[][],
- *   curves: Curve[]}} Chart
+ *   caption: string[], curves: Curve[]}} Chart
+ * @typedef {{chart: Chart, x: number[], y: number[], across: (x: number) => number, up: (y: number) => number}} Drawn
  */
+/** @type {WeakMap<Element, Drawn>} */
+const drawn = new WeakMap(); // by the picture
+/** @type {Map<string, number[]>} */
+const windows = new Map(); // ends of x that were chosen, by the labels of the axes: they outlive an answer
 
 /** Return the multiples of a round step between two ends. @type {(start: number, end: number, most: number) => number[]} */
 function ticks(start, end, most) {
@@ -26,14 +31,24 @@ function pathOf(points) {
     return words;
   }).join("");
 }
-/** @param {Chart} data */
-function draw({ label, x, y, start, ends, size: [wide, high], flagged, curves }) {
+/** Return the ends of both axes: all of the chart, or a window of x with the values in it. @param {Chart} chart */
+function endsOf(chart) {
+  const x = windows.get(`${chart.x} ${chart.y}`);
+  const inside = !x ? [] : chart.curves.flatMap((curve) =>
+    curve.y.filter((value, index) => value !== null && curve.x[index] >= x[0] && curve.x[index] <= x[1]));
+  const low = Math.min(...inside), high = Math.max(...inside), margin = 0.06 * (high - low || Math.abs(high));
+  return inside.length ? { x, y: [low - margin, high + margin] } : { x: [chart.start, chart.ends[0]], y: [0, chart.ends[1]] };
+}
+/** @param {Chart} chart */
+function draw(chart) {
+  const { label, size: [wide, high], flagged, curves } = chart, ends = endsOf(chart);
   const right = wide - RIGHT, foot = high - FOOT, middle = (TOP + foot) / 2;
-  const across = (value) => (value === null ? NaN : LEFT + ((right - LEFT) * (value - start)) / (ends[0] - start));
-  const up = (value) => (value === null ? NaN : foot - ((foot - TOP) * value) / ends[1]);
+  /** @type {(value: number | null, ends: number[], from: number, to: number) => number} */
+  const place = (value, [low, top], from, to) => (value === null ? NaN : from + ((to - from) * (value - low)) / (top - low));
+  const across = (value) => place(value, ends.x, LEFT, right), up = (value) => place(value, ends.y, foot, TOP);
   const svg = part("svg", { class: "picture", viewBox: `0 0 ${wide} ${high}`, role: "img", "aria-label": label });
-  const box = `${LEFT} ${TOP} ${right} ${foot}`;
-  Object.assign(svg.dataset, { box, x: ends[0], y: ends[1], across: x, up: y });
+  svg.dataset.chart = "";
+  drawn.set(svg, { chart, ...ends, across, up });
   const frame = { x: LEFT, y: TOP, width: right - LEFT, height: foot - TOP };
   const area = part("svg", { ...frame, viewBox: Object.values(frame).join(" ") });
   const line = (x1, y1, x2, y2, kind) => svg.append(part("line", { class: kind, x1, y1, x2, y2 }));
@@ -42,68 +57,126 @@ function draw({ label, x, y, start, ends, size: [wide, high], flagged, curves })
     const width = Math.max(across(top) - across(low), 1);
     area.append(part("rect", { class: "flagged", x: across(low), y: TOP, width, height: foot - TOP }));
   }
-  for (const value of ticks(start, ends[0], 6)) {
+  for (const value of ticks(ends.x[0], ends.x[1], 6)) {
     line(across(value), TOP, across(value), foot, "grid");
     text(digits(value), across(value), foot + 16, "middle", { class: "tick" });
   }
-  for (const value of ticks(0, ends[1], Math.max(2, Math.round((foot - TOP) / 40)))) {
+  for (const value of ticks(ends.y[0], ends.y[1], Math.max(2, Math.round((foot - TOP) / 40)))) {
     line(LEFT, up(value), right, up(value), "grid");
     text(digits(value), LEFT - 6, up(value) + 4, "end", { class: "tick" });
   }
   line(LEFT, foot, right, foot, "axis");
   line(LEFT, TOP, LEFT, foot, "axis");
-  text(x, (LEFT + right) / 2, foot + FOOT - 8, "middle", { class: "label" });
-  text(y, 14, middle, "middle", { class: "label", transform: `rotate(-90 14 ${middle})` });
+  text(chart.x, (LEFT + right) / 2, foot + FOOT - 8, "middle", { class: "label" });
+  text(chart.y, 14, middle, "middle", { class: "label", transform: `rotate(-90 14 ${middle})` });
   for (const curve of curves) {
     const trusted = (index) => (Array.isArray(curve.trusted) ? curve.trusted[index] : curve.trusted);
+    const [colour, dash] = curve.line, kind = dash && "other";
     /** @type {(ys: (number | null)[]) => [number, number][]} */
     const points = (ys) => ys.map((value, index) => [across(curve.x[index]), up(value)]);
-    const stroke = { fill: "none", stroke: curve.colour, "stroke-dasharray": curve.dash, "data-name": curve.name,
-      class: curve.dash && "other" };
+    const stroke = { fill: "none", stroke: colour, "stroke-dasharray": dash, "data-name": curve.name, class: kind };
     if (curve.band) {
       const outline = `${pathOf([...points(curve.band[0]), ...points(curve.band[1]).reverse()])}Z`;
-      area.append(part("path", { d: outline, fill: curve.colour, opacity: 0.2 }));
+      area.append(part("path", { d: outline, fill: colour, opacity: 0.2 }));
     }
     const thick = pathOf(points(curve.y.map((value, index) => (trusted(index) ? value : null))));
     const thin = curve.y.every((value, index) => trusted(index)) ? "" : pathOf(points(curve.y));
     for (const [d, width] of [[thick, THICK], [thin, THIN]])
       if (d) area.append(part("path", { d, "stroke-width": width, ...stroke }));
     if (curve.mark)
-      area.append(part("circle", { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: curve.colour,
-        class: curve.dash && "other" }));
+      area.append(part("circle", { cx: across(curve.mark[0]), cy: up(curve.mark[1]), r: 4, fill: colour, class: kind }));
   }
   svg.append(area);
   return svg;
 }
-/** Draw the charts in an element that was filled. @param {Element} element */
-export function drawCharts(element) {
-  for (const place of /** @type {NodeListOf<HTMLElement>} */ (element.querySelectorAll("[data-chart]")))
-    place.replaceChildren(draw(JSON.parse(place.dataset.chart)));
+/** Draw charts beside each other, with the names of curves and further words below. @param {any} block */
+export function charts({ charts: all, legend }) {
+  const figures = element("div", { class: all.length > 1 ? "pair" : "" }, ...all.map(figure));
+  if (!legend) return figures;
+  const names = all[0].curves.map(({ name, line }) => element("span", { class: "key" }, swatch(line), name));
+  const words = legend.map((text) => element("span", { class: "key" }, text));
+  return element("div", {}, figures, element("p", { class: "legend" }, ...names, ...words));
+}
+/** @param {Chart} chart */
+function figure(chart) {
+  const [words, red] = chart.caption, key = `${chart.x} ${chart.y}`;
+  if (!chart.curves.length) return element("figure", { class: "quiet" }, element("figcaption", {}, words ?? ""), draw(chart));
+  const caption = words || red ? [element("figcaption", {}, words, ...(red ? [element("b", { class: "no" }, red)] : []))] : [];
+  const node = element("figure", { class: "chart" }, ...caption, draw(chart));
+  const button = (text, label) => element("button", { type: "button", class: "plain", "aria-label": label }, text);
+  const zoom = button("Zoom", `Zoom into ${chart.y}`), all = button("All", `Show all of ${chart.y}`);
+  const copy = button("CSV", `Copy ${chart.y} as CSV`);
+  /** @param {number[] | null} ends */
+  node.show = (ends) => {
+    if (ends) windows.set(key, ends);
+    else windows.delete(key);
+    node.querySelector("svg").replaceWith(draw(chart));
+    all.hidden = !windows.has(key);
+    document.dispatchEvent(new CustomEvent("zoomed"));
+  };
+  zoom.addEventListener("click", () => {
+    const [low, high] = drawn.get(node.querySelector("svg")).x, quarter = (high - low) / 4;
+    node.show([low + quarter, high - quarter]);
+  });
+  all.addEventListener("click", () => node.show(null));
+  all.hidden = !windows.has(key);
+  copy.addEventListener("click", () => navigator.clipboard?.writeText(csvOf(chart)).then(() => tell("copied"))
+    ?? tell("This browser lets no page copy here: save the numbers of the view as CSV"));
+  node.append(element("div", { class: "chart-tools" }, zoom, all, copy));
+  return node;
+}
+/** Return all points as a table, a row each; text that a spreadsheet would take for a formula is marked. @param {Chart} chart */
+function csvOf({ x, y, curves }) {
+  const quoted = (text) => `"${text.replace(/^[=+\-@]/, "'$&").replaceAll('"', '""')}"`;
+  const rows = curves.flatMap(({ name, x, y }) => x.map((value, index) => [quoted(name), value, y[index]].join(",")));
+  return [["curve", x, y].map(quoted).join(","), ...rows, ""].join("\n");
+}
+/** Return the picture coordinates of a point of a chart. @param {Element} svg  @param {number | null} x  @param {number | null} y */
+export function placeIn(svg, x, y) {
+  const { across, up } = drawn.get(svg);
+  return { x: across(x), y: up(y), top: TOP, foot: up(drawn.get(svg).y[0]) };
 }
 
-/** @param {SVGElement} chart  @param {DOMPoint} place */
-function nearest(chart, place) {
-  const { start, ends, curves } = JSON.parse(chart.parentElement.dataset.chart);
-  const [left, top, right, foot] = chart.dataset.box.split(" ").map(Number);
+/** @param {Drawn} chart  @param {DOMPoint} place */
+function nearest({ chart: { curves }, across, up }, place) {
   let best = null;
   for (const { name, x: xs, y: ys } of curves)
     xs.forEach((value, index) => {
-      const x = left + ((right - left) * (value - start)) / (ends[0] - start), y = foot - ((foot - top) * ys[index]) / ends[1];
-      const far = ys[index] === null ? NEAR : Math.hypot(x - place.x, y - place.y);
+      const x = across(value), y = up(ys[index]), far = Number.isNaN(y) ? NEAR : Math.hypot(x - place.x, y - place.y);
       if (far < (best?.far ?? NEAR)) best = { far, x, y, name, numbers: [value, ys[index]] };
     });
   return best;
 }
+let held = null; // picture and x at which a drag began
 function over(event) {
   for (const old of document.querySelectorAll(".tip")) old.remove();
-  const path = event.composedPath();
-  const chart = /** @type {any} */ (path.find((one) => /** @type {any} */ (one).dataset?.box));
-  const found = chart && nearest(chart, pointIn(chart, event));
-  if (!found) return;
-  const tip = part("g", { class: "tip" }), end = found.x > 240, { across, up } = chart.dataset;
-  const words = [found.name, `${across}: ${digits(found.numbers[0], 3)}`, `${up}: ${digits(found.numbers[1], 3)}`];
-  tip.append(part("circle", { cx: found.x, cy: found.y, r: 3.5 }));
-  tip.append(...lines(words, found.x + (end ? -8 : 8), Math.max(24, found.y - 34), end));
-  chart.append(tip);
+  const svg = held?.svg ?? hit(event, "svg[data-chart]"), data = svg && drawn.get(svg);
+  if (!data) return;
+  const place = pointIn(svg, event), tip = part("g", { class: "tip" }), found = held ? null : nearest(data, place);
+  if (held) {
+    const size = { x: Math.min(held.x, place.x), width: Math.abs(place.x - held.x), y: TOP, height: data.up(data.y[0]) - TOP };
+    tip.append(part("rect", { class: "chosen", ...size }));
+  } else if (found) {
+    const end = found.x > 240, [x, y] = found.numbers.map((number) => digits(number, 3));
+    const words = [found.name, `${data.chart.x}: ${x}`, `${data.chart.y}: ${y}`];
+    tip.append(part("circle", { cx: found.x, cy: found.y, r: 3.5 }));
+    tip.append(...lines(words, found.x + (end ? -8 : 8), Math.max(24, found.y - 34), end));
+  }
+  svg.append(tip);
 }
 document.addEventListener("pointermove", over, { passive: true });
+document.addEventListener("pointerdown", (event) => { // a finger scrolls the page
+  const svg = event.pointerType !== "touch" && hit(event, ".chart svg[data-chart]");
+  if (!svg) return;
+  held = { svg, x: pointIn(svg, event).x };
+  event.preventDefault();
+});
+document.addEventListener("pointerup", (event) => {
+  if (!held) return;
+  const { svg, x } = held, end = pointIn(svg, event).x, { x: [low, high], across } = drawn.get(svg);
+  held = null;
+  over(event);
+  const value = (place) => Math.min(high, Math.max(low, low + ((place - LEFT) * (high - low)) / (across(high) - LEFT)));
+  if (svg.isConnected && Math.abs(end - x) > DRAGGED) svg.closest("figure").show([value(Math.min(x, end)), value(Math.max(x, end))]);
+});
+document.addEventListener("dblclick", (event) => hit(event, ".chart svg[data-chart]")?.closest("figure").show(null));

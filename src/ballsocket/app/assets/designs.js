@@ -1,10 +1,10 @@
 // @ts-check
 // Named designs: names and links that this browser keeps for all its windows.
 import { ask, listen } from "./connection.js";
-import { element, hit } from "./elements.js";
+import { element, hit, tell } from "./elements.js";
 import { known } from "./fields.js";
 import { visit } from "./history.js";
-import { tell } from "./page.js";
+import "./page.js"; // which shows a message first
 
 const KEY = "ballsocket.designs", MAX = 50;
 /** @typedef {{id: string, name: string, link: string, time: number, removed?: boolean}} Design */

@@ -17,6 +17,30 @@ export function part(tag, attributes = {}, words = "") {
   node.textContent = words;
   return node;
 }
+/** Return the elements of HTML, in which SVG may stand. @param {string} html  @returns {any} */
+export const parsed = (html) => document.createRange().createContextualFragment(html);
+/** Draw a short piece of a line of a colour with dashes. @param {string[]} line */
+export function swatch([colour, dash]) {
+  const svg = part("svg", { class: "swatch", viewBox: "0 0 32 8", "aria-hidden": "true" });
+  svg.append(part("path", { d: "M0 4H32", stroke: colour, "stroke-width": 2, "stroke-dasharray": dash }));
+  return svg;
+}
+/** Colours (red, green, blue) from low to high in even steps. */
+export const HEAT = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+/** Return the colour of a value from 0 to 1. @param {number} share */
+export function heat(share) {
+  const place = 4 * Math.min(1, Math.max(0, share)), low = Math.min(3, Math.floor(place));
+  return `rgb(${HEAT[low].map((part, index) => Math.round(part + (place - low) * (HEAT[low + 1][index] - part)))})`;
+}
+const NEWS = 6000; // ms for which a sentence is shown
+let news = 0;
+/** Show a sentence for some seconds. @param {string} words */
+export function tell(words) {
+  const place = document.getElementById("news");
+  place.textContent = words;
+  clearTimeout(news);
+  news = setTimeout(() => { place.textContent = ""; }, NEWS);
+}
 /** Return lines of text, the first at x and y; they end there if `end` is true. @param {string[]} words */
 export const lines = (words, x, y, end) => words.map((line, row) =>
   part("text", { x, y: y + 15 * row, "text-anchor": end ? "end" : "start" }, line));

@@ -1,7 +1,7 @@
 // @ts-check
 // Inputs made of plain data: each asks for its change, and shows what the server says of it.
 import { ask, listen, pendingValue } from "./connection.js";
-import { confirmTyped, element } from "./elements.js";
+import { confirmTyped, element, swatch } from "./elements.js";
 import { limits } from "./limits.js";
 
 /**
@@ -122,9 +122,7 @@ function group(kind, name, type, isChecked) {
     if (row.dataset.options !== JSON.stringify(field.options)) {
       row.dataset.options = JSON.stringify(field.options);
       row.replaceChildren(...field.options.map(([value, words]) => {
-        const piece = element("span");
-        piece.innerHTML = (field.pieces || {})[value] || "";
-        piece.append(words);
+        const piece = element("span", {}, ...(field.lines ? [swatch(field.lines[value])] : []), words);
         return element("label", {}, element("input", { type, name: `in-${name}`, value }), piece);
       }));
     }

@@ -1,30 +1,22 @@
 // @ts-check
 // The page: what the server answers is shown, and what a server cannot do: clipboard, files, the theme, news.
-import { drawCharts } from "./charts.js";
+import { fillBlocks } from "./blocks.js";
 import { ask, listen } from "./connection.js";
-import { hit } from "./elements.js";
+import { hit, tell } from "./elements.js";
 import { arrange, showField } from "./fields.js";
 import { isVisit, record, redo, theme, undo } from "./history.js";
 
 const LARGEST = 100000; // bytes of a joint file or a table; the server has the same limit
-const NEWS = 6000; // ms for which a sentence is shown
 const LOST = "Connection lost. These numbers may not belong to the inputs; reconnecting …";
 const page = document.body;
 /** @param {string} id  @returns {any} */
 const at = (id) => document.getElementById(id);
 const CLIENT = "ballsocket.client"; // key of the plain form for clients in the storage of the browser
 const filled = new Set(); // elements that the server has filled
-let news = 0;
 const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
 // no link holds a table: it is sent again after a lost connection and after a reload, but not to another link
 let table = isVisit ? null : JSON.parse(sessionStorage.getItem(TABLE));
 
-/** Show a sentence for some seconds. @param {string} words */
-export function tell(words) {
-  at("news").textContent = words;
-  clearTimeout(news);
-  news = setTimeout(() => { at("news").textContent = ""; }, NEWS);
-}
 listen((message, request) => {
   if (message.fresh) for (const name of filled) if (!(name in message)) fill(name, "");
   for (const [name, value] of Object.entries(message)) {
@@ -46,17 +38,18 @@ listen((message, request) => {
   if (table?.lost && table.value.name === wanted && table.name.startsWith(`${page.dataset.view}.`)) sendTable();
   document.dispatchEvent(new CustomEvent("shown", { detail: message }));
 });
-function fill(name, html) {
+function fill(name, content) {
   const element = at(name.slice(1));
   if (!element) return;
   filled.add(name);
   const open = [...element.querySelectorAll("details[data-why][open]")].map((one) => one.getAttribute("data-why"));
-  const handle = element.contains(document.activeElement) ? document.activeElement.getAttribute("data-drag") : null;
-  element.innerHTML = html;
-  drawCharts(element);
+  /** @type {any} */
+  const focus = element.contains(document.activeElement) && document.activeElement;
+  const selector = focus?.dataset?.drag ? `[tabindex][data-drag="${focus.dataset.drag}"]`
+    : focus?.matches?.("summary") ? `[data-why="${focus.parentElement.dataset.why}"] summary` : null;
+  fillBlocks(element, content);
   for (const name of open) element.querySelector(`details[data-why="${name}"]`)?.setAttribute("open", "");
-  const again = handle && element.querySelector(`[tabindex][data-drag="${handle}"]`);
-  if (again) again.focus(); // a handle that is moved by keys is a new one after each answer
+  if (selector) element.querySelector(selector)?.focus(); // what has the focus is a new one after each answer
 }
 function showView(name) {
   page.dataset.view = name;

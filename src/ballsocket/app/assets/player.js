@@ -1,31 +1,28 @@
 // @ts-check
 // A cycle that is played: one instant of it in all charts, in the numbers and on the bore.
+import { placeIn } from "./charts.js";
 import { ask } from "./connection.js";
 import { digits, part } from "./elements.js";
 import { showFrame } from "./viewer.js";
 
 const DURATION = 5000; // ms that a cycle takes here
 
-function marker(chart) {
-  const line = part("line", { class: "cursor" }), spot = part("circle", { class: "spot", r: 4.5 });
-  chart.append(line, spot);
-  return { chart, line, spot, box: chart.dataset.box.split(" ").map(Number) };
-}
-/** @param {ReturnType<typeof marker>} marker  @param {number} phase  @param {number | null} value */
-function move({ chart, line, spot, box: [left, top, right, foot] }, phase, value) {
-  const x = left + ((right - left) * phase) / chart.dataset.x;
-  const ends = { x1: x, x2: x, y1: top, y2: foot };
-  for (const [name, place] of Object.entries(ends)) line.setAttribute(name, String(place));
-  const y = value === null ? -99 : foot - ((foot - top) * value) / chart.dataset.y;
-  for (const [name, place] of Object.entries({ cx: x, cy: y })) spot.setAttribute(name, String(place));
+/** Mark a point of a chart, in place of the marks before it for the first `course` of the chart. */
+function mark(svg, phase, value, isFirst) {
+  const { x, y, top, foot } = placeIn(svg, phase, value);
+  if (isFirst) for (const old of svg.querySelectorAll(".cursor, .spot")) old.remove();
+  svg.append(part("line", { class: "cursor", x1: x, x2: x, y1: top, y2: foot }));
+  if (value !== null) svg.append(part("circle", { class: "spot", cx: x, cy: y, r: 4.5 }));
 }
 function begin(player) {
   const find = (selector) => player.querySelector(selector);
   const bar = find("input[type=range]"), play = find("button.plain"), output = find("output");
-  let data, markers, shown, asked, timer = null, instant = 0;
+  let data, shown, asked, timer = null, instant = 0;
   function show() {
     bar.value = instant;
-    data.courses.forEach((course, number) => move(markers[number], data.phase[instant], course.values[instant]));
+    const pictures = player.querySelectorAll(".courses .chart svg[data-chart]");
+    data.courses.forEach(({ chart, values }, number) =>
+      mark(pictures[chart], data.phase[instant], values[instant], data.courses[number - 1]?.chart !== chart));
     const value = (course) => (course.values[instant] === null ? "–" : digits(course.values[instant]));
     const words = data.courses.map((course) => `${course.name} ${value(course)} ${course.unit}`.trim());
     const rim = data.rim[instant] ? "; ✗ rim contact" : "";
@@ -61,8 +58,6 @@ function begin(player) {
     if (!source || !find(".viewer")) return;
     if (source !== shown) {
       [shown, data] = [source, JSON.parse(source.dataset.player)];
-      const charts = player.querySelectorAll(".courses svg[data-box]");
-      markers = data.courses.map((course) => marker(charts[course.chart]));
       bar.max = data.phase.length - 1;
     }
     if (!timer && wanted !== asked) [asked, instant] = [wanted, Number(wanted)];
@@ -71,4 +66,5 @@ function begin(player) {
   };
 }
 const updates = new Map([...document.querySelectorAll(".player")].map((player) => [player, begin(player)]));
-document.addEventListener("shown", () => { for (const update of updates.values()) update(); });
+for (const event of ["shown", "zoomed"])
+  document.addEventListener(event, () => { for (const update of updates.values()) update(); });

@@ -1,6 +1,6 @@
 // @ts-check
 // Cup, ball and load in three dimensions by WebGL: geometry is built once, and drawn only when something changes.
-import { hit } from "./elements.js";
+import { HEAT, hit } from "./elements.js";
 
 const KINDS = [0, 1, 2, 3, 4, 5], [PLAIN, BORE, SECTION, BALL, LINE, ARROW] = KINDS; // of parts, as in the shader
 const FLOATS = 8; // of a vertex: position, normal, place on the bore's field
@@ -20,8 +20,7 @@ const fragment = (kind) => `#version 300 es
   in vec3 at, facing; in vec2 spot; out vec4 paint; const int kind = ${kind};
   uniform sampler2D field; uniform bool film, solid;
   uniform vec3 colour, behind, sphere, radii; uniform vec4 section; uniform float reach, gain;
-  const vec3 HEAT[5] = vec3[5](
-    vec3(68, 1, 84), vec3(59, 82, 139), vec3(33, 145, 140), vec3(94, 201, 98), vec3(253, 231, 37));
+  const vec3 HEAT[5] = vec3[5](${HEAT.map((colour) => `vec3(${colour})`)});
   vec3 heat(float share) {
     float place = 4.0 * clamp(share, 0.0, 1.0); int low = min(int(place), 3);
     return mix(HEAT[low], HEAT[low + 1], place - float(low)) / 255.0;

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import numpy
 
-from ...reports.style import INK, THICK, LineStyle
-from ...reports.svg import attribute
+from ...reports.style import LineStyle
+from ..widgets.blocks import Block, plain_line
 
 _SIZE = (440.0, 300.0)
 _DIGITS = 4  # digits of the numbers of a curve: a pixel is more
@@ -31,8 +30,7 @@ class Curve:
         """Return the curve as numbers; None for a gap."""
         return {
             "name": name,
-            "colour": _colour_of(self.line),
-            "dash": _dash_of(self.line),
+            "line": plain_line(self.line),
             "x": plain_numbers(self.x),
             "y": plain_numbers(self.y),
             "trusted": numpy.asarray(self.trusted, dtype=int).tolist(),
@@ -46,16 +44,6 @@ def plain_numbers(values: numpy.ndarray, digits: int = _DIGITS) -> list[float | 
     return [float(f"{value:.{digits}g}") if numpy.isfinite(value) else None for value in values.tolist()]
 
 
-def _colour_of(line: LineStyle) -> str:
-    """Return the CSS colour of a line; ink follows the theme."""
-    return "var(--text)" if line.colour == INK else line.colour
-
-
-def _dash_of(line: LineStyle) -> str:
-    """Return the dashes of a line in pixels; empty for a solid line."""
-    return " ".join(f"{THICK * length:g}" for length in line.dash)
-
-
 def chart(
     label: str,
     x: str,
@@ -65,16 +53,22 @@ def chart(
     size: tuple[float, float] = _SIZE,
     flagged: Sequence[tuple[float, float]] = (),
     start: float = 0.0,
-) -> str:
-    """Return the element in which a script draws curves over axes to `ends`, x from `start`; `x` and `y` label them.
+    caption: Sequence[str] = (),
+) -> Block:
+    """Return curves over axes to `ends`, x from `start`, for `charts`; `x` and `y` label them.
 
     Curves are thick where they can be trusted, and thin all the way where not; one without gaps lies below the others.
-    Flagged ranges of x are red.
+    Flagged ranges of x are red. The `caption` has a sentence, and one in red.
     """
     ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
-    red = [list(ends) for ends in flagged]
-    data = {"label": label, "x": x, "y": y, "start": start, "ends": ends, "size": size, "flagged": red}
-    return f"<div {attribute('chart', {**data, 'curves': [curve.plain(name) for name, curve in ordered]})}></div>"
+    axes = {"label": label, "x": x, "y": y, "start": start, "ends": list(ends), "size": list(size)}
+    plain = [curve.plain(name) for name, curve in ordered]
+    return {**axes, "flagged": [list(ends) for ends in flagged], "caption": list(caption), "curves": plain}
+
+
+def charts(*drawn: Block, legend: Sequence[str] | None = None) -> Block:
+    """Show charts beside each other, with the names of the first one's curves and further words unless it is None."""
+    return {"kind": "charts", "charts": list(drawn), "legend": None if legend is None else list(legend)}
 
 
 def spans(x: numpy.ndarray, marked: numpy.ndarray) -> list[tuple[float, float]]:
@@ -83,16 +77,3 @@ def spans(x: numpy.ndarray, marked: numpy.ndarray) -> list[tuple[float, float]]:
     half = 0.5 * float(x[-1] - x[0]) / max(len(x) - 1, 1)
     ends = zip(steps[::2], steps[1::2], strict=True)
     return [(float(x[first]) - half, float(x[last - 1]) + half) for first, last in ends]
-
-
-def swatch(line: LineStyle) -> str:
-    """Draw a short piece of a line."""
-    return (
-        f"<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' stroke='{_colour_of(line)}' "
-        f"stroke-width='{THICK:g}' stroke-dasharray='{_dash_of(line)}'/></svg>"
-    )
-
-
-def legend(lines: Mapping[str, LineStyle]) -> str:
-    """List the names of curves beside a piece of each, as HTML."""
-    return "".join(f"<span class='key'>{swatch(line)}{escape(name)}</span>" for name, line in lines.items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -28,13 +28,16 @@ from ...reports.joint_drawing import (
     Numbers,
     arrow_start,
     ball,
+    ball_radii,
     edge_lines,
     frame_of,
+    largest_drawn,
     layers,
     petals,
     radii_of,
     section_parts,
 )
+from ..widgets.blocks import Block
 
 _SMALL = 340.0
 _STRESS_COLUMNS, _STRESS_ROWS = 40, 10
@@ -55,29 +58,74 @@ def extent_of(file: JointFile) -> float:
 
 
 def first_view(
-    file: JointFile, contact: Contact | None, fields: Mapping[str, Any], units: Units, inside: list[str] | None = None
-) -> str:
-    """Draw a joint with its dimensions and load; `inside` is SVG of its stresses, which replaces the pressure.
+    file: JointFile,
+    contact: Contact | None,
+    fields: Mapping[str, Any],
+    units: Units,
+    inside: LinerStresses | None = None,
+) -> Block:
+    """Draw a joint with its dimensions and load; the stresses `inside` its liner replace the pressure.
 
-    `fields` are the inputs that its handles move.
+    `fields` are the inputs that its handles move. A script draws ball and cells from their numbers.
     """
     load, tilt, frame = fields["load"], fields["tilt"], frame_of(file.joint)
     text = f"{load['text']} {load['unit']}" + (f", {tilt['value']:.3g}{tilt['unit']}" if file.tilt else "")
     drawn = DrawnLoad(text=text, tilt=file.tilt, share=min(1.0, max(0.0, load["value"] / load["high"])))
-    groups = {"ball": 'class="grab" data-drag="load" data-how="ball"', "load": _handle("load", "arrow", load)}
     half_angle = 0.0 if contact is None or isinstance(contact, OffAxisContact) else float(contact.half_angle)
     start, pressed = arrow_start(file, contact), contact is not None and float(contact.half_angle) > 0
     away = start + MIN_ARROW + ARROW_GROWTH * drawn.share
     knob = f'cx="{frame.x + away * sin(file.tilt):.1f}" cy="{frame.y - away * cos(file.tilt):.1f}" r="8"'
-    parts = [
-        *section_parts(file, contact, drawn, units, inside, groups),
-        *(edge_lines(file, half_angle, file.tilt) if pressed else ()),
-        *_borders(file, frame, fields),
-        f'<g {_handle("tilt", "arrow", tilt)}><circle class="knob" {knob}/></g>',
-    ]
-    size = f' data-centre="{frame.x:g} {frame.y:g}" data-scale="{frame.scale:.5g}"'
-    arrow = f' data-start="{start + MIN_ARROW:.1f}" data-long="{ARROW_GROWTH:g}"'
-    return svg.picture(SIZE, LABEL, parts, size + arrow, "group")
+    below, above = section_parts(file, contact, drawn, units, _handle("load", "arrow", load))
+    cells = None if contact is None else _pressure(file, contact) if inside is None else _stresses(file, inside)
+    return {
+        "kind": "section",
+        "size": list(SIZE),
+        "label": LABEL,
+        "data": {"centre": f"{frame.x:g} {frame.y:g}", "scale": f"{frame.scale:.5g}", "long": f"{ARROW_GROWTH:g}"},
+        "below": below,
+        "cells": cells,
+        "ball": {"radii": (frame.scale * ball_radii(file, contact)).round(1).tolist(), "tilt": round(file.tilt, 4)},
+        "above": [
+            *above,
+            *(edge_lines(file, half_angle, file.tilt) if pressed else ()),
+            *_borders(file, frame, fields),
+            f'<g {_handle("tilt", "arrow", tilt)}><circle class="knob" {knob}/></g>',
+        ],
+    }
+
+
+def _pressure(file: JointFile, contact: Contact) -> dict[str, Any] | None:
+    """Return the cells of the pressure: a row from the bore to the radii at their sides."""
+    radii, angles, values = petals(file, contact)
+    if not values.size:
+        return None
+    sides = [*radii[:, 3].tolist(), float(radii[-1, 2])]
+    return _cells(
+        file, [[radii[0, 0]], sides], [*angles[:, 0], angles[-1, 1]], values[None, :] / largest_drawn(contact)
+    )
+
+
+def _stresses(file: JointFile, stresses: LinerStresses) -> dict[str, Any]:
+    """Return the cells of the stresses inside the cup's arc, on both sides of the axis."""
+    wide, deep = stresses.angles[1] - stresses.angles[0], stresses.depths[1] - stresses.depths[0]
+    radii = float(file.joint.socket_radius) + deep * numpy.arange(len(stresses.depths) + 1)
+    sides = wide * numpy.arange(-len(stresses.angles), len(stresses.angles) + 1)
+    shares = numpy.concatenate([stresses.values[:, ::-1], stresses.values], axis=1) / stresses.largest
+    inside = (sides[:-1] > -file.cup.rim) & (sides[1:] < file.cup.rim)
+    edges = sides[numpy.concatenate([inside, [False]]) | numpy.concatenate([[False], inside])]
+    return _cells(file, radii[:, None].tolist(), edges, shares[:, inside])
+
+
+def _cells(
+    file: JointFile, radii: Sequence[Sequence[float]], angles: Iterable[float], shares: Numbers
+) -> dict[str, Any]:
+    """Return cells in pixels and rad between radii, each for all or for each of the angles; colours are percents."""
+    scale = frame_of(file.joint).scale
+    return {
+        "radii": [[round(scale * float(radius), 1) for radius in row] for row in radii],
+        "angles": [round(float(angle), 4) for angle in angles],
+        "percents": numpy.rint(100 * shares).astype(int).tolist(),
+    }
 
 
 def _borders(file: JointFile, frame: DrawingFrame, fields: Mapping[str, Any]) -> Iterator[str]:
@@ -100,15 +148,9 @@ def _handle(name: str, how: str, field: Mapping[str, Any]) -> str:
     )
 
 
-def key(top: str, quantity: Quantity, note: str = "") -> str:
-    """Draw the colour scale from 0 to a value, with a note."""
-    stops = ", ".join(svg.heat(share / 8) for share in range(9))
-    remark = f"<span>{escape(note)}</span>" if note else ""
-    return (
-        f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
-        f"<i style='background: linear-gradient(to right, {stops})'></i>"
-        f"<span>{escape(top)}</span>{remark}</p>"
-    )
+def key(top: str, quantity: Quantity, note: str = "") -> Block:
+    """Return the colour scale from 0 to a value, with a note."""
+    return {"kind": "scale", "words": [f"{quantity.title}: 0", top, note]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,20 +182,3 @@ def liner_stresses(contact: Contact) -> LinerStresses | None:
     except ValueError:
         return None
     return LinerStresses(angles, depths, values)
-
-
-def painted_stresses(file: JointFile, stresses: LinerStresses) -> list[str]:
-    """Draw each cell of the liner in the colour of its stress, inside the cup's arc."""
-    frame, pieces = frame_of(file.joint), list[str]()
-    wide, deep = stresses.angles[1] - stresses.angles[0], stresses.depths[1] - stresses.depths[0]
-    rim, depth = file.cup.rim, float(file.joint.socket_radius) + numpy.repeat(stresses.depths, len(stresses.angles))
-    middle = numpy.tile(stresses.angles, len(stresses.depths))
-    inner, outer = depth - 0.52 * deep, depth + 0.52 * deep
-    for side in (1, -1):
-        low, high = (numpy.clip(side * middle + end * wide, -rim, rim) for end in (-0.52, 0.52))
-        radii, angles = (
-            numpy.stack(corners, axis=-1) for corners in ((inner, inner, outer, outer), (low, high, high, low))
-        )
-        inside = low < high
-        pieces += frame.cells((radii[inside], angles[inside], stresses.values.ravel()[inside]), stresses.largest)
-    return pieces

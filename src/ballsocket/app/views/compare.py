@@ -15,12 +15,12 @@ from ...files.joint_file import JointFile
 from ...model_catalogue import catalogue
 from ...problem.presets import joints
 from ...reports.figure_files import figure_bytes
-from ...reports.pages import table
 from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
 from ..pressing import fine_curves, press_charts
 from ..state.screen import MAX_COMPARED, Screen
 from ..view import STRESS_PAUSE, Document, View, field_places
+from ..widgets.blocks import Block, sentence, table
 from ..widgets.controls import Changes, Control, choice, chosen
 from ..widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
 from ..widgets.words import number_rows
@@ -77,17 +77,17 @@ class Compare(View):
         files = compared_files(screen)
         base = base_of(files, screen)
         designs = _pressed(files, screen)
-        differences = f"Behind the numbers: the difference from {escape(base)}. The drawings have one scale."
+        differences = f"Behind the numbers: the difference from {base}. The drawings have one scale."
         self.put(
-            note=f"<p class='quiet'>{'' if screen.beside else _EXAMPLE_SHOWN}{differences}</p>",
-            table=design_table(with_drawings(designs), base, screen),
-            charts=press_charts(_contacts(designs), _lines(files), screen.reading),
+            note=[sentence(f"{'' if screen.beside else _EXAMPLE_SHOWN}{differences}")],
+            table=[design_table(with_drawings(designs), base, screen)],
+            charts=[press_charts(_contacts(designs), _lines(files), screen.reading)],
         )
 
-        def stressed() -> str:
+        def stressed() -> Block:
             return design_table(with_drawings(with_stresses(designs)), base, screen)
 
-        self.later(STRESS_PAUSE, partial(self.compute, stressed, lambda table: self.put(table=table)))
+        self.later(STRESS_PAUSE, partial(self.compute, stressed, lambda table: self.put(table=[table])))
 
     def document(self, screen: Screen) -> Document:
         files = compared_files(screen)
@@ -106,7 +106,7 @@ class Compare(View):
         return Document(
             picture=picture if contacts else None,
             rows=lambda: number_rows("joint", contacts, screen.reading),
-            sections=lambda: {"joints": ("Designs", table(["", *files], rows()))},
+            sections=lambda: {"joints": ("Designs", [table(["", *files], rows())])},
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
-from html import escape
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from ...comparison import Comparison, successful_contacts
 from ...contact import Contact
+from ...core.checks import check_names
 from ...core.quantities import BEARING, CONTACT, FIELD
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
@@ -20,12 +20,13 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ..pictures.chart import plain_numbers, swatch
-from ..pictures.section import LinerStresses, first_view, key, liner_stresses, painted_stresses
+from ..pictures.chart import plain_numbers
+from ..pictures.section import LinerStresses, first_view, key, liner_stresses
 from ..pressing import effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
+from ..widgets.blocks import Block, Content, sentence
 from ..widgets.controls import MODEL_LABELS, Control, chosen, fields_of, segments, several
 from ..widgets.words import alert, headline, models_table, number_rows
 from .real_cup import RealCupView, bore_of, cup_document, is_prepared, pressed_in_cup
@@ -37,7 +38,7 @@ _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
 _NO_STRESSES = "this model has no stresses inside the liner"
-_AXIAL_CURVES = "<p class='quiet'>Curves: for loads along the axis of a full sphere.</p>"
+_AXIAL_CURVES = sentence("Curves: for loads along the axis of a full sphere.")
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -72,16 +73,17 @@ class Press(RealCupView):
         self._curve_key: Hashable = None
         self._curve: dict[str, Any] | None = None  # numbers over the load, from which a page answers at once
         self._requested: Hashable = None  # bore for which the real cup was requested
-        self.actions["press.run"] = self._request_cup
+        self._explained: tuple[str, ...] = ()  # names of numbers whose explanation is open
+        self.actions |= {"press.run": self._request_cup, "press.why": self._explain}
 
     def controls(self, screen: Screen) -> list[Control]:
-        pieces = {name: swatch(line_of(name)) for name in _EVERY}
+        lines = {name: line_of(name) for name in _EVERY}
         one_model = bool(self._needs_cup(screen, pressed(screen.file, (screen.answered_by, reference.name))))
         return [
             chosen(screen, "answered_by", "Model", MODEL_LABELS).but(hidden=one_model),
             chosen(screen, "painted", "Colours show", _PAINTED.items(), segments),
             Control(
-                several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
+                several("shown", "Curves of the models", _EVERY, screen.shown, lines),
                 lambda names: {"shown": tuple(names)},
             ),
         ]
@@ -118,17 +120,28 @@ class Press(RealCupView):
         """Show the numbers of a model of a load along the axis of the cup."""
         self.long.leave()
         near_rim = bool(_reason(comparison, screen))
+        numbers: Content
         self.long.put_button(hidden=not near_rim)
         by = comparison.contacts.get(screen.answered_by)
         if by is not None:
-            exact = comparison.contacts.get(reference.name)
-            numbers = headline(by, exact, screen.file.cup, screen.reading, _STRESSES.get(by))
+            numbers = self._numbers(screen, by, comparison.contacts.get(reference.name), _STRESSES.get(by))
         elif is_waiting(screen.file, screen.answered_by):
-            numbers = f"<p class='quiet'>{escape(comparison.missing[screen.answered_by])}</p>"
+            numbers = [sentence(comparison.missing[screen.answered_by])]
         else:
             numbers = alert(comparison.missing[screen.answered_by])
         self.put(trouble="", offer=_OFFER if near_rim else "", numbers=numbers)
         self._draw(screen, None if by is None or by.status.failed else by)
+
+    def _numbers(
+        self, screen: Screen, contact: Contact, exact: Contact | None, von_mises: float | None = None
+    ) -> list[Any]:
+        return headline(contact, exact, screen.file.cup, screen.reading, von_mises, self._explained)
+
+    def _explain(self, names: Any) -> None:
+        """Send the explanations of the numbers with these names; the page shows them below their titles."""
+        check_names(names if isinstance(names, list) else [names], CONTACT, "among the numbers")
+        self._explained = tuple(names)
+        self.show(self.page.screen)
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
         """Show the numbers of the real cup; its bore is set up first if it is new."""
@@ -142,23 +155,22 @@ class Press(RealCupView):
 
     def _show_real(self, screen: Screen, contact: OffAxisContact) -> None:
         self._real = contact
-        self.put(numbers=headline(contact, None, screen.file.cup, screen.reading) + self._reason(screen))
+        self.put(numbers=self._numbers(screen, contact, None) + self._reason(screen))
         self._draw(screen, contact)
         self._fill(screen)
 
-    def fail(self, sentence: str) -> None:
+    def fail(self, why: str) -> None:
         screen = self.page.screen
-        self.put(numbers=f"{alert(sentence)}{self._reason(screen)}")
+        self.put(numbers=[alert(why), *self._reason(screen)])
         self._draw(screen, None)
 
-    def _reason(self, screen: Screen) -> str:
+    def _reason(self, screen: Screen) -> list[Block]:
         """State why the real cup is needed; empty where it is not."""
         reason = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
         if not reason:
-            return ""
-        words = f"Computed by the elastic model of the real cup (<code>sphere</code>), because {escape(reason)}."
-        assumptions = complete(screen.file)[1].values()
-        return "".join(f"<p class='quiet'>{text}</p>" for text in (words, *map(escape, assumptions)))
+            return []
+        words = f"Computed by the elastic model of the real cup (sphere), because {reason}."
+        return [sentence(text) for text in (words, *complete(screen.file)[1].values())]
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
         """Draw the joint with its pressure; stresses follow from a thread."""
@@ -169,16 +181,14 @@ class Press(RealCupView):
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
         file = complete(screen.file)[0]
-        painted = None if inside is None else painted_stresses(file, inside)
-        drawing = first_view(file, contact, fields_of(self.page.controls), screen.reading.units, painted)
-        if contact is None:
-            legend = ""
-        elif inside is None:
+        content: list[Any] = [first_view(file, contact, fields_of(self.page.controls), screen.reading.units, inside)]
+        if inside is not None:
+            top = screen.reading.with_unit(BEARING["von_mises"], inside.largest)
+            content.append(key(top, BEARING["von_mises"]))
+        elif contact is not None:
             top = screen.reading.with_unit(FIELD["pressure"], float(contact.max_pressure))
-            legend = key(top, FIELD["pressure"], _NO_STRESSES if screen.painted == "stress" else "")
-        else:
-            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"])
-        self.put(section=drawing + legend)
+            content.append(key(top, FIELD["pressure"], _NO_STRESSES if screen.painted == "stress" else ""))
+        self.put(section=content)
 
     def _fill(self, screen: Screen) -> None:
         """Show the curves and the table of all models, then the numbers with the stress of the model itself."""
@@ -186,9 +196,10 @@ class Press(RealCupView):
         drawn = _drawn(comparison, screen)
         charts = press_charts(drawn, {name: line_of(name) for name in drawn}, reading)
         if self._needs_cup(screen, comparison):
-            self.put(charts=_AXIAL_CURVES + charts, table=models_table(_with_real(self._real, comparison), reading))
+            table = models_table(_with_real(self._real, comparison), reading)
+            self.put(charts=[_AXIAL_CURVES, charts], table=table)
         else:
-            self.put(charts=charts, table=models_table(comparison, reading))
+            self.put(charts=[charts], table=models_table(comparison, reading))
             self._put_curve(screen)
             self.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
 
@@ -214,11 +225,11 @@ class Press(RealCupView):
         if by is None or by.status.failed or by in _STRESSES:
             return
 
-        def numbers() -> str:
+        def numbers() -> Content:
             _STRESSES[by] = float(by.von_mises)
-            return headline(by, exact, screen.file.cup, screen.reading, _STRESSES[by])
+            return self._numbers(screen, by, exact, _STRESSES[by])
 
-        self.compute(numbers, lambda html: self.put(numbers=html))
+        self.compute(numbers, lambda content: self.put(numbers=content))
 
     def document(self, screen: Screen) -> Document:
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units

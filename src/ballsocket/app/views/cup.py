@@ -25,6 +25,7 @@ from ..pictures.bore import METRIC, bare_bore, pressed_bore, pressed_viewer
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import STANDINGS, Screen
 from ..view import Document, field_places
+from ..widgets.blocks import Block, Content, numbers, sentence
 from ..widgets.controls import Changes, Control, by_name, capital, chosen, segments
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import Reading
@@ -133,10 +134,10 @@ _KEY = (
 )
 
 
-def _drawn(screen: Screen) -> dict[str, str]:
+def _drawn(screen: Screen) -> dict[str, Content]:
     contact, reading = pressed_in_cup(screen.file), screen.reading
     if not float(contact.half_angle) > 0:
-        return {"numbers": _verdict(contact, reading), "map": "", "viewer": ""}
+        return {"numbers": [_verdict(contact, reading)], "map": "", "viewer": ""}
     return {
         "numbers": _numbers(contact, screen),
         "map": pressed_bore(contact, reading),
@@ -155,7 +156,7 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
             yield [name, value]
 
 
-def _numbers(contact: OffAxisContact, screen: Screen) -> str:
+def _numbers(contact: OffAxisContact, screen: Screen) -> Content:
     reading = screen.reading
     margin = f"{_edge_margin_text(contact, reading)} of arc"
     cells = [
@@ -166,13 +167,13 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
         quantity_cell(CONTACT["force"], contact.force, reading),
     ]
     checks = checked(checks_of(contact, contact.model.cup), reading)
-    notes = f"{trust(contact, contact.notes, reading)}{_hint(contact)}"
-    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes}"
+    notes = trust(contact, contact.notes, reading)
+    return [_verdict(contact, reading), numbers(cells), *checks, *notes, _hint(contact)]
 
 
-def _verdict(contact: OffAxisContact, reading: Reading) -> str:
-    verdict, sentence = rim_sentence(contact, reading.units)
-    return f"<p class='trust {VERDICT_KINDS[verdict]}'>{verdict.sign} {escape(capital(sentence))}</p>"
+def _verdict(contact: OffAxisContact, reading: Reading) -> Block:
+    verdict, words = rim_sentence(contact, reading.units)
+    return sentence(f"{verdict.sign} {capital(words)}", f"trust {VERDICT_KINDS[verdict]}")
 
 
 def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:

@@ -13,7 +13,6 @@ from ...core.quantities import JOINT, QUANTITIES, SHELL
 from ...files.joint_file import JointFile
 from ...reports import svg
 from ...reports.figure_files import figure_bytes
-from ...reports.pages import answer_table
 from ...reports.study_plots import design_map
 from ...studies.limits import Limit, allowed, margin_on_plane, relative_margins
 from ...studies.study_answer import map_table
@@ -21,6 +20,7 @@ from ...studies.task import BOUNDS, EDGE_DISTANCE
 from ..pictures.contour_map import MapPlane, contour_map, outlined, read_point
 from ..state.screen import AXES, MAPPED, PICKED, MapAxis, Screen
 from ..view import Document, View, field_places
+from ..widgets.blocks import Content, answer_blocks
 from ..widgets.controls import Changes, Control, choice, chosen, empty_number, parameter, segments
 from ..widgets.design_table import design_table, press_designs, with_drawings, with_stresses
 from ..widgets.limit_rows import limit_text, limits_control, present_value
@@ -179,7 +179,7 @@ class DesignMap(View):
         return Document(
             picture=lambda form: figure_bytes(design_map(results, limits, units=screen.reading.units), form),
             rows=lambda: study_rows(results, screen.reading),
-            sections=lambda: {"map": ("Design map", answer_table(map_table(results, limits), screen.reading.units))},
+            sections=lambda: {"map": ("Design map", answer_blocks(map_table(results, limits), screen.reading.units))},
         )
 
 
@@ -209,12 +209,12 @@ def limits_input(screen: Screen, study_of: Callable[[Screen], Any]) -> Control:
     return limits_control(_LIMITED, screen.limits, screen.reading, present, change)
 
 
-def _drawn(screen: Screen) -> dict[str, str]:
+def _drawn(screen: Screen) -> dict[str, Content]:
     results = mapped(screen)
-    return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point_html(screen)}
+    return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point(screen)}
 
 
-def _point_html(screen: Screen) -> str:
+def _point(screen: Screen) -> Content:
     picked = picked_point(screen)
     if picked is None:
         return _HINT
@@ -224,7 +224,7 @@ def _point_html(screen: Screen) -> str:
         return alert(f"the point of the map: {error}")
     files = {_PRESENT: screen.file, _PICKED: file}
     designs = with_drawings(with_stresses(press_designs(files, mapped(screen).attrs["model"], {})))
-    return f"<p>{_BUTTONS}</p>{design_table(designs, _PRESENT, screen, MAPPED)}"
+    return [f"<p>{_BUTTONS}</p>", design_table(designs, _PRESENT, screen, MAPPED)]
 
 
 def study_rows(results: Any, reading: Reading) -> list[list[Any]]:

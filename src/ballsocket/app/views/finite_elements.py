@@ -23,21 +23,22 @@ from ...files.joint_file import JointFile
 from ...model_catalogue import JUDGE, named_models, reference
 from ...question import complete
 from ...reports.joint_drawing import profile
-from ...reports.pages import picture, table
+from ...reports.pages import picture
 from ...reports.section_plots import section_figure, section_picture
 from ...reports.style import bytes_by_units, line_of
 from ..long_view import LongView, long_body
-from ..pictures.chart import legend
+from ..pictures.chart import charts
 from ..pictures.section import extent_of, section
 from ..pressing import pressure_chart
 from ..results import without_name
 from ..running import Reached, Report, Work
 from ..state.screen import Screen
 from ..view import Document, field_places
+from ..widgets.blocks import Content, notes_list, sentence, table
 from ..widgets.controls import Control
 from ..widgets.joint_controls import cup_controls
 from ..widgets.reading import number_text
-from ..widgets.words import checked, distinct_quantities, notes_list, percent
+from ..widgets.words import checked, distinct_quantities, percent
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
@@ -49,7 +50,9 @@ class ElementCheck(LongView):
 
     name, title, run_label = _NAME, "Check by finite elements", "Run finite elements"
     body = long_body(
-        _NAME, field_places(_NAME, _FIELDS), f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>'
+        _NAME,
+        field_places(_NAME, _FIELDS),
+        f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture" class="beside"></div>',
     )
 
     def question_of(self, screen: Screen) -> Hashable:
@@ -66,7 +69,7 @@ class ElementCheck(LongView):
     def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:
             drawing = section(screen.file, None, extent_of(screen.file), 1.0)
-            self.put(numbers="", picture=f"<div class='beside elements'><figure>{drawing}</figure></div>")
+            self.put(numbers="", picture=f"<figure>{drawing}</figure>")
         else:
             self.put(numbers=_numbers(result, screen), picture=_pictures(result, screen))
 
@@ -84,11 +87,11 @@ class ElementCheck(LongView):
         return Document(
             picture=lambda form: result.figures[form][units],
             rows=lambda: [heads, *rows],
-            sections=lambda: {"judge": ("Finite elements", _numbers(result, screen) + figure)},
+            sections=lambda: {"judge": ("Finite elements", [*_numbers(result, screen), figure])},
         )
 
 
-def _pictures(result: ElementResult, screen: Screen) -> str:
+def _pictures(result: ElementResult, screen: Screen) -> Content:
     reading, joint = screen.reading, result.file.joint
     head, outside = (
         reading.with_unit(JOINT[name], getattr(joint, name)) for name in ("head_diameter", "outer_diameter")
@@ -98,15 +101,12 @@ def _pictures(result: ElementResult, screen: Screen) -> str:
     names = {JUDGE: "finite elements", reference.name: "exact"}
     lines = {names[model]: line_of(model) for model in result.pressures}
     profiles = {names[model]: (*pressures, True) for model, pressures in result.pressures.items()}
-    return (
-        f"<div class='beside elements'><figure><figcaption>{escape(caption)}</figcaption>"
-        f"{result.drawing[reading.units]}</figure>"
-        f"<figure><figcaption>Pressure beside the exact one</figcaption>"
-        f"{pressure_chart(profiles, lines, reading)}<p class='legend'>{legend(lines)}</p></figure></div>"
-    )
+    drawing = f"<figure><figcaption>{escape(caption)}</figcaption>{result.drawing[reading.units]}</figure>"
+    pressures = pressure_chart(profiles, lines, reading, ["Pressure beside the exact one"])
+    return [drawing, charts(pressures, legend=[])]
 
 
-def _numbers(result: ElementResult, screen: Screen) -> str:
+def _numbers(result: ElementResult, screen: Screen) -> list[Any]:
     rows = []
     for quantity in distinct_quantities(result.numbers[CONTACT["max_pressure_angle"].key]):
         unit = screen.reading.unit(quantity)
@@ -122,11 +122,10 @@ def _numbers(result: ElementResult, screen: Screen) -> str:
             row += [number_text(exact), percent(float(relative_deviation(value, exact)), "+")]
         rows.append(row)
     heads = ["quantity", "finite elements", "mesh error", "exact", "difference"]
-    return (
-        f"{checked(result.checks, screen.reading)}<div class='narrow'>{table(heads, rows)}</div>"
-        f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact solution is that of a "
-        f"complete shell, without a rim.</p>{notes_list(result.notes, screen.reading)}"
-    )
+    took = f"{result.elements} elements, {result.seconds:.2g} s"
+    words = f"{took}. The exact solution is that of a complete shell, without a rim."
+    notes = notes_list(result.notes, screen.reading)
+    return [*checked(result.checks, screen.reading), table(heads, rows, "narrow"), sentence(words), notes]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,20 +20,21 @@ from ...hip import named_cycle
 from ...hip.cycle_registry import CYCLES
 from ...reports.figure_files import figure_bytes
 from ...reports.hip_plots import course_figure
-from ...reports.pages import picture, table
+from ...reports.pages import picture
 from ...reports.style import BLUE, INK, LineStyle
 from ...reports.svg import attribute, levels_between
 from ..long_view import LongView, LongWork, long_body
 from ..pictures.bore import CELLS_EDGE, BoreField, bare_bore, bore_map, colour_scale, node_field, shape_of, viewer
-from ..pictures.chart import Curve, chart, legend, plain_numbers, spans
+from ..pictures.chart import Curve, chart, charts, plain_numbers, spans
 from ..pressing import axis_end
 from ..running import Work
 from ..state.screen import Screen
 from ..state.use import CHOICES, FIELDS, UploadedCycle, sample_table
 from ..view import Document
+from ..widgets.blocks import Block, Content, notes_list, numbers, sentence, table
 from ..widgets.controls import Changes, Control, changed, choice, chosen, cycle_controls, segments
 from ..widgets.reading import Reading
-from ..widgets.words import checked, doubt, notes_list, number_cell, number_text, quantity_cell, value_text
+from ..widgets.words import checked, doubt, number_cell, number_text, quantity_cell, value_text
 from .hip_runs import MERIDIANS, RINGS, Frames, GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
 _LARGEST = 100_000  # characters of a table
@@ -188,14 +189,14 @@ class Gait(LongView):
             **{f"film_{name}": value for name, value in (film.numbers if film else {}).items()},
         }
         listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in numbers.items()])
-        sections = {
-            "checks": ("Checks", f"{rim_sentence(result, reading)}{checked(result.checks, reading)}"),
-            "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes, reading)),
+        sections: dict[str, tuple[str, Content]] = {
+            "checks": ("Checks", [rim_sentence(result, reading), *checked(result.checks, reading)]),
+            "gait": (f"A cycle: {result.name}", [listed, notes_list(result.notes, reading)]),
         }
         if film is not None:
             sections["film"] = (
                 "Film",
-                picture(film.figures[reading.units], "film over the cycle") + notes_list([film.note], reading),
+                [picture(film.figures[reading.units], "film over the cycle"), notes_list([film.note], reading)],
             )
         return Document(
             picture=lambda form: figure_bytes(course_figure(result.phase, courses, result.name), form),
@@ -220,7 +221,7 @@ def _read_upload(value: Any) -> UploadedCycle:
     return UploadedCycle(name, text)
 
 
-def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
+def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> Content:
     force, pressure, distance = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
     least, notes = least_edge_distance(result), list(result.notes)
     cells = [
@@ -236,9 +237,8 @@ def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str
         cells.append(number_cell("smallest film thickness", thinnest * unit.factor, unit.text, state))
         cells.append(number_cell("smallest film ratio λ", ratio, "", film.regime))
         notes.append(film.note)
-    checks = checked(result.checks, reading)
-    rim = rim_sentence(result, reading)
-    return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes, reading)}"
+    rim, checks = rim_sentence(result, reading), checked(result.checks, reading)
+    return [rim, *doubt(result.valid), numbers(cells), *checks, notes_list(notes, reading)]
 
 
 @dataclass(frozen=True)
@@ -281,32 +281,31 @@ def courses_of(result: GaitResult, film: GaitFilm | None, reading: Reading) -> l
     return [*known, *([(course, course.of(film, reading)) for course in charted] for charted in _FILM_CHARTS)]
 
 
-def gait_charts(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
+def gait_charts(result: GaitResult, film: GaitFilm | None, reading: Reading) -> Content:
     """Return the charts of a cycle, and the numbers with which the page plays it."""
-    charts = courses_of(result, film, reading)
+    courses = courses_of(result, film, reading)
     listed = [
         {"name": course.name, "unit": course.unit(reading).text, "values": plain_numbers(values, 5), "chart": number}
-        for number, charted in enumerate(charts)
+        for number, charted in enumerate(courses)
         for course, values in charted
     ]
     data = {"phase": plain_numbers(result.phase, 5), "courses": listed, "rim": result.rim.tolist()}
-    drawn = "".join(_chart(charted, result, reading) for charted in charts)
-    pending = "" if film is not None else "".join(_empty_chart(charted, reading) for charted in _FILM_CHARTS)
-    return f"<div {attribute('player', data)}></div>{drawn}{pending}"
+    drawn = [_chart(charted, result, reading) for charted in courses]
+    pending = () if film is not None else (_empty_chart(charted, reading) for charted in _FILM_CHARTS)
+    return [f"<div {attribute('player', data)}></div>", *drawn, *pending]
 
 
-def empty_charts(reading: Reading) -> str:
+def empty_charts(reading: Reading) -> Content:
     """Return axes without curves for a cycle that is being prepared."""
-    return "".join(_empty_chart(charted, reading) for charted in (*_PRESS_CHARTS, *_FILM_CHARTS))
+    return [_empty_chart(charted, reading) for charted in (*_PRESS_CHARTS, *_FILM_CHARTS)]
 
 
-def _empty_chart(charted: tuple[Course, ...], reading: Reading) -> str:
+def _empty_chart(charted: tuple[Course, ...], reading: Reading) -> Block:
     words = f"{charted[0].label(reading)}: Preparing ..."
-    axes = chart(words, _PHASE_LABEL, "", {}, (100.0, 1.0), _SIZE)
-    return f"<figure class='quiet'><figcaption>{escape(words)}</figcaption>{axes}</figure>"
+    return charts(chart(words, _PHASE_LABEL, "", {}, (100.0, 1.0), _SIZE, caption=[words]))
 
 
-def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, reading: Reading) -> str:
+def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, reading: Reading) -> Block:
     unit = charted[0][0].unit(reading)
     known = numpy.concatenate([values[numpy.isfinite(values)] for _, values in charted])
     highest = axis_end(1.05 * float(known.max(initial=0.0)))
@@ -320,13 +319,20 @@ def _chart(charted: list[tuple[Course, numpy.ndarray]], result: GaitResult, read
         finite = values[numpy.isfinite(values)]
         ends = f"{number_text(finite.min())} to {number_text(finite.max())} {unit.text}" if finite.size else "no number"
         sentences.append(f"{course.name}: {ends}".rstrip())
-    sentence = "; ".join(sentences)
-    named = f"{legend({course.name: course.line for course, _ in charted})} " if len(charted) > 1 else ""
-    red = " <b class='no'>✗ red: rim contact</b>" if flagged else ""
+    words = "; ".join(sentences)
+    caption = [words, "✗ red: rim contact"] if flagged else [words]
     drawn = chart(
-        f"over the cycle: {sentence}", _PHASE_LABEL, unit.text or "λ", curves, (100.0, highest), _SIZE, flagged
+        f"over the cycle: {words}",
+        _PHASE_LABEL,
+        unit.text or "λ",
+        curves,
+        (100.0, highest),
+        _SIZE,
+        flagged,
+        0.0,
+        caption,
     )
-    return f"<figure><figcaption>{escape(sentence)}{red} {named}</figcaption>{drawn}</figure>"
+    return charts(drawn, legend=[] if len(charted) > 1 else None)
 
 
 def least_edge_distance(result: GaitResult) -> float:
@@ -335,17 +341,17 @@ def least_edge_distance(result: GaitResult) -> float:
     return float(known.min()) if known.size else numpy.nan
 
 
-def rim_sentence(result: GaitResult, reading: Reading) -> str:
+def rim_sentence(result: GaitResult, reading: Reading) -> Block:
     """State in words if the contact reaches the rim, and when."""
     if not result.rim.any():
         distance = least_edge_distance(result)
         if numpy.isnan(distance):
-            return "<p class='trust no'>✗ No contact: this cycle never presses the ball into its socket</p>"
+            return sentence("✗ No contact: this cycle never presses the ball into its socket", "trust no")
         least = reading.with_unit(DERIVED["edge_distance"], distance)
-        return f"<p class='trust yes'>✓ No rim contact: the contact ends at least {least} before the rim</p>"
+        return sentence(f"✓ No rim contact: the contact ends at least {least} before the rim", "trust yes")
     ranges = ", ".join(f"{low:.0f} to {high:.0f} %" for low, high in spans(result.phase, result.rim))
     share = f"{100 * result.rim.mean():.0f} % of the cycle"
-    return f"<p class='trust no'>✗ Rim contact in {share} ({ranges}): the pressure there is a lower bound</p>"
+    return sentence(f"✗ Rim contact in {share} ({ranges}): the pressure there is a lower bound", "trust no")
 
 
 def _shown(result: GaitResult, film: GaitFilm | None, reading: Reading) -> tuple[Frames, float, str]:

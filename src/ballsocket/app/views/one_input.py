@@ -9,16 +9,16 @@ import numpy
 from ...contact.verdict import Verdict
 from ...core.quantities import QUANTITIES
 from ...reports.figure_files import figure_bytes
-from ...reports.pages import answer_table
 from ...reports.study_plots import result_figure
 from ...reports.style import INK, VERMILLION, LineStyle
 from ...studies.limits import verdicts
 from ...studies.study_answer import describe_study
 from ...studies.variance_shares import uncertainty_tables
-from ..pictures.chart import Curve, chart, legend, spans
+from ..pictures.chart import Curve, chart, charts, spans
 from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
 from ..view import Document, View, field_places
+from ..widgets.blocks import Block, Content, answer_blocks, sentence
 from ..widgets.controls import Control, chosen
 from ..widgets.limit_rows import limit_text, present_value
 from ..widgets.words import alert
@@ -37,7 +37,7 @@ class OneInput(View):
 <div class="inputs-row">{field_places("curve", ("across", "across_low", "across_high", "quantity", "model"))}</div>
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
-<figure id="curve-chart"></figure>
+<div id="curve-chart"></div>
 <h3>Change in % if 1 % is added to one number</h3>
 <div id="curve-effects"></div>
 """
@@ -57,8 +57,8 @@ class OneInput(View):
         if not self.channel.shown_value("#curve-chart"):
             self.put(chart="<p class='quiet'>Preparing the curve …</p>")
         self.expect("chart", "effects")
-        self.compute(lambda: result_chart(swept(screen), screen), lambda html: self.put(trouble="", chart=html))
-        self.compute(lambda: _effects(screen), lambda html: self.put(effects=html))
+        self.compute(lambda: result_chart(swept(screen), screen), lambda drawn: self.put(trouble="", chart=[drawn]))
+        self.compute(lambda: _effects(screen), lambda content: self.put(effects=content))
 
     def document(self, screen: Screen) -> Document:
         results, units = swept(screen), screen.reading.units
@@ -67,26 +67,26 @@ class OneInput(View):
         return Document(
             picture=lambda form: figure_bytes(result_figure(results, screen.quantity, limits, units), form),
             rows=lambda: study_rows(results, screen.reading),
-            sections=lambda: {"curve": ("Results over one input", answer_table(table, units))},
+            sections=lambda: {"curve": ("Results over one input", answer_blocks(table, units))},
         )
 
 
-def _effects(screen: Screen) -> str:
+def _effects(screen: Screen) -> Content:
     """Tabulate the effect of one percent of each number on each result, unless its presses take seconds."""
     try:
         if effects_are_slow(screen.file):
             ratio = float(screen.file.joint.thickness_ratio)
-            return f"<p class='quiet'>Too slow here at R2/L = {ratio:.3g}: the report of Contact has it.</p>"
+            return [sentence(f"Too slow here at R2/L = {ratio:.3g}: the report of Contact has it.")]
         effects = effects_of(screen.file)
     except ValueError as error:
         return alert(str(error))
     if effects is None:
-        return "<p class='quiet'>Computed for loads above 0 along the axis of the cup.</p>"
+        return [sentence("Computed for loads above 0 along the axis of the cup.")]
     changes, *_ = uncertainty_tables(effects)
-    return answer_table(changes, screen.reading.units)
+    return answer_blocks(changes, screen.reading.units)
 
 
-def result_chart(results: Any, screen: Screen) -> str:
+def result_chart(results: Any, screen: Screen) -> Block:
     """Draw a result over one parameter, with a point at the present design; red where a limit is exceeded."""
     reading, axis, quantity = screen.reading, QUANTITIES[screen.across.name], QUANTITIES[screen.quantity]
     x, y = (results[part.name].values * reading.unit(part).factor for part in (axis, quantity))
@@ -104,7 +104,6 @@ def result_chart(results: Any, screen: Screen) -> str:
     label = f"{reading.label(quantity)} over {reading.label(axis)}, by the model {results.attrs['model']}"
     top = axis_end(1.05 * max(float(numpy.nanmax(curve.y)) for curve in curves.values()))
     labels, ends = (reading.label(axis), reading.label(quantity)), (float(x[-1]), top)
-    drawn = chart(label, *labels, curves, ends, _SIZE, exceeded, float(x[0]))
-    lines = legend({name: curve.line for name, curve in curves.items()})
-    point = "<span class='key'>● this design</span>" + "<b class='no'>red: a limit is exceeded</b>" * bool(exceeded)
-    return f"{drawn}<figcaption class='legend'>{lines}{point}</figcaption>"
+    red = ["", "red: a limit is exceeded"] if exceeded else []
+    drawn = chart(label, *labels, curves, ends, _SIZE, exceeded, float(x[0]), red)
+    return charts(drawn, legend=["● this design"])

@@ -16,17 +16,18 @@ from ...files.joint_file import JointFile
 from ...hip.law_fields import LawField
 from ...hip.wear_laws import WEAR_LAWS
 from ...problem.presets import joints
-from ...reports.pages import picture, table
+from ...reports.pages import picture
 from ...reports.style import BLUE, VERMILLION, LineStyle
 from ..long_view import LongView, long_body
 from ..pictures.bore import CELLS_EDGE, METRIC, BoreField, bore_map, grid_field
-from ..pictures.chart import Curve, chart, legend
+from ..pictures.chart import Curve, chart, charts
 from ..pressing import axis_end
 from ..results import RESULTS
 from ..running import Work
 from ..state.screen import Screen
 from ..state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
 from ..view import Document, field_places
+from ..widgets.blocks import Content, notes_list, sentence, table
 from ..widgets.controls import (
     Changes,
     Control,
@@ -40,7 +41,7 @@ from ..widgets.controls import (
     segments,
 )
 from ..widgets.reading import Reading
-from ..widgets.words import checked, doubt, notes_list, number_text, percent, unit_of_files
+from ..widgets.words import checked, doubt, number_text, percent, unit_of_files
 from .hip_runs import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
@@ -137,7 +138,11 @@ class Wear(LongView):
         return partial(simulate_designs, files, screen.use, known)
 
     def show_result(self, screen: Screen, result: dict[Hashable, WearResult] | None) -> None:
-        parts = {"numbers": _NOTHING, "curve": empty_chart(screen.use.millions, screen.reading), "maps": ""}
+        parts: dict[str, Content] = {
+            "numbers": _NOTHING,
+            "curve": empty_chart(screen.use.millions, screen.reading),
+            "maps": "",
+        }
         if result is not None:
             named = _named(screen, result)
             parts = {
@@ -164,7 +169,7 @@ class Wear(LongView):
         pictures = "".join(picture(run.figures[units], f"penetration of {name}") for name, run in named.items())
         return Document(
             rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
-            sections=lambda: {"wear": ("Wear", wear_numbers(named, screen.reading) + pictures)},
+            sections=lambda: {"wear": ("Wear", [*wear_numbers(named, screen.reading), pictures])},
         )
 
 
@@ -196,7 +201,7 @@ def designs(screen: Screen) -> dict[str, JointFile]:
     return named
 
 
-def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
+def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> list[Any]:
     """Tabulate the final wear of each design, with the difference from the first."""
     columns = [_final_values(design, reading) for design in designs.values()]
     rows = []
@@ -205,16 +210,13 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
         apart = [percent(float(relative_deviation(value, base)), "+") if base else "" for value in others]
         cells = [number_text(value) + f" ({share})" * bool(share) for value, share in zip(others, apart, strict=True)]
         rows.append([name, number_text(base), *cells])
-    used = "".join(
-        f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"
-        for name, entry in designs.items()
-    )
-    notes = "".join(
-        f"{doubt(entry.summary['contact']['valid'], name)}"
-        f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes, reading)}"
-        for name, entry in designs.items()
-    )
-    return f"{table(['after the last cycle', *designs], rows)}{used}{notes}"
+    content: list[Any] = [table(["after the last cycle", *designs], rows)]
+    for name, entry in designs.items():
+        content += [f"<h3>{escape(name)} after the last cycle</h3>", *checked(entry.checks, reading)]
+    for name, entry in designs.items():
+        band = sentence(f"{name}: {entry.band}")
+        content += [*doubt(entry.summary["contact"]["valid"], name), band, notes_list(entry.notes, reading)]
+    return content
 
 
 def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
@@ -236,7 +238,7 @@ def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
     return values
 
 
-def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
+def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> Content:
     """Draw the penetration of each design over the cycles, with its band."""
     lines = dict(zip(designs, _DESIGN_LINES, strict=False))
     unit = reading.unit(_DEPTH)
@@ -259,15 +261,15 @@ def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METR
         sentences.append(f"{name}: {last} after {design.cycles[-1]:g} million cycles, {low} to {high}")
     label, up = f"penetration: {'; '.join(sentences)}", f"penetration{unit.text_in_brackets}"
     drawn = chart(label, "million cycles", up, curves, (end, highest))
-    bands = dict.fromkeys(escape(design.band.removeprefix("band: ")) for design in designs.values())
-    return f"{drawn}<p class='legend'>{legend(lines)}<span class='key'>shaded: {'; '.join(bands)}</span></p>"
+    bands = dict.fromkeys(design.band.removeprefix("band: ") for design in designs.values())
+    return [charts(drawn, legend=[f"shaded: {'; '.join(bands)}"])]
 
 
-def empty_chart(millions: float, reading: Reading) -> str:
+def empty_chart(millions: float, reading: Reading) -> Content:
     """Draw the axes of the penetration over the cycles, for a design without a result."""
     unit, label = reading.unit(_DEPTH), "penetration over the cycles, not computed yet"
     up = f"penetration{unit.text_in_brackets}"
-    return chart(label, "million cycles", up, {}, (millions, 0.1 * unit.factor))
+    return [charts(chart(label, "million cycles", up, {}, (millions, 0.1 * unit.factor)))]
 
 
 def depth_maps(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:

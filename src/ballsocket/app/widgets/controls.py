@@ -20,8 +20,10 @@ from ...hip.cycle_registry import CYCLES
 from ...hip.schema import HipTable
 from ...model_catalogue import catalogue
 from ...problem.dimensions import DIAMETERS
+from ...reports.style import LineStyle
 from ..state.screen import Screen
 from ..state.use import CHOICES
+from .blocks import plain_line
 from .reading import Reading, box_text, handy_step, unit_suffix
 
 Field = dict[str, Any]  # one input: its name, kind, label, value, and what its kind needs
@@ -55,9 +57,10 @@ def segments(name: str, label: str, options: Options, value: str) -> Field:
     return {**choice(name, label, options, value), "kind": "segments"}
 
 
-def several(name: str, label: str, options: Options, value: Iterable[str], pieces: Mapping[str, str]) -> Field:
-    """Return a row of boxes for any number of choices, each with HTML before its label."""
-    return {**choice(name, label, options, ""), "kind": "several", "value": list(value), "pieces": dict(pieces)}
+def several(name: str, label: str, options: Options, value: Iterable[str], lines: Mapping[str, LineStyle]) -> Field:
+    """Return a row of boxes for any number of choices, each with a piece of a line before its label."""
+    plain = {option: plain_line(line) for option, line in lines.items()}
+    return {**choice(name, label, options, ""), "kind": "several", "value": list(value), "lines": plain}
 
 
 def tick(name: str, label: str, value: bool) -> Field:

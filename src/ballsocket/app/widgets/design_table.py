@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from html import escape
 from math import isnan, nan
 
 from ...comparison import relative_deviation, successful_contacts
@@ -21,6 +20,7 @@ from ..pictures.section import extent_of, section
 from ..pressing import pressed
 from ..state.screen import Screen
 from ..views.real_cup import is_prepared, pressed_in_cup
+from .blocks import Block, styled_row, table
 from .reading import Reading, number_text
 from .words import VERDICT_KINDS, percent
 
@@ -58,11 +58,6 @@ class Cell:
     def plain(self) -> str:
         """Text with the difference in brackets, for reports."""
         return f"{self.text} ({self.difference})" if self.difference else self.text
-
-    @property
-    def html(self) -> str:
-        small = f"<small>{escape(self.difference)}</small>" if self.difference else ""
-        return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
 
 
 Designs = Mapping[str, ComparedDesign]  # designs by their names, the one on the screen first
@@ -108,17 +103,14 @@ def with_drawings(designs: Designs) -> Designs:
     }
 
 
-def design_table(designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)) -> str:
-    """Return a table in HTML with differences from the base, which stand below the numbers."""
-    heads = "".join(f"<th scope='col'>{escape(name)}{design.heading}</th>" for name, design in designs.items())
-    rows = "".join(
-        f"<tr><th scope='row'>{escape(label)}</th>{''.join(cell.html for cell in cells)}</tr>"
+def design_table(designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)) -> Block:
+    """Return a table with differences from the base, which stand below the numbers."""
+    heads = [[name, "", "", "", design.heading] for name, design in designs.items()]
+    rows = [
+        styled_row([label, *([cell.text, cell.difference, cell.kind] for cell in cells)])
         for label, cells in design_rows(designs, base, screen, names)
-    )
-    return (
-        "<div class='wide' tabindex='0' role='region' aria-label='the designs'><table class='designs'>"
-        f"<tr><td></td>{heads}</tr>{rows}</table></div>"
-    )
+    ]
+    return table(["", *heads], rows, "designs")
 
 
 def design_rows(

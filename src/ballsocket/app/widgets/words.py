@@ -1,9 +1,9 @@
-"""Text and HTML of contacts for the page: numbers, tables, verdicts and notes in the chosen units."""
+"""Texts and blocks of contacts for the page: numbers, tables, verdicts and notes in the chosen units."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from html import escape
 from math import floor, isfinite, isnan, log10
@@ -21,10 +21,9 @@ from ...design_checks import checks_of, unchecked_text, verdict_of
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...model_catalogue import reference
 from ...problem.cup import Cup
-from ...reports.pages import checks_html
 from ...reports.style import line_of
-from ..pictures.chart import swatch
-from .reading import Reading, number_text
+from .blocks import Block, Cell, checks_table, notes_list, numbers, sentence, styled_row, table
+from .reading import Reading, number_text, unit_suffix
 
 _SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}  # units as the head of a column in a file has them
 _MAIN_QUANTITY = "max_pressure"
@@ -35,79 +34,60 @@ def alert(sentence: str) -> str:
     return f"<p class='refused' role='alert'>{escape(sentence)}</p>"
 
 
-def notes_list(notes: Iterable[str], reading: Reading) -> str:
-    """List the notes of a model."""
-    return f"<ul class='notes'>{''.join(f'<li>{escape(reading.units.sentence(note))}</li>' for note in notes)}</ul>"
+def number_cell(title: str, value: float, unit: str, more: str = "", name: str = "", why: str = "") -> list[Any]:
+    """Return a number of `numbers`: name, title, text, unit, a remark below it, the value, and an explanation."""
+    missing = isnan(value)
+    text, unit = number_text(value), "" if missing else unit_suffix(unit)
+    return [name, title, text, unit, more, None if missing or not name else value, why]
 
 
-def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
-    """Return a number with its unit, and a remark below it."""
-    behind = "" if isnan(value) else _unit_html(unit)
-    small = f"<small>{escape(more)}</small>" if more else ""
-    return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
-
-
-def quantity_cell(quantity: Quantity, value: Any, reading: Reading, title: str = "", more: str = "") -> str:
+def quantity_cell(quantity: Quantity, value: Any, reading: Reading, title: str = "", more: str = "") -> list[Any]:
     """Return a number in internal units by the title of its quantity, or another one, in the units of the page."""
     unit = reading.unit(quantity)
     return number_cell(title or quantity.title, float(value) * unit.factor, unit.text, more)
 
 
-def _unit_html(unit: str) -> str:
-    return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
+def trust(contact: Contact, notes: Sequence[str], reading: Reading) -> list[Block]:
+    """Return validity and notes of a contact; words repeat what the colour shows."""
+    return [*doubt(bool(contact.valid)), *([notes_list(notes, reading)] if notes else [])]
 
 
-def trust(contact: Contact, notes: Sequence[str], reading: Reading) -> str:
-    """Return validity and notes of a contact as HTML; words repeat what the colour shows."""
-    return f"{doubt(bool(contact.valid))}{notes_list(notes, reading) if notes else ''}"
+def doubt(valid: bool, name: str = "") -> list[Block]:
+    """Return the warning for a contact outside its model's validity, with the design's name; none if valid."""
+    head = f"{name}: " if name else ""
+    return [] if valid else [sentence(f"✗ {head}outside the range in which this model can be trusted", "trust no")]
 
 
-def doubt(valid: bool, name: str = "") -> str:
-    """Return the warning for a contact outside its model's validity, with the design's name; empty if valid."""
-    head = f"{escape(name)}: " if name else ""
-    return "" if valid else f"<p class='trust no'>✗ {head}outside the range in which this model can be trusted</p>"
-
-
-def models_table(comparison: Comparison, reading: Reading) -> str:
+def models_table(comparison: Comparison, reading: Reading) -> list[Block]:
     """Tabulate the models with deviation from the exact result, validity and line style."""
     exact = comparison.contacts.get(reference.name)
-    rows = "".join(_row(name, contact, exact, reading) for name, contact in comparison.items())
-    heads = "".join(
-        f"<th scope='col' title='{escape(quantity.title)}'>{escape(quantity.head(reading.unit(quantity)))}</th>"
-        for quantity in map(CONTACT.__getitem__, HEADLINE)
-    )
-    missing = "".join(
-        f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(HEADLINE) + 1}' class='text'>{escape(why)}</td></tr>"
-        for name, why in comparison.missing.items()
-    )
-    return (
-        "<div class='wide models' tabindex='0' role='region' aria-label='every model'><table>"
-        f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>valid here?</th></tr>{rows}{missing}"
-        "</table></div><p class='quiet'>In small digits: the difference from the exact solution.</p>"
-    )
+    quantities = [CONTACT[name] for name in HEADLINE]
+    heads = [[quantity.head(reading.unit(quantity)), "", "", quantity.title] for quantity in quantities]
+    rows = [row for name, contact in comparison.items() for row in _rows(name, contact, exact, reading)]
+    rows += [styled_row([name, [why, "", "text"]]) for name, why in comparison.missing.items()]
+    return [
+        table(["model", *heads, ["valid here?", "", "text"]], rows, "models"),
+        sentence("In small digits: the difference from the exact solution."),
+    ]
 
 
 @lru_cache(maxsize=1024)
-def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
-    cells = "".join(_number(name, contact, exact, reading) for name in HEADLINE)
+def _rows(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> list[dict[str, Any]]:
     valid = bool(contact.valid)
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
-    head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
-    row = f"<tr class='{kind}'>{head}{cells}<td class='text'>{'yes' if valid else 'no'}</td></tr>"
-    if valid:
-        return row
-    notes = "; ".join(map(reading.units.sentence, contact.notes))
-    why = f"<td colspan='{len(HEADLINE) + 2}' class='text'>{escape(notes)}</td>"
-    return f"{row}<tr class='why'>{why}</tr>"
+    cells: list[Cell] = [name, *(_number(quantity, contact, exact, reading) for quantity in HEADLINE)]
+    row = styled_row([*cells, ["yes" if valid else "no", "", "text"]], kind, line_of(name))
+    why = "; ".join(map(reading.units.sentence, contact.notes))
+    return [row] if valid else [row, styled_row([[why, "", "text"]], "why")]
 
 
-def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> str:
+def _number(name: str, contact: Contact, exact: Contact | None, reading: Reading) -> list[str]:
     """Return a table cell with its deviation from the exact result."""
     value, small = float(reading.values_of(contact, CONTACT[name])), ""
     if exact is not None and exact is not contact:
         share = float(relative_deviation(value, float(reading.values_of(exact, CONTACT[name]))))
-        small = f"<small>{escape(percent(share, '+'))}</small>" if share else ""
-    return f"<td>{number_text(value)}{small}</td>"
+        small = percent(share, "+") if share else ""
+    return [number_text(value), small]
 
 
 def percent(share: float, sign: str = "") -> str:
@@ -169,45 +149,48 @@ def distinct_quantities(max_pressure_angle: float) -> list[Quantity]:
 
 @lru_cache(maxsize=256)
 def headline(
-    contact: Contact, exact: Contact | None, cup: Cup, reading: Reading, von_mises: float | None = None
-) -> str:
-    """Return the numbers and checks of a contact as HTML; `von_mises` (MPa) and slow notes may follow."""
-    first, quantities = CONTACT[_MAIN_QUANTITY], distinct_quantities(float(contact.max_pressure_angle))
-    cells = "".join(_quantity_cell(quantity, contact, reading) for quantity in quantities if quantity is not first)
+    contact: Contact,
+    exact: Contact | None,
+    cup: Cup,
+    reading: Reading,
+    von_mises: float | None = None,
+    explained: tuple[str, ...] = (),
+) -> list[Any]:
+    """Return the numbers and checks of a contact; `von_mises` (MPa) and slow notes may follow.
+
+    Some numbers are `explained`.
+    """
+    quantities = distinct_quantities(float(contact.max_pressure_angle))
+    cells = {}
+    for quantity in quantities:
+        why = explanation(quantity, contact, reading) if quantity.name in explained else ""
+        value, unit = float(reading.values_of(contact, quantity)), reading.unit(quantity).text
+        cells[quantity.name] = number_cell(quantity.title, value, unit, name=quantity.name, why=why)
     notes = contact.quick_notes if von_mises is None else contact.notes
     if not contact.joint.liner.strengths:  # the verdict already states the utilisation
         notes = tuple(note for note in notes if note != contact.utilisation_note)
-    return (
-        f"<dl class='first'>{_quantity_cell(first, contact, reading)}</dl>"
-        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, notes, reading)}"
-        f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
-        "<details class='quiet' data-why='model'><summary>Model and sources</summary>"
-        f"<p>{escape(_model_text(contact))}</p></details>"
-    )
-
-
-def _model_text(contact: Contact) -> str:
     sources = "; ".join(map(str, contact.model.sources))
-    return f"{contact.model.name}: {contact.model.title}.{f' Source: {sources}.' if sources else ''}"
+    model = f"{contact.model.name}: {contact.model.title}.{f' Source: {sources}.' if sources else ''}"
+    return [
+        numbers([cells.pop(_MAIN_QUANTITY)], "first"),
+        *checked(checks_of(contact, cup, von_mises), reading),
+        *trust(contact, notes, reading),
+        numbers(cells.values(), "numbers"),
+        sentence(accuracy_sentence(contact, exact)),
+        f"<details class='quiet' data-why='model'><summary>Model and sources</summary><p>{escape(model)}</p></details>",
+    ]
 
 
-def checked(rows: Sequence[Check], reading: Reading) -> str:
-    """Return the verdict on checks in one sentence, and their table, as HTML."""
-    verdict, sentence = verdict_of(rows)
+def checked(rows: Sequence[Check], reading: Reading) -> list[Block]:
+    """Return the verdict on checks in one sentence, and their table."""
+    verdict, words = verdict_of(rows)
     kind = "doubt" if verdict is Verdict.KEPT and any(row.is_near for row in rows) else VERDICT_KINDS[verdict]
-    status = f"<p class='verdict {kind}' role='status'>{verdict.sign} {escape(sentence)}</p>"
-    unchecked = f"<p class='quiet'>N{escape(text[1:])}</p>" if (text := unchecked_text(rows)) else ""
-    return f"{status}{unchecked}{checks_html(rows, reading.with_unit) if rows else ''}"
-
-
-def _quantity_cell(quantity: Quantity, contact: Contact, reading: Reading) -> str:
-    value = float(reading.values_of(contact, quantity))
-    unit = "" if isnan(value) else _unit_html(reading.unit(quantity).text)
-    return (
-        f"<div><dt><details data-why='{quantity.name}'><summary>{escape(quantity.title)}</summary>"
-        f"<p>{escape(explanation(quantity, contact, reading))}</p></details></dt>"
-        f"<dd data-name='{quantity.name}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
-    )
+    unchecked = f"N{text[1:]}" if (text := unchecked_text(rows)) else ""
+    return [
+        sentence(f"{verdict.sign} {words}", f"verdict {kind}"),
+        *([sentence(unchecked)] if unchecked else []),
+        *([checks_table(rows, reading)] if rows else []),
+    ]
 
 
 def explanation(quantity: Quantity, contact: Contact, reading: Reading) -> str:
