@@ -39,10 +39,10 @@ from ...studies.parameters import PARAMETERS
 from ..long_view import LongView, long_body
 from ..pressing import pressed
 from ..running import Reached, Report, Work
-from ..state.screen import EvidenceQuestion, Screen, phrases_of
+from ..state.screen import EvidenceQuestion, Screen, phrases_in, phrases_of
 from ..state.use import Use
 from ..view import Document, field_places
-from ..widgets.controls import Changes, Control, changed, chosen, segments, text
+from ..widgets.controls import Changes, Control, changed, chosen, segments, text, tolerances_input
 from ..widgets.limit_rows import limits_control, present_value
 from ..widgets.words import VERDICT_KINDS
 
@@ -96,7 +96,7 @@ class Evidence(LongView):
             text(screen, "asked.accuracy", "Allowed error of the numbers"),
             limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
             text(screen, "asked.matrix", "Cases, such as force = 2, 3 kN"),
-            text(screen, "asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
+            tolerances_input(screen),
             text(screen, "asked.friction", "Coefficient of friction, if any"),
             chosen(screen, "asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
             chosen(screen, "asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
@@ -224,11 +224,6 @@ def _joint(file: JointFile) -> Tables:
     if file.cup == Cup() and not file.cup.oriented and joints.get(file.joint.name) == file.joint:
         return {"joint": file.joint.name}
     return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
-
-
-def phrases_in(text: str) -> Iterator[str]:
-    """Yield the phrases of a text, which semicolons or line ends separate."""
-    return (phrase.strip() for phrase in text.replace("\n", ";").split(";") if phrase.strip())
 
 
 def _halves(context: str, phrase: str) -> tuple[str, str]:

@@ -19,7 +19,7 @@ from ..pictures.chart import Curve, chart, legend, spans
 from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
 from ..view import Document, View, field_places
-from ..widgets.controls import Control, chosen
+from ..widgets.controls import Control, chosen, tolerances_input
 from ..widgets.limit_rows import limit_text, present_value
 from ..widgets.words import alert
 from .design_map import axis_control, checked, end_control, limits_input, study_rows
@@ -38,7 +38,8 @@ class OneInput(View):
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <figure id="curve-chart"></figure>
-<h3>Change in % if 1 % is added to one number</h3>
+<h3>Sensitivity and tolerances</h3>
+<div data-field="curve.tolerances"></div>
 <div id="curve-effects"></div>
 """
 
@@ -51,7 +52,7 @@ class OneInput(View):
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
         ]
         edits = [Control(control.field, checked(screen, control.read, ["across"])) for control in controls]
-        return [*edits, limits_input(screen, swept)]
+        return [*edits, limits_input(screen, swept), tolerances_input(screen)]
 
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#curve-chart"):
@@ -72,18 +73,17 @@ class OneInput(View):
 
 
 def _effects(screen: Screen) -> str:
-    """Tabulate the effect of one percent of each number on each result, unless its presses take seconds."""
+    """Tabulate the effect of one percent of each number, and of the tolerances, unless its presses take seconds."""
     try:
         if effects_are_slow(screen.file):
             ratio = float(screen.file.joint.thickness_ratio)
             return f"<p class='quiet'>Too slow here at R2/L = {ratio:.3g}: the report of Contact has it.</p>"
-        effects = effects_of(screen.file)
+        effects = effects_of(screen.file, screen.asked.tolerances)
     except ValueError as error:
         return alert(str(error))
     if effects is None:
         return "<p class='quiet'>Computed for loads above 0 along the axis of the cup.</p>"
-    changes, *_ = uncertainty_tables(effects)
-    return answer_table(changes, screen.reading.units)
+    return "".join(answer_table(table, screen.reading.units) for table in uncertainty_tables(effects))
 
 
 def result_chart(results: Any, screen: Screen) -> str:
