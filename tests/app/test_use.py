@@ -374,14 +374,18 @@ def test_what_is_typed_is_a_question_file(tmp_path):
 
 def test_a_question_is_read_as_it_is_typed():
     page = opened(EVIDENCE)
-    assert "2 cases" in unescape(told(page, "evidence-found"))
+    assert re.search("1 case<.*3000 N<", unescape(told(page, "evidence-found")), re.DOTALL)  # the load on the page
+    edits(page, "evidence.matrix", "force = 2, 3 kN")
     assert "2000 N, 3000 N" in unescape(told(page, "evidence-found"))
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
     assert "6 cases" in unescape(told(page, "evidence-found"))
     assert "ask.matrix=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
+    edits(page, "load", 4000)
     edits(page, "evidence.matrix", "clearance = 0.05, 0.1 mm")
-    assert "[matrix] needs a load" in unescape(told(page, "evidence-trouble"))
+    assert re.search("2 cases<.*4000 N<", unescape(told(page, "evidence-found")), re.DOTALL)
+    edits(page, "kind", "half_angle")
+    assert not told(page, "evidence-trouble")
 
 
 @pytest.mark.parametrize(

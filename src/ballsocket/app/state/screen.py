@@ -65,7 +65,7 @@ class EvidenceQuestion:
     consequence: str = "medium"
     accuracy: str = "10 %"
     limits: str = "utilisation <= 1"  # phrases separated by ;, also in matrix and tolerances
-    matrix: str = "force = 2, 3 kN"
+    matrix: str = ""  # cases; their load is that of the screen unless they state one
     tolerances: str = ""
     friction: str = ""
     elements: str = "no"

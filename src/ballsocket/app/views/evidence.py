@@ -18,6 +18,7 @@ from ...contact.verdict import Verdict
 from ...core.checks import check_names, shown
 from ...core.display import counted
 from ...core.kinds import Kind
+from ...core.quantities import LOADS
 from ...core.unit_systems import Units
 from ...evidence.folder import SUMS, WORK, names_of, write
 from ...evidence.matrix import limit_text, title_of, verdict_text
@@ -68,7 +69,8 @@ class Evidence(LongView):
 
     def question_of(self, screen: Screen) -> Hashable:
         use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
-        return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
+        file = screen.file
+        return screen.asked, _load_cases(screen.asked, file), file.joint, file.cup, file.cup.oriented, use
 
     def work(self, screen: Screen) -> Work:
         axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
@@ -95,7 +97,7 @@ class Evidence(LongView):
             chosen(screen, "asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
             text(screen, "asked.accuracy", "Allowed error of the numbers"),
             limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
-            text(screen, "asked.matrix", "Cases, such as force = 2, 3 kN"),
+            text(screen, "asked.matrix", "Cases other than the load here, such as force = 2, 3 kN"),
             tolerances_input(screen),
             text(screen, "asked.friction", "Coefficient of friction, if any"),
             chosen(screen, "asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
@@ -208,7 +210,7 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
         "finite_elements": inputs.elements == "yes",
         "risk": {"influence": inputs.influence, "consequence": inputs.consequence},
         "required": {"accuracy": inputs.accuracy, "limits": list(phrases_in(inputs.limits))},
-        "matrix": dict(map(_axis, phrases_in(inputs.matrix))),
+        "matrix": dict(map(_axis, (*_load_cases(inputs, file), *phrases_in(inputs.matrix)))),
         "tolerances": dict(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
         **_joint(file),
     }
@@ -224,6 +226,14 @@ def _joint(file: JointFile) -> Tables:
     if file.cup == Cup() and not file.cup.oriented and joints.get(file.joint.name) == file.joint:
         return {"joint": file.joint.name}
     return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
+
+
+def _load_cases(inputs: EvidenceQuestion, file: JointFile) -> tuple[str, ...]:
+    """Return the load of a file as phrases of the matrix, unless the matrix has a load."""
+    named = {phrase.partition("=")[0].strip() for phrase in phrases_in(inputs.matrix)}
+    return (
+        () if named & set(LOADS) else tuple(f"{name} = {load!r} {LOADS[name].unit}" for name, load in file.load.items())
+    )
 
 
 def _halves(context: str, phrase: str) -> tuple[str, str]:
