@@ -443,7 +443,13 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "bars": {}, "case": {"force": 2e3}}}
         accuracy = {"largest": None, "required": 0.05, "holds": False}
-        record = {"worst": worst, "limits": limits, "accurate": accuracy, "adequacy": {"text": "gaps"}, "recentred": []}
+        record = {
+            "worst": worst,
+            "limits": limits,
+            "accurate": accuracy,
+            "adequacy": {"text": "gaps", "not_met": ["test samples"]},
+            "recentred": [],
+        }
         pack = EvidencePack(record=record, content={units: units.value.encode() for units in Units})
         self._heard(key, RunFinished(pack))
 
@@ -454,6 +460,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     assert "11.2 MPa" in found
     assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: exceeded")
     assert "✓ largest pressure at most 20 MPa: kept" in found
+    assert "Factors below that level: test samples" in found
     for units in ("imperial", "SI"):
         edits(page, "units", units)
         pack = edits(page, "evidence.take", True)["file"]

@@ -176,6 +176,8 @@ def _pack_html(pack: EvidencePack, units: Units) -> str:
         words = f"{verdict.sign} {limit_text(limit, units)}: {verdict_text(limit)}"
         decisions.append(f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>")
     others = items(conclusions(pack.record, units)[len(limits) :])
+    below = ", ".join(pack.record["adequacy"]["not_met"])
+    others += f"<p class='quiet'>Factors below that level: {escape(below)}</p>" if below else ""
     return f"{''.join(decisions)}{others}{table(*_worst(pack, units), kind='words')}{take}"
 
 
@@ -284,7 +286,7 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
 
     def heard(name: str) -> None:
         finished.append(name)
-        report(Reached(share=min(0.95, len(finished) / pieces), words=f"done: {name}"))
+        report(Reached(share=min(0.95, len(finished) / pieces), words=f"part {len(finished)} of about {pieces}"))
 
     record = gather_evidence(question, path / WORK, heard)
     content = {}
