@@ -38,6 +38,7 @@ _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
 _NO_STRESSES = "this model has no stresses inside the liner"
 _AXIAL_CURVES = "<p class='quiet'>Curves: for loads along the axis of a full sphere.</p>"
+_NO_BAND = "<p class='quiet'>No band from the tolerances here: One input states the reason.</p>"
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -93,7 +94,7 @@ class Press(RealCupView):
         needs_cup = bool(self._needs_cup(screen, comparison))
         self.channel.put("curve", None if needs_cup or self._curve_key != self._key_of(screen) else self._curve)
         if needs_cup or not screen.asked.tolerances:
-            self.put(band="")
+            self.put(band=_NO_BAND if screen.asked.tolerances else "")
         if needs_cup:
             self.long.show(screen)
         else:
@@ -252,13 +253,13 @@ def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
 
 
 def _band(screen: Screen) -> str:
-    """State between which pressures most joints within the tolerances lie; empty where that is not known at once."""
+    """State between which pressures most joints within the tolerances lie, unless that is not known at once."""
     try:
         effects = None if effects_are_slow(screen.file) else effects_of(screen.file, screen.asked.tolerances)
     except ValueError as error:
         return alert(f"Tolerances: {error}")
     if effects is None or "max_pressure" not in effects.band:
-        return ""
+        return _NO_BAND
     low, _, high = (screen.reading.with_unit(CONTACT["max_pressure"], end) for end in effects.band["max_pressure"])
     return f"<p>Largest pressure of 95 % of the joints within the tolerances: {low} to {high}</p>"
 
