@@ -3,6 +3,8 @@
 import asyncio
 import gzip
 import json
+import re
+from base64 import b64decode
 from contextlib import closing, suppress
 from functools import partial, wraps
 from http.client import HTTPConnection
@@ -153,6 +155,20 @@ def test_no_script_stands_in_the_page(address):
         assert script.startswith(' type="module" src="assets/')
         assert script.partition(">")[2].startswith("</script>")
     assert b"style=" not in body
+
+
+def test_a_logo_is_a_picture_inside_the_page(tmp_path):
+    logo = tmp_path / "logo.svg"
+    logo.write_text("<svg xmlns='http://www.w3.org/2000/svg' onload='alert(1)'></svg>")
+    (content,) = re.findall(r'<img class="logo" alt="" src="data:image/svg\+xml;base64,([^"]*)">', page_of(logo))
+    assert b64decode(content) == logo.read_bytes()
+    assert "<img" not in page_of(None)
+    with pytest.raises(ValueError, match=r"must end in \.png or \.svg"):
+        page_of(tmp_path / "logo.html")
+
+
+def page_of(logo):
+    return serve.page_files(logo)["page.html"][1]
 
 
 def test_files_are_compressed_and_are_sent_once(address):

@@ -10,6 +10,7 @@ import ballsocket as bs
 from ballsocket.app import results
 from ballsocket.app.running import RunFinished
 from ballsocket.studies.derivatives import local_uncertainty
+from ballsocket.studies.distributions import tolerance
 
 from .asking import blocks, does, edits, opened, saved, told, trouble
 
@@ -82,6 +83,25 @@ def test_the_input_may_be_the_y_axis_of_the_map_whose_range_refuses_no_edit():
     page = opened(f"{LINK}&up=liner_thickness=0.01..0.1&across=force=1000..3000&map_model=exact")
     edits(page, "curve.across_low", 2000)  # `exact` takes minutes over such liners
     assert (trouble(page), page.screen.across.low) == ("", 2000.0)
+
+
+def test_tolerances_make_a_band_of_the_results_which_the_first_view_states_too():
+    page = opened(LINK)
+    edits(page, "curve.tolerances", "clearance = 0.1 +- 0.02 mm")
+    bands = local_uncertainty(HIP, bs.Cup(), {"force": 3000.0}, {"clearance": tolerance(0.1, 0.02)}).band
+    low, _, high = (f"{end:.4g} MPa" for end in bands["max_pressure"])
+    assert f'"{low}"' in told(page, "curve-effects")
+    does(page, "view", value="press")
+    assert f"{low} to {high}" in told(page, "press-band")
+    assert low in saved(page, "HTML").decode()
+    edits(page, "tilt", 10)
+    assert "No band" in told(page, "press-band")
+    edits(page, "tilt", 0)
+    edits(page, "clearance", "0.4")
+    assert "outside its tolerance of 0.08 to 0.12 mm" in told(page, "press-band")
+    does(page, "view", value="curve")
+    edits(page, "curve.tolerances", "clearance = 0.4 +- 0.2 mm")  # hundreds of slow presses
+    assert "outside the tables" in told(page, "curve-effects")
 
 
 def test_effects_that_take_seconds_are_refused():

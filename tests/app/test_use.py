@@ -376,14 +376,18 @@ def test_what_is_typed_is_a_question_file(tmp_path):
 
 def test_a_question_is_read_as_it_is_typed():
     page = opened(EVIDENCE)
-    assert "2 cases" in unescape(told(page, "evidence-found"))
+    assert re.search("1 case<.*3000 N<", unescape(told(page, "evidence-found")), re.DOTALL)  # the load on the page
+    edits(page, "evidence.matrix", "force = 2, 3 kN")
     assert "2000 N, 3000 N" in unescape(told(page, "evidence-found"))
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
     assert "6 cases" in unescape(told(page, "evidence-found"))
     assert "ask.matrix=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
+    edits(page, "load", 4000)
     edits(page, "evidence.matrix", "clearance = 0.05, 0.1 mm")
-    assert "[matrix] needs a load" in unescape(told(page, "evidence-trouble"))
+    assert re.search("2 cases<.*4000 N<", unescape(told(page, "evidence-found")), re.DOTALL)
+    edits(page, "kind", "half_angle")
+    assert not told(page, "evidence-trouble")
 
 
 @pytest.mark.parametrize(
@@ -441,7 +445,13 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "bars": {}, "case": {"force": 2e3}}}
         accuracy = {"largest": None, "required": 0.05, "holds": False}
-        record = {"worst": worst, "limits": limits, "accurate": accuracy, "adequacy": {"text": "gaps"}, "recentred": []}
+        record = {
+            "worst": worst,
+            "limits": limits,
+            "accurate": accuracy,
+            "adequacy": {"text": "gaps", "not_met": ["test samples"]},
+            "recentred": [],
+        }
         pack = EvidencePack(record=record, content={units: units.value.encode() for units in Units})
         self._heard(key, RunFinished(pack))
 
@@ -452,6 +462,7 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     assert "11.2 MPa" in found
     assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: exceeded")
     assert "✓ largest pressure at most 20 MPa: kept" in found
+    assert "Factors below that level: test samples" in found
     for units in ("imperial", "SI"):
         edits(page, "units", units)
         pack = edits(page, "evidence.take", True)["file"]

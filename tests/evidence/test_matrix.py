@@ -147,12 +147,12 @@ def test_the_joint_is_drawn_with_a_contact_about_its_axis(record):
     assert np.degrees(np.arctan2(across, down)) == pytest.approx(half_angle, abs=0.05)  # coordinates have one decimal
     written = {text.text for text in drawing.iter("{http://www.w3.org/2000/svg}text")}
     force = record["worst"]["max_pressure"]["numbers"]["force"]
-    assert {"UHMWPE, cross-linked", f"{force:.4g} N"} <= written
+    assert {"cross-linked UHMWPE", f"{force:.4g} N"} <= written
     off_axis = {**record, "drawn": {**record["drawn"], "half_angle_deg": None}}
     assert b" N<" not in figures.joint_drawing(off_axis, Units.SI)
     metal = bs.read_joint(EXAMPLES / "metal_backed_hip.toml").joint.summary()
     backed = {**record, "drawn": {**record["drawn"], "joint": json.loads(json.dumps(metal))}}
-    assert b">titanium alloy, Ti-6Al-4V<" in figures.joint_drawing(backed, Units.SI)
+    assert b">titanium alloy<" in figures.joint_drawing(backed, Units.SI)
 
 
 def test_methods_bands_and_wear_are_drawn_at_their_numbers(record):

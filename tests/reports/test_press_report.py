@@ -190,7 +190,7 @@ def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():
     assert gap_factor(bs.Joint(ball_radius=10.0, clearance=1.0, liner_thickness=5.0, liner=bs.POM)) == 1.0
     assert {"head", "⌀ 36 mm", "bore", "⌀ 36.2 mm", "outside", "⌀ 46.2 mm"} <= drawn_texts(joint_svg(FILE))
     gap = {"clearance", "⌀ 0.2 mm", "drawn × 10"}
-    assert {"liner", "5 mm", "UHMWPE, cross-linked", *gap} <= drawn_texts(joint_svg(FILE))
+    assert {"liner", "5 mm", "cross-linked UHMWPE", *gap} <= drawn_texts(joint_svg(FILE))
     contact = bs.HessForsbach().press(HIP, force=3000.0)
     loaded = joint_svg(FILE, contact, float(contact.half_angle), DrawnLoad(text="674.4 lbf"), Units.IMPERIAL)
     assert {"⌀ 1.417 in", "674.4 lbf"} <= drawn_texts(loaded)

@@ -24,9 +24,11 @@ from ..reports.press_plots import FORCE_CURVE, force_axes
 from ..reports.style import LineStyle
 from ..reports.svg import rounded_up
 from ..studies.derivatives import LocalUncertainty, local_uncertainty
+from ..studies.expressions import parse_distribution
 from ..studies.run import default_model
 from .pictures.chart import Curve, chart, charts
 from .solving import heavy, solved, solved_curve
+from .state.screen import phrases_in
 from .widgets.blocks import Block, sentence
 from .widgets.reading import Reading
 
@@ -34,6 +36,7 @@ _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _LOADS = numpy.linspace(0.0, 1.0, 40) ** 2
 _WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 _ANGLE_STEP = 0.02  # step in rad of the largest half angle of a curve, which stays while a slider moves a little
+_SLOWEST_SCATTERED = 1e-4  # s a press of models that press the hundreds of joints within tolerances
 _AXIS_ENDS = 1, 1.5, 2, 3, 5, 7, 10  # times a power of ten
 _SMALLEST_AXIS = 1e-300  # number below which powers of ten lose digits
 Profile = tuple[numpy.ndarray, numpy.ndarray, bool]  # angles (rad), pressures (MPa), and True where they can be trusted
@@ -68,9 +71,19 @@ def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, Any], ...], name: st
     return compare(joint, models={name: catalogue[name]}, cup=cup, **dict(load))
 
 
-def effects_of(file: JointFile) -> LocalUncertainty | None:
-    """Compute the effect of one percent of each number of a joint; None without a load along the cup's axis."""
-    return local_uncertainty(file.joint, file.cup, file.load, {}) if _has_effects(file) else None
+def effects_of(file: JointFile, tolerances: str) -> LocalUncertainty | None:
+    """Compute the effect of one percent of each number of a joint, and bands of the results for its tolerances.
+
+    None without a load along the cup's axis. Raises ValueError: tolerances that are not phrases of names and
+    distributions, without the joint, or so wide that their presses would take minutes.
+    """
+    if not _has_effects(file):
+        return None
+    spreads = dict(map(parse_distribution, phrases_in(tolerances)))
+    ends = {name: spread.frozen.support() for name, spread in spreads.items()}
+    if spreads and default_model(file.joint, {**file.load, **ends}).seconds_a_press > _SLOWEST_SCATTERED:
+        raise ValueError("some joints within the tolerances are outside the tables: check their middle, or narrow them")
+    return local_uncertainty(file.joint, file.cup, file.load, spreads)
 
 
 def effects_are_slow(file: JointFile) -> bool:

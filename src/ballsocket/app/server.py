@@ -15,6 +15,7 @@ from graphlib import TopologicalSorter
 from html import escape
 from importlib.resources import files
 from ipaddress import ip_address
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -26,6 +27,7 @@ from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from ..core.checks import require, shown
+from ..reports.pages import logo_address
 from .channel import read_request
 from .jobs import PageThread
 from .pressing import pressed
@@ -118,8 +120,8 @@ class _Missing(_Guarded):
 _KINDS = {".html": "text/html; charset=UTF-8", ".js": "text/javascript; charset=UTF-8", ".css": "text/css"}
 
 
-def page_files() -> dict[str, tuple[str, str]]:
-    """Read the files of the page: kind and content by name."""
+def page_files(logo: Path | None = None) -> dict[str, tuple[str, str]]:
+    """Read the files of the page, with a logo for clients: kind and content by name."""
     room = files("ballsocket")
     drawing = room / "reports" / "templates" / "drawing.css"  # of the section, which reports have, too
     contents = {file.name: file.read_text(encoding="utf-8") for file in (*(room / "app" / "assets").iterdir(), drawing)}
@@ -128,6 +130,7 @@ def page_files() -> dict[str, tuple[str, str]]:
     modules = {name: contents.pop(name) for name in sorted(contents) if name.endswith(".js")}
     contents["page.js"] = _script(modules)
     parts = {
+        "<!--logo-->": "" if logo is None else f'<img class="logo" alt="" src="{logo_address(logo)}">',
         "<!--views-->": _buttons("view", {name: kind.title for name, kind in kinds.items()}),
         "<!--files-->": _buttons("file", {kind: kind for kind in FILE_KINDS}),
         "<!--sections-->": "".join(
@@ -277,13 +280,13 @@ class PageSocket(_Guarded, WebSocketHandler):
             self.page.leave()
 
 
-def explorer(names: Iterable[str]) -> Application:
-    """Return the application that answers to the given host names."""
+def explorer(names: Iterable[str], logo: Path | None = None) -> Application:
+    """Return the application that answers to the given host names; its client view has the logo."""
     return Application(
         [("/", _File), (r"/assets/([\w.]+)", _File), ("/socket", PageSocket)],
         default_handler_class=_Missing,
         names=HostNames(names),
-        files=page_files(),
+        files=page_files(logo),
         sockets=PageSockets(),
         compress_response=True,
         log_function=lambda handler: None,  # an address holds a joint
@@ -324,13 +327,19 @@ class ExplorerServer:
 
 
 def server(
-    port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False, link: str = ""
+    port: int = 5006,
+    address: str = LOOPBACK,
+    origins: Sequence[str] = (),
+    show: bool = False,
+    link: str = "",
+    logo: Path | None = None,
 ) -> ExplorerServer:
     """Set up the server without starting it; port 0 takes a free one.
 
     Other machines reach it only if `address` is not the loopback. `origins` are hosts under which browsers may reach
     it, such as "hips.example.org:5006", beside this machine's own names. `show` opens a browser at the query `link`,
-    "?...". Raises ValueError for an invalid port or address, and OSError if the port is taken.
+    "?...". `logo` is a picture, PNG or SVG, on top of the client view. Raises ValueError for an invalid port, address
+    or logo, and OSError if the port is taken or the logo cannot be read.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
     try:
@@ -345,7 +354,7 @@ def server(
     pressed(START.file, (START.answered_by, *START.shown))  # load at the start what the first press would load
     port = int(sockets[0].getsockname()[1])
     own_hosts = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
-    return ExplorerServer(explorer((*own_hosts, *origins)), sockets, show, link)
+    return ExplorerServer(explorer((*own_hosts, *origins), logo), sockets, show, link)
 
 
 def _allow_many_connections() -> None:

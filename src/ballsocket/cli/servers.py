@@ -31,6 +31,9 @@ def explorer(
             help="Address 'host:port' that browsers on other machines use. Repeat for several. Default: none."
         ),
     ] = None,
+    logo: Annotated[
+        Path | None, typer.Option(help="Picture (PNG, SVG) on top of the page in the client view. Default: none.")
+    ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open the explorer, an interactive page, in a browser."""
@@ -40,7 +43,7 @@ def explorer(
     from ..files.joint_file import read_joint
 
     link = "" if file is None else link_of_file(read_joint(file))
-    page = server(port, address, origin or (), show=browser, link=link)
+    page = server(port, address, origin or (), show=browser, link=link, logo=logo)
     name = LOOPBACK if address == EVERYWHERE else address
     typer.echo(f"http://{name}:{page.port}/{link} (Ctrl-C ends it)")
     if address not in (LOOPBACK, "localhost"):

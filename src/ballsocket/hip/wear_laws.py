@@ -110,7 +110,7 @@ class Archard(WearLaw):
     """
 
     name: ClassVar[str] = "archard"
-    title: ClassVar[str] = "wear by pressure and sliding (Archard)"
+    title: ClassVar[str] = "Archard: pressure and sliding"
     coefficient: float = law_field(WEAR_FACTOR, "wear factor k", example=1e-6)
     source: str = ""
 
@@ -156,7 +156,7 @@ class FrictionEnergyWear(WearLaw):
     """
 
     name: ClassVar[str] = "energy"
-    title: ClassVar[str] = "wear by the work of friction"
+    title: ClassVar[str] = "work of friction"
     coefficient: float = law_field(WEAR_PER_ENERGY, "worn volume e per friction energy", example=2e-5)
     friction: float = law_field(NUMBER, "coefficient of friction", example=0.05, high=10.0)
 
@@ -185,7 +185,7 @@ class ContactAreaWear(WearLaw):
     """
 
     name: ClassVar[str] = "area"
-    title: ClassVar[str] = "wear by sliding in contact at any pressure"
+    title: ClassVar[str] = "sliding at any pressure"
     coefficient: float = law_field(WEAR_PER_SLIDE, "worn depth C per length of sliding", example=1e-9)
 
     @property
@@ -214,7 +214,7 @@ class CrossShear(WearLaw):
     """
 
     name: ClassVar[str] = "cross-shear"
-    title: ClassVar[str] = "wear by pressure, sliding and cross-shear"
+    title: ClassVar[str] = "Archard with cross-shear"
     wears_balls: ClassVar[bool] = False
     straight: float = law_field(WEAR_FACTOR, "wear factor on a straight track", example=1e-6, key=COEFFICIENT)
     circular: float = law_field(WEAR_FACTOR, "wear factor on a circle", example=2e-6)

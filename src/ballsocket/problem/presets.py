@@ -153,17 +153,16 @@ _MATERIALS: dict[str, Material] = {
 
 _LABELS = {
     UHMWPE.name: "UHMWPE, conventional",
-    CROSSLINKED_PE.name: "UHMWPE, cross-linked",
+    CROSSLINKED_PE.name: "cross-linked UHMWPE",
     POM.name: "POM, acetal copolymer",
     PEEK.name: "PEEK, unfilled",
     STRUCTURAL_STEEL.name: "structural steel, S235",
     COCR.name: "CoCrMo",
     ALUMINA.name: "alumina ceramic",
-    ALUMINA_COMPOSITE.name: "alumina, zirconia-toughened",
     TITANIUM.name: "titanium alloy, Ti-6Al-4V",
     BONE_CEMENT.name: "bone cement, PMMA",
 }
-"""Names on pages for readers, by the short name."""
+"""Names on pages for readers, by the short name; drawings have the part before a comma."""
 
 
 def material_label(material: Material | None, unnamed: str) -> str:

@@ -16,7 +16,7 @@ from ..contact import Contact
 from ..core.unit_systems import Units
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
-from ..problem import Joint
+from ..problem import Joint, Material
 from ..problem.presets import material_label
 from . import svg
 from .cup_map import shown_maximum
@@ -289,14 +289,18 @@ def _dimensions(file: JointFile, frame: DrawingFrame, units: Units) -> Iterator[
 
 
 def _names(joint: Joint, frame: DrawingFrame) -> Iterator[str]:
-    ball = "rigid ball" if joint.ball is None else material_label(joint.ball, "ball")
+    ball = "rigid ball" if joint.ball is None else _drawn_label(joint.ball, "ball")
     yield svg.text(frame.x, frame.y - 44, ball, "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]
     for number, (material, (inner, outer)) in enumerate(zip(materials, pairwise(radii_of(joint)), strict=False)):
         thick = frame.scale * (outer - inner)
         if thick > 14:
             x, y = frame.at((inner + outer) / 2, 0.0)
-            yield svg.text(x, y + 4 + 0.2 * thick * (number == 0), material_label(material, "liner"), "name")
+            yield svg.text(x, y + 4 + 0.2 * thick * (number == 0), _drawn_label(material, "liner"), "name")
+
+
+def _drawn_label(material: Material, unnamed: str) -> str:
+    return material_label(material, unnamed).partition(",")[0]
 
 
 def _load(

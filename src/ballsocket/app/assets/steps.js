@@ -1,5 +1,5 @@
 // @ts-check
-// History: the last steps of the undo with what each changed, and what that did to the largest pressure and the verdict.
+// History: the last steps of the undo with what each changed, and what that did to the largest pressure and verdict.
 import { listen } from "./connection.js";
 import { element } from "./elements.js";
 import { isVisit, latest, step } from "./history.js";
@@ -12,6 +12,8 @@ const TEXTS = { // words of an input by its kind; others are in no list
   choice: (field) => new Map(field.options).get(field.value) ?? "",
   segments: (field) => new Map(field.options).get(field.value) ?? "",
   words: (field) => field.value,
+  several: (field) => field.value.join(", "),
+  limits: (field) => field.value.map((row) => row.join(" ")).join(", "),
   tick: (field) => (field.value ? "yes" : "no"),
 };
 /** @typedef {{edited: string, inputs: Record<string, [string, string]>, pressure: string, sign: string}} Step */
@@ -28,19 +30,27 @@ function changes({ edited, inputs }, before) {
   changed.sort((one, other) => Number(other === edited) - Number(one === edited));
   const words = changed.slice(0, CHANGES).map((name) => {
     const [label, text] = inputs[name];
-    return `${label} ${before.inputs[name][1] || "–"} → ${text || "–"}`;
+    return `${label.split(",")[0]} ${before.inputs[name][1] || "–"} → ${text || "–"}`;
   });
   const more = changed.length - words.length;
-  return words.length ? words.join(", ") + (more ? ` and ${more} more` : "") : "other settings";
+  return words.join(", ") + (more ? ` and ${more} more` : "");
 }
 function render() {
-  if (place.open) list.replaceChildren(...Object.keys(steps).map(Number).reverse().map((number) => {
-    const one = steps[number], before = steps[number - 1];
+  /** @type {{number: number, words: string, one: Step, before?: Step}[]} */
+  const listed = [];
+  for (const number of Object.keys(steps).map(Number)) {
+    const before = listed.at(-1)?.one, one = { ...steps[number] };
     const words = before ? changes(one, before) : number ? "earlier" : "start";
+    if (words) listed.push({ number, words, one, before });
+    else if (one.pressure) Object.assign(before, { pressure: one.pressure, sign: one.sign }); // by another view
+  }
+  const current = listed.filter(({ number }) => number <= step()).at(-1);
+  list.replaceChildren(...listed.reverse().map((entry) => {
+    const { number, words, one, before } = entry;
     const effect = [before, one].filter((each) => each?.pressure).map((each) => `${each.pressure} ${each.sign}`);
     const small = element("small", {}, one.pressure && effect.join(" → "));
     const button = element("button", { type: "button", class: "plain" }, words, small);
-    if (number === step()) button.setAttribute("aria-current", "true");
+    if (entry === current) button.setAttribute("aria-current", "true");
     button.addEventListener("click", () => history.go(number - step()));
     return element("li", {}, button);
   }));
@@ -50,14 +60,13 @@ listen((message, request) => {
   if (message.fresh) inputs = {};
   for (const [name, field] of Object.entries(message))
     if (name.startsWith("=") && TEXTS[field.kind]) inputs[name.slice(1)] = [field.label, TEXTS[field.kind](field)];
-  if (message.view) inputs.view = ["View", document.querySelector(`button[data-view=${message.view}]`).textContent];
   const [pressure, verdict] = ["dd[data-name=max_pressure]", ".verdict"].map((part) =>
     document.querySelector(`section:not([hidden]) #press-numbers ${part}`)?.textContent ?? "");
-  const edited = request?.words.name || steps[step()]?.edited || "view";
+  const edited = request?.words.name || steps[step()]?.edited || "";
   steps[step()] = { edited, inputs: { ...inputs }, pressure, sign: verdict.slice(0, 1) };
   for (const number of Object.keys(steps).map(Number))
     if (number > latest() || number < step() - KEPT) delete steps[number];
-  render();
+  if (place.open) render();
 });
 place.addEventListener("toggle", render);
 addEventListener("pagehide", () => sessionStorage.setItem(KEY, JSON.stringify(steps)));

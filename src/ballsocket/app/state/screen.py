@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf, isfinite
@@ -65,7 +65,7 @@ class EvidenceQuestion:
     consequence: str = "medium"
     accuracy: str = "10 %"
     limits: str = "utilisation <= 1"  # phrases separated by ;, also in matrix and tolerances
-    matrix: str = "force = 2, 3 kN"
+    matrix: str = ""  # cases; their load is that of the screen unless they state one
     tolerances: str = ""
     friction: str = ""
     elements: str = "no"
@@ -312,6 +312,11 @@ def _nested(flat: Mapping[str, str]) -> Tables:
 def _bare(name: str, value: float) -> str:
     """Write a number to the last digit for `units.parse`; a bare angle would be degrees."""
     return f"{value!r} {Kind.ANGLE.unit}" if QUANTITIES[name].kind is Kind.ANGLE else repr(value)
+
+
+def phrases_in(text: str) -> Iterator[str]:
+    """Yield the phrases of a text, which semicolons or line ends separate."""
+    return (phrase.strip() for phrase in text.replace("\n", ";").split(";") if phrase.strip())
 
 
 def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> list[str]:

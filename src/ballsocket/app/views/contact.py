@@ -22,7 +22,7 @@ from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
 from ..pictures.chart import plain_numbers
 from ..pictures.section import LinerStresses, first_view, key, liner_stresses
-from ..pressing import effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
+from ..pressing import effects_are_slow, effects_of, fine_curves, is_waiting, load_curve, press_charts, pressed
 from ..solving import heavy
 from ..state.screen import Screen
 from ..view import STRESS_PAUSE, Document
@@ -39,6 +39,7 @@ _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
 _PAUSE = 0.1  # s without a change until curves and table follow
 _NO_STRESSES = "this model has no stresses inside the liner"
 _AXIAL_CURVES = sentence("Curves: for loads along the axis of a full sphere.")
+_NO_BAND = [sentence("No band from the tolerances here: One input states the reason.")]
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -52,7 +53,7 @@ class Press(RealCupView):
     <div data-field="press.answered_by"></div>
     <div id="press-trouble" role="alert"></div>
     <div id="press-offer"></div><div data-field="press.run"></div>
-    <div id="press-numbers"></div>
+    <div id="press-numbers"></div><div id="press-band"></div>
   </div>
   <div class="drawing">
     <div id="press-section"></div>
@@ -90,10 +91,12 @@ class Press(RealCupView):
 
     def show(self, screen: Screen) -> None:
         self._real = None
-        self.expect("charts", "table")
+        self.expect("charts", "table", "band")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
         needs_cup = bool(self._needs_cup(screen, comparison))
         self.channel.put("curve", None if needs_cup or self._curve_key != self._key_of(screen) else self._curve)
+        if needs_cup or not screen.asked.tolerances:
+            self.put(band=_NO_BAND if screen.asked.tolerances else "")
         if needs_cup:
             self.long.show(screen)
         else:
@@ -221,6 +224,8 @@ class Press(RealCupView):
         self.channel.put("curve", self._curve)
 
     def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
+        if screen.asked.tolerances:
+            self.compute(partial(_band, screen), lambda html: self.put(band=html))
         by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))
         if by is None or by.status.failed or by in _STRESSES:
             return
@@ -242,7 +247,7 @@ class Press(RealCupView):
             if drawn
             else None,
             rows=lambda: _rows(comparison, screen),
-            sections=lambda: press_sections(comparison, units, surroundings=effects_of(file)),
+            sections=lambda: press_sections(comparison, units, surroundings=effects_of(file, screen.asked.tolerances)),
             lede=lambda: "" if by is None else press_lede(by, file.cup, units),
             contact=by,
         )
@@ -256,6 +261,18 @@ def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
     """Return the contacts of the models whose curves are shown."""
     contacts = successful_contacts(comparison)
     return {name: contacts[name] for name in screen.shown if name in contacts}
+
+
+def _band(screen: Screen) -> Content:
+    """State between which pressures most joints within the tolerances lie, unless that is not known at once."""
+    try:
+        effects = None if effects_are_slow(screen.file) else effects_of(screen.file, screen.asked.tolerances)
+    except ValueError as error:
+        return alert(f"Tolerances: {error}")
+    if effects is None or "max_pressure" not in effects.band:
+        return _NO_BAND
+    low, _, high = (screen.reading.with_unit(CONTACT["max_pressure"], end) for end in effects.band["max_pressure"])
+    return [sentence(f"Largest pressure of 95 % of the joints within the tolerances: {low} to {high}", "")]
 
 
 def _with_real(real: Contact | None, comparison: Comparison) -> Comparison:

@@ -18,6 +18,7 @@ from ...contact.verdict import Verdict
 from ...core.checks import check_names, shown
 from ...core.display import counted
 from ...core.kinds import Kind
+from ...core.quantities import LOADS
 from ...core.unit_systems import Units
 from ...evidence.folder import SUMS, WORK, names_of, write
 from ...evidence.matrix import limit_text, title_of, verdict_text
@@ -39,10 +40,10 @@ from ...studies.parameters import PARAMETERS
 from ..long_view import LongView, long_body
 from ..pressing import pressed
 from ..running import Reached, Report, Work
-from ..state.screen import EvidenceQuestion, Screen, phrases_of
+from ..state.screen import EvidenceQuestion, Screen, phrases_in, phrases_of
 from ..state.use import Use
 from ..view import Document, field_places
-from ..widgets.controls import Changes, Control, changed, chosen, segments, text
+from ..widgets.controls import Changes, Control, changed, chosen, segments, text, tolerances_input
 from ..widgets.limit_rows import limits_control, present_value
 from ..widgets.words import VERDICT_KINDS
 
@@ -68,7 +69,8 @@ class Evidence(LongView):
 
     def question_of(self, screen: Screen) -> Hashable:
         use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
-        return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
+        file = screen.file
+        return screen.asked, _load_cases(screen.asked, file), file.joint, file.cup, file.cup.oriented, use
 
     def work(self, screen: Screen) -> Work:
         axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
@@ -95,8 +97,8 @@ class Evidence(LongView):
             chosen(screen, "asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
             text(screen, "asked.accuracy", "Allowed error of the numbers"),
             limits_control(_LIMITED, _limits(screen.asked), screen.reading, present, limited),
-            text(screen, "asked.matrix", "Cases, such as force = 2, 3 kN"),
-            text(screen, "asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
+            text(screen, "asked.matrix", "Cases other than the load here, such as force = 2, 3 kN"),
+            tolerances_input(screen),
             text(screen, "asked.friction", "Coefficient of friction, if any"),
             chosen(screen, "asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
             chosen(screen, "asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
@@ -174,6 +176,8 @@ def _pack_html(pack: EvidencePack, units: Units) -> str:
         words = f"{verdict.sign} {limit_text(limit, units)}: {verdict_text(limit)}"
         decisions.append(f"<p class='verdict {VERDICT_KINDS[verdict]}'>{escape(words)}</p>")
     others = items(conclusions(pack.record, units)[len(limits) :])
+    below = ", ".join(pack.record["adequacy"]["not_met"])
+    others += f"<p class='quiet'>Factors below that level: {escape(below)}</p>" if below else ""
     return f"{''.join(decisions)}{others}{table(*_worst(pack, units), kind='words')}{take}"
 
 
@@ -208,7 +212,7 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
         "finite_elements": inputs.elements == "yes",
         "risk": {"influence": inputs.influence, "consequence": inputs.consequence},
         "required": {"accuracy": inputs.accuracy, "limits": list(phrases_in(inputs.limits))},
-        "matrix": dict(map(_axis, phrases_in(inputs.matrix))),
+        "matrix": dict(map(_axis, (*_load_cases(inputs, file), *phrases_in(inputs.matrix)))),
         "tolerances": dict(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
         **_joint(file),
     }
@@ -226,9 +230,12 @@ def _joint(file: JointFile) -> Tables:
     return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
 
 
-def phrases_in(text: str) -> Iterator[str]:
-    """Yield the phrases of a text, which semicolons or line ends separate."""
-    return (phrase.strip() for phrase in text.replace("\n", ";").split(";") if phrase.strip())
+def _load_cases(inputs: EvidenceQuestion, file: JointFile) -> tuple[str, ...]:
+    """Return the load of a file as phrases of the matrix, unless the matrix has a load."""
+    named = {phrase.partition("=")[0].strip() for phrase in phrases_in(inputs.matrix)}
+    return (
+        () if named & set(LOADS) else tuple(f"{name} = {load!r} {LOADS[name].unit}" for name, load in file.load.items())
+    )
 
 
 def _halves(context: str, phrase: str) -> tuple[str, str]:
@@ -279,7 +286,7 @@ def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str
 
     def heard(name: str) -> None:
         finished.append(name)
-        report(Reached(share=min(0.95, len(finished) / pieces), words=f"done: {name}"))
+        report(Reached(share=min(0.95, len(finished) / pieces), words=f"part {len(finished)} of about {pieces}"))
 
     record = gather_evidence(question, path / WORK, heard)
     content = {}

@@ -19,7 +19,7 @@ from ..pressing import axis_end, effects_are_slow, effects_of
 from ..state.screen import MAPPED, Screen
 from ..view import Document, View, field_places
 from ..widgets.blocks import Block, Content, answer_blocks, sentence
-from ..widgets.controls import Control, chosen
+from ..widgets.controls import Control, chosen, tolerances_input
 from ..widgets.limit_rows import limit_text, present_value
 from ..widgets.words import alert
 from .design_map import axis_control, checked, end_control, limits_input, study_rows
@@ -38,7 +38,8 @@ class OneInput(View):
 <div data-field="curve.limits"></div>
 <div id="curve-trouble" role="alert"></div>
 <div id="curve-chart"></div>
-<h3>Change in % if 1 % is added to one number</h3>
+<h3>Sensitivity and tolerances</h3>
+<div data-field="curve.tolerances"></div>
 <div id="curve-effects"></div>
 """
 
@@ -51,7 +52,7 @@ class OneInput(View):
             chosen(screen, "map_model", "Model", models_of(screen), name="model"),
         ]
         edits = [Control(control.field, checked(screen, control.read, ["across"])) for control in controls]
-        return [*edits, limits_input(screen, swept)]
+        return [*edits, limits_input(screen, swept), tolerances_input(screen)]
 
     def show(self, screen: Screen) -> None:
         if not self.channel.shown_value("#curve-chart"):
@@ -72,18 +73,18 @@ class OneInput(View):
 
 
 def _effects(screen: Screen) -> Content:
-    """Tabulate the effect of one percent of each number on each result, unless its presses take seconds."""
+    """Tabulate the effect of one percent of each number, and of the tolerances, unless its presses take seconds."""
     try:
         if effects_are_slow(screen.file):
             ratio = float(screen.file.joint.thickness_ratio)
             return [sentence(f"Too slow here at R2/L = {ratio:.3g}: the report of Contact has it.")]
-        effects = effects_of(screen.file)
+        effects = effects_of(screen.file, screen.asked.tolerances)
     except ValueError as error:
         return alert(str(error))
     if effects is None:
         return [sentence("Computed for loads above 0 along the axis of the cup.")]
-    changes, *_ = uncertainty_tables(effects)
-    return answer_blocks(changes, screen.reading.units)
+    blocks = (answer_blocks(table, screen.reading.units) for table in uncertainty_tables(effects))
+    return [block for table in blocks for block in table]
 
 
 def result_chart(results: Any, screen: Screen) -> Block:

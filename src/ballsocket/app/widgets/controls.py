@@ -218,6 +218,11 @@ def text(screen: Screen, path: str, label: str, rows: int = 1) -> Control:
     return Control(field, lambda value: changed(screen, path, check_text(label, value).strip()))
 
 
+def tolerances_input(screen: Screen) -> Control:
+    """Return the input of the tolerances of the joint and its load."""
+    return text(screen, "asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm; force = 3 +- 0.3 kN")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Number:
     """Number of a file with an input on the page."""
