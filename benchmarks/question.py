@@ -1,7 +1,6 @@
-"""One question at a time, in plain floats: a press, a force law in Python and compiled; beside OpenSim and the formula.
+"""One question at a time, in plain floats: a press, a joint, a force law in Python and compiled; and formulas by hand.
 
-OpenSim's ElasticFoundationForce returns the force alone, on its coarsest mesh. A press returns indentation, largest
-pressure and half angle; a law returns force and tangent.
+A press returns indentation, largest pressure and half angle; a law returns force and tangent.
 """
 
 from __future__ import annotations
@@ -9,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from itertools import count
+from math import acos
 from typing import Any
 
 import numpy
@@ -17,32 +17,34 @@ import ballsocket as bs
 from ballsocket.compiled import compiled_law
 from ballsocket.models.kinematics import linear_force, linear_stiffness
 
-from .opensim_model import force_job
-from .report import Pair, Row, compare, if_installed, with_version
+from .joints import newton
+from .report import Pair, Row, compare
 from .timing import Job
 
 JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
-FORCE, DEPTH, CALLS, POINTS = 1000.0, 0.02, 50, 10**5  # N, mm
+FORCE, DEPTH, CALLS, POINTS, FRESH = 1000.0, 0.02, 1000, 10**5, count(1)  # N, mm
 MODELS = {"paper's model": bs.HessForsbach(), "tabulated": bs.Tabulated(), "exact": bs.Exact()}
 
 
 def measure() -> list[Row]:
     modulus = float(bs.hess_forsbach(JOINT))
-    opensim = if_installed("opensim", partial(force_job, JOINT, modulus, 1000, DEPTH, CALLS))
-    rival = f"{with_version('opensim')}, a force, 924 faces"
     formula = "Eq. (13) and slope in Python"
     bare = _repeated(lambda depth: _formula(modulus, depth), DEPTH)
-    pairs = [Pair(f"{name}, a press", _press(model), rival, opensim) for name, model in MODELS.items()]
+    by_hand = _repeated(lambda force: newton(JOINT.socket_radius, JOINT.clearance, modulus, force, acos), FORCE)
+    newtons = "Newton by hand in Python"
+    pairs = [Pair(f"{name}, a press", _press(model), newtons, by_hand) for name, model in MODELS.items()]
+    parts: dict[str, Any] = {"ball_radius": 17.9, "liner_thickness": 6.75, "liner": bs.UHMWPE, "ball": bs.STEEL}
+    pairs += [
+        Pair("a new joint", _repeated(lambda clearance: bs.Joint(clearance=clearance, **parts), 0.1)),
+        Pair("replace the clearance of a joint", _repeated(lambda clearance: JOINT.replace(clearance=clearance), 0.1)),
+    ]
     for name in ("paper's model", "tabulated"):
         law = MODELS[name].law(JOINT)
         pairs.append(Pair(f"{name}, a law in a compiled loop", _compiled(compiled_law(law)), formula, bare))
         if name == "tabulated":
             pairs.append(Pair(f"{name}, a law in Python", _repeated(law, DEPTH), formula, bare))
-    fresh = count(1)
-    pairs += [
-        Pair(f"{name}, binding the law of a new joint", Job(partial(_bind, MODELS[name], fresh)))
-        for name in ("tabulated", "exact")
-    ]
+    for name in ("tabulated", "exact"):
+        pairs.append(Pair(f"{name}, binding the law of a new joint", Job(partial(_bind, MODELS[name]))))
     return compare(pairs)
 
 
@@ -84,5 +86,5 @@ def _compiled(law: Any) -> Job:
     return Job(lambda: total(law, depths), POINTS)
 
 
-def _bind(model: bs.Model, fresh: Any) -> object:
-    return model.law(JOINT.replace(liner_thickness=6.75 + 1e-6 * next(fresh)))
+def _bind(model: bs.Model) -> object:
+    return model.law(JOINT.replace(liner_thickness=6.75 + 1e-6 * next(FRESH)))

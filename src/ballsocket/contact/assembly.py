@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from itertools import zip_longest
 from types import MappingProxyType
@@ -14,7 +15,7 @@ from ..core.arrays import Array, where
 from ..core.checks import normalise_name, select_load, shown
 from ..core.quantities import LOADS
 from ..core.validity import Status, is_missing
-from ..problem import Joint
+from ..problem import Joint, make_unchecked
 from ..problem.presets import joints
 from .contact import Contact, Laws, PressModel
 
@@ -129,18 +130,14 @@ def make_scalar_contact(
 
     The joint is inside the domain of the model. See `make_contact`.
     """
-    contact_force, contact_indentation, status = result.force, result.indentation, Status.OK
-    failures = {
-        **result.failures,
-        Status.NOT_REACHED: not (arrays.isfinite(contact_force) and arrays.isfinite(contact_indentation)),
-    }
-    for code in _BY_SEVERITY:
-        if failures.get(code):
-            status = code
+    F, d = result.force, result.indentation
+    failures = [code for code, is_failure in result.failures.items() if is_failure]
+    if not (math.isfinite(F) and math.isfinite(d)):
+        failures.append(Status.NOT_REACHED)
+    status = max(failures, key=_BY_SEVERITY.index) if failures else Status.OK
     if status.failed:
-        contact_force, contact_indentation = numpy.nan, numpy.nan
-    if kind != "half_angle":
-        contact_force, contact_indentation = (load, contact_indentation) if kind == "force" else (contact_force, load)
-    return contact_type(
-        model=model, laws=result.laws, joint=joint, force=contact_force, indentation=contact_indentation, status=status
+        F, d = numpy.nan, numpy.nan
+    F, d = load if kind == "force" else F, load if kind == "indentation" else d
+    return make_unchecked(
+        contact_type, model=model, laws=result.laws, joint=joint, force=F, indentation=d, status=status
     )

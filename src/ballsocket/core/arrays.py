@@ -311,7 +311,7 @@ def read_only(x: Array) -> Array:
 
 def broadcast(x: Array, *values: Array) -> Array:
     """Broadcast `x` to the common shape of `x` and other values; return a float if all are floats."""
-    if type(x) is float and all(type(value) is float for value in values):
+    if {*map(type, (x, *values))} == {float}:
         return x
     shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *values)))
     return broadcast_to(x, shape)

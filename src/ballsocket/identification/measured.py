@@ -14,7 +14,6 @@ from ..core.arrays import Numbers, owned
 from ..core.checks import known_name, nearest, require, select_load, shown
 from ..core.quantities import CONTACT, DERIVED, FIELD, JOINT, LOADS, PARTS, Quantity
 from ..problem import Joint
-from ..problem.material import set_fields
 from .observables import CustomObservable
 from .registry import MACHINE_ERRORS
 
@@ -212,10 +211,10 @@ class Measured:
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
             name = ALIASES.get(self.quantity, self.quantity) if isinstance(self.quantity, str) else self.quantity
-            set_fields(self, quantity=known_name("quantity", name, MEASURED))
+            vars(self).update(quantity=known_name("quantity", name, MEASURED))
         described = MEASURED[self.quantity] if self.observable is None else self.observable.described
         values = _to_float_array(self._label(self.quantity), self.values)
-        set_fields(self, described=described, values=values)
+        vars(self).update(described=described, values=values)
         self._check_values()
         share = self.relative_uncertainty
         require("relative_uncertainty", share, 0 <= share < inf, "a share of each value is at least 0 and finite")
@@ -227,7 +226,7 @@ class Measured:
         sigma = self._broadcast(f"{self.quantity}_uncertainty", stated)
         title = self._label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
-        set_fields(self, has_unknown_noise=is_unknown, uncertainty=sigma)
+        vars(self).update(has_unknown_noise=is_unknown, uncertainty=sigma)
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
             self._check_and_set_load()
@@ -235,14 +234,14 @@ class Measured:
             rule = "needs an angle" if self.angle is None else "takes no angle"
             raise ValueError(f"{self._label(self.quantity)} {rule}")
         if self.angle is not None:
-            set_fields(self, angle=FIELD["angle"].check(self._broadcast("angle", self.angle)))
+            vars(self).update(angle=FIELD["angle"].check(self._broadcast("angle", self.angle)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
             raise ValueError(f"{self._label(self.quantity)} has a machine, but only indentations are read by one")
         order = numpy.arange(float(values.size))
         if self.order is not None:
             order = self._broadcast("order", self.order)
             require(self._label("order"), order, abs(order) < inf, "numbers of readings must be finite")
-        set_fields(self, order=order)
+        vars(self).update(order=order)
 
     def _label(self, quantity: str) -> str:
         return f"{self.name}: {quantity}" if self.name else quantity
@@ -281,7 +280,7 @@ class Measured:
             require(label, loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
         sigma = self._broadcast("load_uncertainty", self.load_uncertainty)
         require(self._label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
-        set_fields(self, load=kind, **{kind: loads}, load_uncertainty=sigma)
+        vars(self).update(load=kind, **{kind: loads}, load_uncertainty=sigma)
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
             require(label, loads, (loads > 0) | (self.values == 0), rule)

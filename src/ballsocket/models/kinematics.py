@@ -13,7 +13,7 @@ and holds for c = 0. `versine` is 1 - cos ε of the half angle ε.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, nan, pi
 from typing import Any
 
@@ -216,7 +216,7 @@ class Kinematics:
     """
 
     name: str
-    sources: tuple[Source, ...]
+    sources: tuple[Source, ...] = field(hash=False)
     force: Formula
     stiffness: Formula
     energy: Formula
@@ -225,8 +225,8 @@ class Kinematics:
     versine: Formula
     indentation_of_versine: Formula
     displacement: Formula
-    validity: tuple[Range, ...] = ()
-    remarks: tuple[Remark, ...] = ()
+    validity: tuple[Range, ...] = field(default=(), hash=False)
+    remarks: tuple[Remark, ...] = field(default=(), hash=False)
 
     def __repr__(self) -> str:
         return f"{self.name}_kinematics"

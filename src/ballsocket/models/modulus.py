@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from math import inf
 from typing import Any
@@ -51,10 +51,11 @@ class Modulus:
     title: str
     formula: Formula
     constants: tuple[Array, ...] = ()
-    sources: tuple[Source, ...] = ()
-    domain: tuple[Range, ...] = ()
-    validity: tuple[Range, ...] = ()
-    promise: Promise | None = None
+    # not in the hash, by which each press finds the joint and the model in a cache
+    sources: tuple[Source, ...] = field(default=(), hash=False)
+    domain: tuple[Range, ...] = field(default=(), hash=False)
+    validity: tuple[Range, ...] = field(default=(), hash=False)
+    promise: Promise | None = field(default=None, hash=False)
     source: str = ""
 
     def __call__(self, joint: Joint) -> Array:

@@ -17,6 +17,8 @@ DIAMETERS = MappingProxyType(
 )
 """Stored length whose double each of these lengths is."""
 
+_CANONICAL = {**DIAMETERS, "interference": "clearance"}
+
 LENGTHS = MappingProxyType({**JOINT, **FIT})
 """All lengths that can define a joint."""
 
@@ -41,7 +43,7 @@ _STAYING_ORDER = ("ball_radius", "clearance", "socket_radius", *_WALLS)
 
 def canonical(name: str) -> str:
     """Return the radial length of a diameter, the clearance for an interference, and any other name itself."""
-    return "clearance" if name == "interference" else DIAMETERS.get(name, name)
+    return _CANONICAL.get(name, name)
 
 
 class Lengths(TypedDict, total=False):

@@ -23,7 +23,6 @@ from .material import (
     elementwise_maximum,
     make_unchecked,
     number_with_unit,
-    set_fields,
     short_text,
 )
 
@@ -117,7 +116,7 @@ class Joint(OneLine, ByValue):
         """Check the parts, and derive radius, clearance and thickness from the lengths."""
         self._define(lengths, {}, liner=liner, ball=ball, backing=backing, support=support, name=name, source=source)
         if given:
-            set_fields(self, given=check_given(given))
+            vars(self).update(given=check_given(given))
 
     def _define(
         self,
@@ -139,7 +138,7 @@ class Joint(OneLine, ByValue):
             raise TypeError(f"support must be Support.FIXED or Support.FREE, got {shown(support)}")
         layers = _check_backing(backing)
         stored = resolve_lengths(lengths, old_lengths, _shell_thickness(layers))
-        set_fields(self, **stored, liner=liner, ball=ball, backing=layers, support=support, **texts)
+        vars(self).update(**stored, liner=liner, ball=ball, backing=layers, support=support, **texts)
         allowed = "only the outermost layer may be infinite, and there is one behind this"
         inner, thickness = "liner_thickness", self.liner_thickness
         for number, layer in enumerate(layers):
@@ -314,7 +313,7 @@ class Joint(OneLine, ByValue):
         joint: Joint = object.__new__(Joint)
         joint._define(lengths, old_lengths, **parts)
         if keeps_lengths:
-            set_fields(joint, given=self.given)
+            vars(joint).update(given=self.given)
         lost = lost_lengths(joint.given, self.given)
         changed = [(name, getattr(self, name), getattr(joint, name)) for name in lost]
         words = [
@@ -323,7 +322,7 @@ class Joint(OneLine, ByValue):
             if is_plain_number(old) and is_plain_number(new) and abs(new - old) > 1e-9 * abs(old)
         ]
         if words and "name" not in changes:
-            set_fields(joint, name=f"{base}{_VARIED}: {', '.join(words)}".removeprefix(", "))
+            vars(joint).update(name=f"{base}{_VARIED}: {', '.join(words)}".removeprefix(", "))
         return joint
 
     def with_floats(self) -> Joint:

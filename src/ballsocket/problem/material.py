@@ -22,14 +22,8 @@ def make_unchecked(cls: Any, **fields: Any) -> Any:
     The numbers have been checked, or JAX traces them.
     """
     instance = object.__new__(cls)
-    set_fields(instance, **fields)
+    vars(instance).update(fields)
     return instance
-
-
-def set_fields(instance: Any, **fields: Any) -> None:
-    """Set fields of a frozen dataclass instance during its construction."""
-    for name, value in fields.items():
-        object.__setattr__(instance, name, value)
 
 
 class ByValue:
@@ -133,7 +127,7 @@ class Material(OneLine, ByValue):
         limits = {name: STRESS_LIMITS[name].check(limit) for name, limit in self.stress_limits.items()}
         if not isinstance(self.hardening, Hardening | None):
             raise TypeError(f"hardening must be a Hardening, got {shown(self.hardening)}")
-        set_fields(self, **elastic, **limits)
+        vars(self).update(**elastic, **limits)
 
     @property
     def strengths(self) -> dict[str, Array]:
@@ -213,7 +207,7 @@ class Layer(OneLine, ByValue):
         thickness = LAYER["thickness"].check(self.thickness)
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {shown(self.material)}")
-        set_fields(self, thickness=thickness)
+        vars(self).update(thickness=thickness)
 
     def without_strengths(self) -> Layer:
         """Return a copy of the layer whose material has no strengths."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy
 
@@ -177,7 +177,14 @@ class BoreContact:
 
 def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:
     """Make the NumPy arrays of a ball in an elastic bore with a linear gap."""
-    grid, half = bore.compliance.grid, bore.compliance.grid.meridians // 2
+    gap: Numbers = numpy.ascontiguousarray(bore.gap.clearance + bore.gap.depth.T).astype(dtype)[..., None]
+    return _compliance_arrays(bore.compliance, bore.area, dtype)._replace(gap=gap, tether=bore.tether.astype(dtype))
+
+
+@lru_cache(maxsize=6)
+def _compliance_arrays(compliance: Compliance, area: float, dtype: type) -> BoreArrays:
+    """Make the arrays of a bore that balls of all clearances, and all wear, have in common; from a cache."""
+    grid, half = compliance.grid, compliance.grid.meridians // 2
     phase = grid.azimuth[:half]
     cosines, sines = (numpy.sqrt(1 / half) * numpy.ones((half, half)) for _ in range(2))
     cosines *= numpy.cos(numpy.arange(half)[:, None] * phase)
@@ -185,9 +192,9 @@ def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArra
     cosines[0] *= numpy.sqrt(0.5)
     sines[-1] *= numpy.sqrt(0.5)
     normals = grid.normals.transpose(2, 1, 0)
-    softness, stiffness = bore.compliance.softness, bore.compliance.stiffness
+    softness, stiffness = compliance.softness, compliance.stiffness
     if dtype is numpy.float32:
-        softness = bore.compliance.single_precision_softness
+        softness = compliance.single_precision_softness
     if isinstance(softness, UniformOperator) or isinstance(stiffness, UniformOperator):
         raise TypeError("a bore of springs has no matrices")
     bore_arrays = BoreArrays(
@@ -196,10 +203,10 @@ def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArra
         softness=softness.matrices,
         stiffness=stiffness.matrices,
         normals=normals.reshape(-1, 3),
-        gap=(bore.gap.clearance + bore.gap.depth.T)[..., None],
+        gap=(),
         areas=grid.areas[:, 0],
-        force_weights=(bore.area * grid.areas * normals).reshape(-1, 3).T,
-        scale=numpy.asarray(bore.area),
-        tether=bore.tether,
+        force_weights=(area * grid.areas * normals).reshape(-1, 3).T,
+        scale=numpy.asarray(area),
+        tether=(),
     )
     return BoreArrays(*(numpy.ascontiguousarray(array, dtype=dtype) for array in bore_arrays))

@@ -232,7 +232,7 @@ def update_residuals(lanes: Lanes) -> Lanes:
     """Compute the residual overlaps, and the errors of overlap and force."""
     xp = arrays.namespace(lanes.pressure)
     residual = lanes.remaining * ((lanes.pressure > 0) | (lanes.remaining > 0))
-    gap_error = xp.maximum(largest(residual), largest(-residual)) / lanes.overlap_scale
+    gap_error = largest(abs(residual)) / lanes.overlap_scale
     force_error = xp.sqrt(xp.sum(lanes.imbalance * lanes.imbalance, axis=0)) / lanes.force_scale
     return lanes._replace(residual=residual, error=xp.maximum(gap_error, force_error))
 

@@ -74,8 +74,8 @@ def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple
     root = angle_root(angle, curve.ratio)
     coordinate, spacing = 2 * root - 1, log_angle_derivative(angle, root, curve.ratio)
     if type(angle) is float:
-        values = (curve.functions @ chebyshev_values(coordinate, curve.functions.shape[1])).tolist()
-        return tuple((values[k], values[k + 3] / spacing) for k in rows)
+        values = curve.functions.dot(chebyshev_values(coordinate, curve.functions.shape[1])).tolist()
+        return tuple([(values[k], values[k + 3] / spacing) for k in rows])
     if arrays.all_true(coordinate == coordinate) is None:  # XLA stores a quotient, but repeats sums for each use
         series = (traced_series(curve.functions[k, ...], coordinate) for k in rows)
         return tuple((value, slope / spacing) for value, slope in series)
@@ -222,7 +222,8 @@ class JointCurves:
     @cached_property
     def widest(self) -> Widest:
         """Opening and force at the largest half angle of the tables."""
-        return Widest.of(self.functions)
+        widest = Widest.of(self.functions)
+        return Widest(*map(float, widest)) if self.has_plain_joint else widest
 
     @cached_property
     def coordinates(self) -> list[Array]:

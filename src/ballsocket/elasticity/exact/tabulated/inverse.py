@@ -58,8 +58,9 @@ def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedS
         return root
 
     if curves.has_plain_joint:  # without the series of the start, which costs more than the steps that it saves
-        start = min(inverse.log_share(scaled, Widest(*map(float, curves.widest))) + _LOG_OFFSET, _END)
-        root = scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
+        start = min(inverse.log_share(scaled, curves.widest) + _LOG_OFFSET, _END)
+        arguments = (scaled, curves.curve), _SCALAR_STEPS, _SCALAR_TOLERANCE
+        root = scalar_increasing_root(inverse.residual, 0.0, start - 6.0, _END, start, *arguments)
     else:
         log_share = arrays.stop_gradient(inverse.log_share(scaled, curves.widest))
         series = arrays.stop_gradient(start_series(curves, kind))  # the fitted series of each joint

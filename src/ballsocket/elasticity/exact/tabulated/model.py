@@ -30,7 +30,7 @@ from .inverse import solve_state
 _BLOCK = 4000  # contacts in one block, which fits into the cache; powers of two collide in the cache
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class TableSolution:
     """Contacts interpolated from the tables, with the quantities that a `Contact` delegates to."""
 
@@ -169,8 +169,7 @@ def solve_with_tables(
     if arrays.all_true(fits & is_loaded) is not True:
         rest = where(loads == 0, 0.0 * loads, math.nan)  # no solution for a traced load below 0
         values = [where(is_loaded, where(fits, value, math.nan), rest) for value in values]
-    names = "half_angle", "indentation", "force", "pole_pressure", "stiffness"
-    return TableSolution(file=file, joint=joint, **dict(zip(names, values, strict=True))), shift
+    return TableSolution(file, joint, *values), shift
 
 
 def curve_reader(kind: str) -> CurveReader:
