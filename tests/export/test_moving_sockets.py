@@ -285,6 +285,59 @@ def test_ball_and_free_socket_conserve_linear_and_angular_momentum(momentum, mee
 
 @pytest.mark.long
 @needs_compiler
+def test_a_ball_in_an_elastic_socket_of_exudyn_conserves_momentum(tools, tmp_path):
+    """Four masses and six springs hold the socket; a torque of friction on such a marker is of first order only."""
+    skip_without("exudyn")
+    import exudyn as exu
+    from exudyn import itemInterface as items  # noqa: N813 - a module's name
+    from exudyn.utilities import RigidBodyInertia
+
+    written("exudyn", MEETINGS["frictionless"][0], tmp_path, name="elastic")
+    mbs, kinds = exu.SystemContainer().AddSystem(), exu.OutputVariableType
+    corners = 0.02 * np.array([[1, 0, 0], [-0.5, 0.8, 0], [-0.5, -0.8, 0], [0, 0, 1]])
+    weights, spin = [0.25] * 4, [0.5, 1, -2]
+    nodes = [
+        mbs.AddNode(items.NodePoint(referenceCoordinates=list(corner), initialVelocities=list(np.cross(spin, corner))))
+        for corner in corners
+    ]
+    held = [mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)) for node in nodes]
+    for i, j in zip(*np.triu_indices(4, 1), strict=True):
+        length = np.linalg.norm(corners[i] - corners[j])
+        ends = {"markerNumbers": [held[i], held[j]], "referenceLength": length}
+        mbs.AddObject(items.ObjectConnectorSpringDamper(stiffness=2e5, **ends))
+    matrices = {"massMatrix": 0.2 * np.eye(12), "stiffnessMatrix": np.zeros((12, 12))}
+    body = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, **matrices))
+    around = {"meshNodeNumbers": [0, 1, 2, 3], "weightingFactors": weights}
+    socket = mbs.AddMarker(items.MarkerSuperElementRigid(bodyNumber=body, **around))
+    ball = mbs.CreateRigidBody(
+        inertia=RigidBodyInertia(mass=1.0, inertiaTensor=BALL_INERTIA),
+        nodeType=exu.NodeType.RotationRotationVector,
+        referencePosition=list(weights @ corners + [5e-5, 0, 2e-5]),
+        initialVelocity=[0.06, 0.02, 0.08],
+    )
+    with tools.module(tmp_path, "elastic_exudyn") as made:
+        made.add_joint(mbs, socket, mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ball)))
+    mbs.Assemble()
+
+    def momentum():
+        """The ball does not turn: no friction acts on it."""
+        kind = kinds.Position, kinds.Velocity
+        motions = [[mbs.GetNodeOutput(node, each) for each in kind] for node in nodes]
+        motions.append([mbs.GetObjectOutputBody(ball, each, [0, 0, 0]) for each in kind])
+        masses, (places, speeds) = np.array([[0.2]] * 4 + [[1.0]]), np.moveaxis(np.array(motions), 1, 0)
+        return np.hstack([masses * speeds, masses * np.cross(places, speeds)]).sum(axis=0), speeds[-1]
+
+    (before, speed), settings = momentum(), exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.005, 2000
+    settings.timeIntegration.automaticStepSize = settings.solution.file.write = False
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
+    after, slowed = momentum()
+    assert np.linalg.norm(slowed - speed) > 0.01  # they met
+    assert_allclose(after, before, atol=1e-14)
+
+
+@pytest.mark.long
+@needs_compiler
 def test_drake_differentiates_the_force_of_a_joint_between_two_bodies(tools, tmp_path):
     """Minus the gradient of the acceleration is the stiffness over the mass, at rest and without friction."""
     skip_without("pydrake")
