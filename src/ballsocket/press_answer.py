@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from .contact import Contact
 from .contact.describe import number_of, quantities_of
 from .contact.verdict import Verdict, rim_verdict
 from .core.answers import PAGE, Answer, Column, Row, Table
-from .core.arrays import to_numpy
+from .core.arrays import Numbers, to_numpy
 from .core.kinds import MILLIMETRES, NEWTONS
 from .core.quantities import CONTACT, HEADLINE, LOADS, PLASTIC, YIELD_LIMITS
 from .core.unit_systems import Amount, Sentence
@@ -76,15 +76,32 @@ def _percent(number: float, truth: float) -> str:
     return "" if unknown else f"{deviation:+.1f}".replace("-0.0", "+0.0")
 
 
-def describe_curve(contact: Contact) -> Answer:
-    """Describe contacts at increasing loads by their main quantities."""
+_DISPLACEMENT = replace(
+    Column.of(CONTACT["indentation"]),
+    key="displacement_along_load",
+    name="displacement_along_load_mm",
+    head="u",
+    title="displacement along the load from the socket's centre",
+)
+
+
+def describe_curve(contact: Contact, signed: Mapping[str, Numbers] | None = None) -> Answer:
+    """Describe contacts at increasing loads by their main quantities.
+
+    `signed` has the force and the displacement of loads of both signs.
+    """
     quantities = [CONTACT[name] for name in HEADLINE] + ([*PLASTIC.values()] if contact.yields else [])
-    columns = [to_numpy(getattr(contact, quantity.name)).tolist() for quantity in quantities]
+    names, signed = [quantity.name for quantity in quantities], signed or {}
+    columns = [to_numpy(signed.get(name, getattr(contact, name))).tolist() for name in names]
+    heads = [*map(Column.of, quantities)]
+    if "displacement_along_load" in signed:
+        columns.insert(1, signed["displacement_along_load"].tolist())
+        heads.insert(1, _DISPLACEMENT)
     rows = [
         Row((*numbers, bool(valid)), None if valid else Verdict.UNDECIDED)
         for *numbers, valid in zip(*columns, to_numpy(contact.valid), strict=True)
     ]
-    heads = [*map(Column.of, quantities), Column.of_words("valid")]
+    heads.append(Column.of_words("valid"))
     title = Sentence("{} on {}", contact.model.name, str(contact.joint))
     return Answer(title=title, tables=[Table("curve", "Curve", heads, rows)], notes=contact.notes)
 

@@ -1,5 +1,6 @@
 """Tilted loads from the command line and from files."""
 
+import json
 import re
 
 import numpy as np
@@ -169,3 +170,37 @@ def test_the_pull_out_force_is_printed_with_its_limits():
     wide = answer("press", *HELD, "--pull-out", "--arc-of-cover", "240")["pull_out"]
     assert wide["force"] is None
     assert "not computed" in wide["notes"][0]
+
+
+def test_the_json_of_a_dislocated_ball_has_no_numbers():
+    """An orientation adds the force in the body to the answer."""
+    words = (*NUMBERS, *COARSE, "--arc-of-cover", "180 deg", "--tilt", "110 deg", "--force", "500 N")
+    done = run("press", *words, "--model", "sphere", "--json")
+    assert done.returncode == 3
+    (sphere,) = [result for result in json.loads(done.stdout)["results"] if result["model"] == "sphere"]
+    assert sphere["status"] == "DISLOCATED"
+    assert sphere["force_vector_in_body"] == [None] * 3
+
+
+@pytest.mark.parametrize(("gap", "arc", "tilt"), [("clearance=0.1", 180.0, 70.0), ("interference=0.03", 240.0, 0.0)])
+def test_a_curve_of_both_signs_has_the_forces_of_displacements_along_the_axis(gap, arc, tilt):
+    """Against the load the ball meets the bore near the rim of the other side, or is held by its preload."""
+    name, _, size = gap.partition("=")
+    words = ("curve", *NUMBERS[:1], f"--{gap}", *NUMBERS[2:], "--arc-of-cover", f"{arc} deg", "--tilt", f"{tilt} deg")
+    words = (*words, "--points", "5", "--model", "sphere", "--both-signs")
+    said = answer(*words, "--indentation", "0.04")
+    joint = bs.Joint(
+        ball_radius=17.9, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4), **{name: float(size)}
+    )
+    play = max(joint.clearance, 0.0)
+    assert said["displacement_along_load"] == pytest.approx([-play - 0.04, -play - 0.02, 0.0, play + 0.02, play + 0.04])
+    axis = np.array([np.sin(np.radians(tilt)), 0.0, np.cos(np.radians(tilt))])
+    cup = bs.Cup(arc_of_cover=np.radians(arc))
+    pressed = bs.Sphere(cup=cup).press(joint, displacement=np.array(said["displacement_along_load"])[:, None] * axis)
+    assert said["force"] == pytest.approx([-1.0, -1.0, 1.0, 1.0, 1.0] * pressed.force, rel=1e-4, abs=1e-3)
+    if play:
+        assert said["force"][0] < said["force"][2] == 0.0 < said["force"][4]
+    said = answer(*words, "--force", "500 N")
+    assert said["force"] == pytest.approx([-500.0, -250.0, 0.0, 250.0, 500.0])
+    moved = np.array(said["displacement_along_load"], dtype=float)
+    assert (np.diff(moved[np.isfinite(moved)]) > 0.0).all()

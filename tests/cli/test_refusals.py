@@ -107,6 +107,7 @@ curve {hip} --model hertz --gap linear => hertz has no choice of the gap; models
 press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
 press {hip} --plastic --half-angle '40 deg' => a yielding liner is pressed by force or indentation
 map {hip} --force 1kN --limit collapse_load>=1kN => collapse_load needs finite elements whose liner yields
+curve {hip} --force 1kN --both-signs --model hertz => hertz has no opposite load: its socket is a full sphere
 curve {hip} --force 1kN --plastic --model exact => exact has no liner that yields: use fem
 press {hip} --plastic --hardening 20 => hardening = '20' must be points 'stress:plastic strain'
 press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
@@ -154,7 +155,7 @@ press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coef
 press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1
 press hip-28 --force 9 --friction -1 => coefficient = -1 is not allowed
 
-export ansys {export} => target 'ansys' is not known; known: c, opensim, mujoco, drake, exudyn, adams, modelica
+export ansys {export} => target 'ansys' is not known; known: c, opensim, mujoco, drake, exudyn, adams, simpack, modelica
 export table hip-28 --out file => 'file' is a file; a folder is needed
 export table hip-28 --out file/new/hip => 'file' is a file; a folder is needed
 export table {export} --model fem => finite elements are too noisy for a law

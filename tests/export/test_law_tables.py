@@ -1,13 +1,15 @@
-"""Tables of the law: a pivot for ROSS, both signs along two axes, and the user subroutine of Adams."""
+"""Tables of the law: a pivot for ROSS, both signs along two axes, and user subroutines of Adams and Simpack."""
 
 import ctypes
+import subprocess
+from shutil import which
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.dynamics import ForceElement, Friction
+from ballsocket.dynamics import ContactState, ForceElement, Friction
 from ballsocket.export import TARGETS, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 
@@ -127,3 +129,89 @@ def test_the_user_subroutine_of_adams_has_the_loads_of_the_element(tmp_path):
     motion[0] = np.nan
     solver.call(result)
     assert ctypes.c_int.in_dll(solver, "stopped").value == 1
+
+
+SIMPACK = """
+module simpack
+    integer, parameter :: fclass_force = 1, knodef = 2, kforce_res_force_torque = 3, kforce_strst_none = 4
+    integer, parameter :: kref_marker = 5
+end module
+"""
+FORCES = """
+#include <string.h>
+double motion[9], force[3], torque[3], ov[3]; int sizes[5], kinds[2], refused = 0;
+void spck_df_fclass_(const int *kind, int *error) { sizes[0] = *kind, *error = 0; }
+void spck_df_forcepardim_(const int *size, int *error) { sizes[1] = *size, *error = 0; }
+void spck_df_forcestdyndim_(const int *size, int *error) { sizes[2] = *size, *error = 0; }
+void spck_df_forceovdim_(const int *size, int *error) { sizes[3] = *size, *error = 0; }
+void spck_df_forcerefsys_(const int *system, int *error) { sizes[4] = *system, *error = 0; }
+static int seen(double *out, int first, const int *to, const int *from, const int *reference)
+{
+    memcpy(out, motion + first, 3 * sizeof(double));
+    return refused || *to != 22 || *from != 11 || *reference != 11;
+}
+void spck_av_dxyz_(double *d, double *out, int *to, int *from, int *ref, int *error)
+{
+    *error = seen(out, 0, to, from, ref);
+}
+void spck_av_vxyz_(double *v, double *rate, double *out, int *to, int *from, int *by, int *ref, int *error)
+{
+    *error = seen(out, 3, to, from, ref) || *by != 11;
+}
+void spck_av_wxyz_(double *w, double *out, int *to, int *from, int *ref, int *error)
+{
+    *error = seen(out, 6, to, from, ref);
+}
+void uforce20_type_(int *, char *, int *, size_t);
+typedef int *I;
+typedef double *D;
+typedef char *C;
+typedef size_t Length;
+void uforce20_setup_(I, I, I, I, I, I, I, I, D, I, C, I, C, I, C, I, I, I, I, I, I, Length, Length, Length);
+void uforce20_(I, I, I, I, I, I, I, D, I, I, D, D, D, I, D, D, D, D, D, I);
+int call(void)
+{
+    static char name[30], names[90];
+    int length = 30, none = 0, outputs = 3, id = 1, from = 11, to = 22, error = 0, task, units[3], unused;
+    double time = 0.0, nothing[1];
+    uforce20_type_(&length, name, &error, 30);
+    for (task = 0; task < 2 && !error; task++)
+        uforce20_setup_(&task, &none, &none, &outputs, &length, &id, &from, &to, nothing, &unused, name, &unused, name,
+                        &unused, names, units, &kinds[0], &unused, &unused, &kinds[1], &error, 30, 30, 30);
+    task = 0;
+    if (!error && !memcmp(names + 30, "largest pressure, Pa", 20))
+        uforce20_(&task, &none, &none, &none, &none, &outputs, &id, nothing, &from, &to, &time, nothing, nothing,
+                  &unused, nothing, force, torque, ov, nothing, &error);
+    return error;
+}
+"""
+
+
+@pytest.mark.skipif(which("gfortran") is None, reason="gfortran is not installed")
+def test_the_user_subroutine_of_simpack_has_the_loads_of_the_element(tmp_path):
+    """A harness in C calls it as Simpack does: force and torque act on the socket, in the axes of its marker."""
+    element = ForceElement(bs.HessForsbach(), HIP, friction=Friction(coefficient=0.05))
+    TARGETS["simpack"].write(ExportJob(element=element, name="hip", depth=0.05), tmp_path)
+    (tmp_path / "simpack.f90").write_text(SIMPACK)
+    (tmp_path / "harness.c").write_text(FORCES)
+    sources = "hip.c", "harness.c", "simpack.f90", "hip_simpack.f90"
+    library = tmp_path / f"all{LIBRARY_ENDING}"
+    subprocess.run(["gfortran", "-Wall", "-shared", "-fPIC", *sources, "-o", library], cwd=tmp_path, check=True)
+    solver = ctypes.CDLL(str(library))
+
+    def numbers(name, count, kind=ctypes.c_double):
+        return (kind * count).in_dll(solver, name)
+
+    state = (0.03, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
+    numbers("motion", 9)[:] = np.ravel(np.array(state) * [[1e-3], [1e-3], [1.0]])
+    assert solver.call() == 0
+    load = element(*state)
+    assert_allclose(numbers("force", 3), -np.array(load.force), rtol=1e-12, atol=1e-9)
+    assert_allclose(numbers("torque", 3), -1e-3 * np.array(load.moment), rtol=1e-12, atol=1e-12)
+    assert_allclose(numbers("ov", 3), (load.half_angle, 1e6 * load.max_pressure, ContactState.CONTACT), rtol=1e-12)
+    assert list(numbers("sizes", 5, ctypes.c_int)) == [1, 0, 0, 3, 5]  # a force, three outputs, in the marker's axes
+    assert list(numbers("kinds", 2, ctypes.c_int)) == [3, 4]
+    numbers("motion", 9)[0] = np.nan
+    assert solver.call() == 1
+    ctypes.c_int.in_dll(solver, "refused").value = 1
+    assert solver.call() == 1

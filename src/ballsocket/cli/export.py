@@ -64,6 +64,14 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
     roughness: Annotated[
         Length | None, meaning("combined roughness, the least film of --viscosity", default="0.001 mm")
     ] = None
+    smoothing: Annotated[
+        Length | None,
+        meaning(
+            "indentation on both sides of first touch over which the law is rounded off, for optimal control",
+            example="5 um",
+            default="0 mm",
+        ),
+    ] = None
 
     def element(self, file: JointFile, name: str | None, gap: str | None) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
@@ -81,7 +89,8 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
         cup = None if file.cup == Cup() and lubricant is None else file.cup
         damping = self._damping()
         try:
-            return ForceElement(model, file.joint, damping, friction, cup, lubricant=lubricant)
+            smoothing = float(self.smoothing or 0.0)
+            return ForceElement(model, file.joint, damping, friction, cup, smoothing, lubricant)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
@@ -95,6 +104,8 @@ class ForceElementInputs(FileTable, frozen=True, kw_only=True):
             raise ValueError("a preloaded joint has no bristles: omit --bristle-stiffness")
         if self.viscosity is not None:
             raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
+        if self.smoothing is not None:
+            raise ValueError("a preloaded joint has no first touch: omit --smoothing")
         assumed, sentences = complete(file)
         if "arc_of_cover" in sentences:
             print_message(sentences["arc_of_cover"])

@@ -262,7 +262,7 @@ def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     return (*_joint_name(arguments), *_selected_options(arguments, *(entry.option for entry in inputs)))
 
 
-FLAGS = frozenset(("--all", "--json", "--plastic", "--pull-out", "--second-order", "--strict"))
+FLAGS = frozenset(("--all", "--both-signs", "--json", "--plastic", "--pull-out", "--second-order", "--strict"))
 """Options without a value, of the commands that print JSON."""
 
 

@@ -15,7 +15,7 @@ import typer
 from ..comparison import Comparison, successful_contacts
 from ..contact import Contact, Model
 from ..contact.verdict import error_bar
-from ..core.arrays import to_list
+from ..core.arrays import Numbers, to_list
 from ..core.checks import known_name
 from ..core.kinds import NEWTON_METRES
 from ..core.unit_systems import Amount, Sentence, Units
@@ -25,6 +25,7 @@ from ..files.joint_file import JointFile
 from ..files.joint_options import PARTS
 from ..model_catalogue import JUDGE, OFF_AXIS, catalogue, reference, with_gap, with_yielding
 from ..press_answer import describe_curve, design_verdict, press_remarks
+from ..problem import Joint
 from ..question import PressAnswer, PressQuestion, answer, complete, every_model
 from ..reports.terminal import print_press
 from .elasticity_options import (
@@ -286,7 +287,8 @@ def curve(
     model: Annotated[
         str | None,
         typer.Option(
-            help=f"Name of a model (see `ballsocket models`), or FILE.py:NAME. Default: exact; {JUDGE} with --plastic."
+            help=f"Name of a model (see `ballsocket models`), or FILE.py:NAME. Default: exact; {JUDGE} with --plastic, "
+            f"{OFF_AXIS} with --both-signs."
         ),
     ] = None,
     gap: GapName = None,
@@ -294,6 +296,9 @@ def curve(
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
+    both_signs: Annotated[
+        bool, typer.Option("--both-signs", help="Begin with the opposite load; the table adds the displacement.")
+    ] = False,
     units: UnitSystem = Units.SI,
     as_json: AsJson = False,
 ) -> None:
@@ -303,17 +308,43 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    named = with_gap(requested_model(model or (JUDGE if plastic else reference.name)), gap)
+    default = JUDGE if plastic else OFF_AXIS if both_signs else reference.name
+    named = with_gap(requested_model(model or default), gap)
     file, named = joint_options.read(joint), with_yielding(named) if plastic else named
-    fractions = numpy.linspace(0.0, 1.0, points)
-    steps: dict[str, Any] = {name: end * fractions for name, end in needed_load(file).items()}
-    contact = named.in_cup(file.cup, **file.aim).press(file.joint, **steps)
+    ((name, end),), in_cup = needed_load(file).items(), named.in_cup(file.cup, **file.aim)
+    signed: dict[str, Numbers] = {}
+    if both_signs:
+        contact, signed = _press_both_ways(in_cup, file.joint, name, end * numpy.linspace(-1.0, 1.0, points))
+    else:
+        contact = in_cup.press(file.joint, **{name: end * numpy.linspace(0.0, 1.0, points)})
 
     def summarise() -> dict[str, Any]:
-        summary = contact.summary()
+        summary = {**contact.summary(), **{key: to_list(numbers) for key, numbers in signed.items()}}
         valid = {"valid": all(summary["valid"]), "valid_at": summary["valid"]}
         return {"joint": file.joint.summary(), **summary, **valid}
 
-    print_result(summarise, lambda: describe_curve(contact), units, as_json)
+    print_result(summarise, lambda: describe_curve(contact, signed), units, as_json)
     if not numpy.isfinite(contact.indentation[1:]).any():
         fail(f"no answer from {named.name} at any load (see the notes)")
+
+
+def _press_both_ways(model: Model, joint: Joint, kind: str, loads: Numbers) -> tuple[Contact, dict[str, Numbers]]:
+    """Press along the direction of a load, and against it for negative loads; return force and displacement with signs.
+
+    Raises ValueError: a model without a direction.
+    """
+    direction = getattr(model, "direction", None)
+    if model.name != OFF_AXIS or direction is None:
+        raise ValueError(
+            f"{model.name} has no opposite load: its socket is a full sphere; for --both-signs use {OFF_AXIS}"
+        )
+    signs, clearance = numpy.where(loads < 0.0, -1.0, 1.0), float(joint.clearance)
+    if kind == "indentation":  # a displacement from the centre; within the clearance there is no contact
+        displacement = loads + numpy.sign(loads) * max(clearance, 0.0)
+        loads = numpy.maximum(abs(displacement) - clearance, 0.0)
+    pressed: Any = model
+    contact = pressed.press(joint, direction=signs[:, None] * direction, **{kind: abs(loads)})
+    if kind != "indentation":
+        displacement = signs * (contact.indentation + clearance)
+    reached = numpy.where(numpy.isfinite(contact.indentation), displacement, numpy.nan)
+    return contact, {"force": signs * contact.force, "displacement_along_load": reached}

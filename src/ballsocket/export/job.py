@@ -94,6 +94,11 @@ class ExportJob:
         """Return the texts of the C header and source, by file name."""
         return {f"{self.name}.h": self.c_program.header, f"{self.name}.c": self.c_program.source}
 
+    def file(self, template: str, **values: str) -> Texts:
+        """Return the text of a filled template by the name of its file, which begins with the name of the job."""
+        text = fill_template(template, **values, **self.template_context)
+        return {f"{self.name}_{template.removesuffix('.txt')}": text}
+
     def python_module_texts(self) -> dict[str, str]:
         """Return the texts of the C program and of the Python module that loads it, by file name."""
         module = fill_template("module.py.txt", **self.template_context)

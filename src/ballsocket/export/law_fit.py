@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy
 
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..dynamics import ForceElement, PreloadedElement
+from ..dynamics.reaction import SMOOTHING_SHARE
 
 _SAMPLES = 400  # number of indentations of a fit
 _DEGREE = 18  # degree of the fitted polynomial
@@ -88,6 +90,8 @@ class ExpressionFit:
         Largest relative error of the force, from a thousandth of `depth` up to `depth`.
     error_beyond : float
         Largest relative error of the force from `depth` to twice `depth`.
+    smoothing : float
+        Indentation in m on both sides of first touch over which the text of the expression is rounded off.
     """
 
     scale: float
@@ -99,9 +103,10 @@ class ExpressionFit:
     power_beyond: float = 0.0
     error: float = 0.0
     error_beyond: float = 0.0
+    smoothing: float = 0.0
 
     def __call__(self, distance: Numbers) -> Numbers:
-        """Compute the fitted force in N at distances between the centres in m."""
+        """Compute the fitted force in N at distances between the centres in m, without smoothing."""
         d = numpy.maximum(distance - self.clearance, 0.0)
         if not self.coefficients:
             return self.scale * _spring_force_shape(d, self.clearance)
@@ -111,20 +116,37 @@ class ExpressionFit:
         return self.scale * fitted**self.power * exponential * (d / self.depth).clip(1.0) ** self.power_beyond
 
     def text(self, distance: str, rate: str, hysteresis: float) -> str:
-        """Write the force in N as an expression of distance and rate, with Hunt-Crossley damping in s/m."""
-        c = repr(self.clearance)
-        u = f"max({distance}-{c},0)"
+        """Write the force in N as an expression of distance and rate, with Hunt-Crossley damping in s/m.
+
+        Definitions of variables follow the expression: u is the indentation, p its slope, q and r the places on the
+        smooth corners of indentation and damping.
+        """
+        depth, corner = _ramp_text(f"{distance}-{self.clearance!r}", self.smoothing, "q")
+        definitions = f";u={depth}"
         if self.coefficients:
-            fitted = f"min({u},{self.depth!r})"
             nested = "0"
             for a in reversed(self.coefficients):
                 nested = f"t*({a!r}+{nested})"
-            t = f"sqrt({fitted}/({fitted}+{self.length!r}))"
-            beyond = f"max({u}/{self.depth!r},1)^{self.power_beyond!r}"
-            force = f"{self.scale!r}*{fitted}^{self.power!r}*exp({nested.replace('t', t)})*{beyond}"
+            beyond = f"max(u/{self.depth!r},1)^{self.power_beyond!r}"
+            force = f"{self.scale!r}*v^{self.power!r}*exp({nested})*{beyond}"
+            definitions = f";t=sqrt(v/(v+{self.length!r}));v=min(u,{self.depth!r}){definitions}"
         else:
-            force = f"{self.scale!r}*{u}^2*(2*{u}+{3 * self.clearance!r})/max({distance},{c})^2"
-        return f"{force}*max(1+{hysteresis!r}*{rate},0)" if hysteresis else force
+            force = f"{self.scale!r}*u^2*(2*u+{3 * self.clearance!r})/(u+{self.clearance!r})^2"
+        if self.smoothing:
+            force, definitions = f"{force}*p", f"{definitions};p=q^3*(10-15*q+6*q^2){corner}"
+        if hysteresis:
+            width = SMOOTHING_SHARE if self.smoothing else 0.0
+            factor, corner = _ramp_text(f"1+{hysteresis!r}*{rate}", width, "r")
+            force, definitions = f"{force}*({factor})", definitions + corner
+        return force + definitions
+
+    def differentiability(self, damped: bool) -> str:
+        """State how often the expression can be differentiated, which solvers of optimal control need to know."""
+        order = 2 if self.smoothing else 0 if damped else ceil(self.power) - 1
+        times = "continuous, not", "once continuously", "twice continuously"
+        seam = f", once at an indentation of {1e6 * self.depth:.4g} um" if self.coefficients and order > 1 else ""
+        advice = "" if self.smoothing else "; smoothing makes it twice differentiable"
+        return f"{times[order]} differentiable{seam}{advice}"
 
     @property
     def range_note(self) -> str:
@@ -135,6 +157,14 @@ class ExpressionFit:
             f"the expression is within {100 * self.error:.1g} % of the law up to {1e6 * self.depth:.4g} um of "
             f"indentation; deeper it continues as a power law, {100 * self.error_beyond:.1g} % off at twice that depth"
         )
+
+
+def _ramp_text(y: str, width: float, place: str) -> tuple[str, str]:
+    """Write max(y, 0) with a smooth corner within ± `width`, as `smooth_ramp` has it, and define the place on it."""
+    if width == 0.0:
+        return f"max({y},0)", ""
+    ramp = f"max({y}-{width!r},0)+{2.0 * width!r}*{place}^4*(2.5-3*{place}+{place}^2)"
+    return ramp, f";{place}=min(max(({y}+{width!r})/{2.0 * width!r},0),1)"
 
 
 def _spring_force_shape(d: Numbers, c: float) -> Numbers:
@@ -149,7 +179,8 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
     ratio = forces / _spring_force_shape(d, c)
-    lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
+    smoothing = 1e-3 * element.constants.smoothing
+    lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth, "smoothing": smoothing}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
     else:  # a power of the indentation times the exponential of a polynomial

@@ -10,7 +10,6 @@ from ..core.arrays import Numbers
 from ..dynamics import ForceElement, PreloadedElement
 from ..models.half_space import Hertz
 from ..version import __version__
-from .c_element import fill_template
 from .job import ExportJob, Texts
 from .law_fit import PowerFit
 
@@ -82,10 +81,7 @@ def pivot_texts(job: ExportJob) -> Texts:
     hertz = Hertz().press(element.joint.with_floats(), force=force)
     ratios = hertz.indentation / depths, hertz.stiffness / tangent
     rows = force, 1e-3 * depths, 1e3 * force / depths, 1e3 * tangent, *ratios
-    return {
-        f"{job.name}_pivot.csv": _csv_text(_PIVOT_COLUMNS, rows),
-        f"{job.name}_ross.py": fill_template("ross.py.txt", **job.template_context),
-    }
+    return {f"{job.name}_pivot.csv": _csv_text(_PIVOT_COLUMNS, rows), **job.file("ross.py.txt")}
 
 
 def _csv_text(heads: Sequence[str], columns: Sequence[Numbers]) -> str:

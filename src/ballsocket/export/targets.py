@@ -89,18 +89,20 @@ class Target:
         return f"{self.name} cannot represent {' and '.join(omitted)}: omitted" if omitted else ""
 
 
+_SMOOTHED = "a smoothed first touch"
+
 FEATURES: Mapping[str, Callable[[Constants], bool]] = {
     "friction": lambda constants: constants.static + constants.viscous > 0.0,
     "damping": lambda constants: constants.hysteresis > 0.0,
     "the retardation time of the liner": lambda constants: constants.time > 0.0,
     "the rim of the cup": lambda constants: constants.rim > 0.0,
-    "a smoothed first touch": lambda constants: constants.smoothing > 0.0,
+    _SMOOTHED: lambda constants: constants.smoothing > 0.0,
     "a lubricant": lambda constants: constants.film_damping > 0.0,
 }
 """Features of an element that a target may lack, with the test for each of them."""
 
-_LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
-"""Features that one force along the line of centres cannot represent."""
+_DIRECTED = tuple(name for name in FEATURES if name not in ("damping", _SMOOTHED))
+"""Features that one expression of the distance cannot represent."""
 
 
 def _compile_library(job: ExportJob, folder: Path) -> str:
@@ -113,17 +115,26 @@ def _compile_library(job: ExportJob, folder: Path) -> str:
 
 
 def _opensim_texts(job: ExportJob) -> Texts:
-    """Return the text of the OpenSim file with an expression force, by file name."""
+    """Return the texts of the OpenSim file with an expression force, and of a plug-in, by file name."""
     fitted_expression, element = job.fitted_expression, job.central_element
-    accuracy = fitted_expression.range_note or f"within {100 * fitted_expression.error:.1g} % of the law"
-    hysteresis = element.damping.hysteresis if element.damping else 0.0
-    expression = fitted_expression.text("d", "ddot", 1e3 * hysteresis)
-    inertia = repr(0.4 * (1e-3 * element.constants.ball_radius) ** 2)
-    return {
-        f"{job.name}.osim": fill_template(
-            "opensim.osim", expression=expression, nearness=accuracy, inertia=inertia, **job.template_context
-        )
-    }
+    radius, hysteresis = 1e-3 * element.constants.ball_radius, element.constants.hysteresis
+    file = fill_template(
+        "opensim.osim",
+        expression=fitted_expression.text("d", "ddot", 1e3 * hysteresis),
+        nearness=fitted_expression.range_note or f"within {100 * fitted_expression.error:.1g} % of the law",
+        differentiability=fitted_expression.differentiability(hysteresis > 0.0),
+        inertia=repr(0.4 * radius**2),
+        **job.template_context,
+    )
+    return {f"{job.name}.osim": file, **job.program_texts(), **job.file("opensim.cpp", ball_radius=repr(radius))}
+
+
+def _opensim_note(job: ExportJob) -> str:
+    """Return the note on the accuracy and smoothness of the expression, and on what only the plug-in has."""
+    fit, constants = job.fitted_expression, job.element.constants
+    order = f"the expression is {fit.differentiability(constants.hysteresis > 0.0)}"
+    lost = any(FEATURES[name](constants) for name in _DIRECTED)
+    return "; ".join(filter(None, (f"{job.name}_opensim.cpp has every feature" if lost else "", fit.range_note, order)))
 
 
 def _mujoco_texts(job: ExportJob) -> Texts:
@@ -131,10 +142,8 @@ def _mujoco_texts(job: ExportJob) -> Texts:
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
         **job.python_module_texts(),
-        f"{job.name}_mujoco.c": fill_template(
-            "mujoco.c", stiffness=repr(1e3 * job.time_steps.stiffness), **job.template_context
-        ),
-        f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
+        **job.file("mujoco.c", stiffness=repr(1e3 * job.time_steps.stiffness)),
+        **job.file("mujoco.py.txt"),
         f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
     }
 
@@ -158,18 +167,16 @@ def _compile_plugin(job: ExportJob, folder: Path) -> str:
 def _exudyn_texts(job: ExportJob) -> Texts:
     """Return the texts of the Python module and the Exudyn module with its power law, by file name."""
     power, constants = job.fitted_power_law, job.element.constants
-    fit = {
-        "stiffness": repr(power.stiffness * 1e3**power.exponent),
-        "exponent": repr(power.exponent),
-        "depth": f"{1e-3 * power.depth:.4g}",
-        "error": f"{100 * power.error:.2g} %",
-        "ball_radius": repr(1e-3 * constants.ball_radius),
-        "socket_radius": repr(1e-3 * constants.socket_radius),
-    }
-    return {
-        **job.python_module_texts(),
-        f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context),
-    }
+    module = job.file(
+        "exudyn.py.txt",
+        stiffness=repr(power.stiffness * 1e3**power.exponent),
+        exponent=repr(power.exponent),
+        depth=f"{1e-3 * power.depth:.4g}",
+        error=f"{100 * power.error:.2g} %",
+        ball_radius=repr(1e-3 * constants.ball_radius),
+        socket_radius=repr(1e-3 * constants.socket_radius),
+    )
+    return {**job.python_module_texts(), **module}
 
 
 def _modelica_texts(job: ExportJob) -> Texts:
@@ -197,21 +204,18 @@ TARGETS: Mapping[str, Target] = {
         Target(name="c", title="C99 sources without other libraries", texts=ExportJob.program_texts, bristles=True),
         Target(
             name="opensim",
-            title="an expression force in an .osim file",
+            title="an expression force in an .osim file, and a plug-in",
             texts=_opensim_texts,
-            note=lambda job: job.fitted_expression.range_note,
+            note=_opensim_note,
             beyond_range="the expression goes on beyond the range of the law, as a power of the indentation",
-            without=_LINE_OF_CENTRES,
+            without=_DIRECTED,
             central=True,
         ),
         Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco_texts, compiled=_compile_plugin),
         Target(
             name="drake",
             title="a LeafSystem",
-            texts=lambda job: {
-                **job.python_module_texts(),
-                f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context),
-            },
+            texts=lambda job: {**job.python_module_texts(), **job.file("drake.py.txt")},
             compiled=_compile_library,
         ),
         Target(
@@ -224,10 +228,12 @@ TARGETS: Mapping[str, Target] = {
         Target(
             name="adams",
             title="a user subroutine GFOSUB in C",
-            texts=lambda job: {
-                **job.program_texts(),
-                f"{job.name}_adams.c": fill_template("adams.c", **job.template_context),
-            },
+            texts=lambda job: {**job.program_texts(), **job.file("adams.c")},
+        ),
+        Target(
+            name="simpack",
+            title="a user force element in Fortran, around the law in C",
+            texts=lambda job: {**job.program_texts(), **job.file("simpack.f90")},
         ),
         Target(name="modelica", title="a package around the law in C", texts=_modelica_texts),
         Target(

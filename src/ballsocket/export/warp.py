@@ -12,7 +12,6 @@ from ..contact.octave_curve import OctaveCurve
 from ..core.checks import require
 from ..dynamics.ball_centre import Constants
 from ..dynamics.potential import CurvePotential, curve_potential
-from .c_element import fill_template
 from .c_text import CURVE_SLOPES, Language
 from .job import ExportJob, Texts
 from .recording import ENERGY, Recording
@@ -73,7 +72,7 @@ def warp_texts(job: ExportJob) -> Texts:
     width = numpy.ldexp(0.5 / curve.density, exponent)
     powers = numpy.arange(curve.coefficients.shape[1] - 1, -1, -1)[:, None]
     rows = numpy.column_stack([curve.origins, 1.0 / width, (curve.coefficients[0] * width**powers).T])
-    text = fill_template(
+    return job.file(
         "warp.py.txt",
         load=WARP.statements(load, indent=8),
         tangent_statements=WARP.statements(tangent, indent=8),
@@ -85,6 +84,4 @@ def warp_texts(job: ExportJob) -> Texts:
         first=str(curve.first),
         density=str(curve.density),
         slopes=str(CURVE_SLOPES),
-        **job.template_context,
     )
-    return {f"{job.name}_warp.py": text}

@@ -283,7 +283,7 @@ class OffAxisContact(SolvedContact):
             "rim_distance": arrays.to_list(self.rim_distance),
             "edge_loaded": self.edge_loaded if self._is_plain else arrays.to_numpy(self.edge_loaded).tolist(),
             "stiffness_matrix": arrays.to_list(self.stiffness_matrix),
-            **({"force_vector_in_body": in_body.tolist()} if self.model.cup.oriented else {}),
+            **({"force_vector_in_body": arrays.to_list(in_body)} if self.model.cup.oriented else {}),
         }
 
 

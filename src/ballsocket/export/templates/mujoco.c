@@ -36,12 +36,6 @@ static void warn_of_a_long_step(const mjModel *m, mjData *d, int instance, mjtNu
                 m->opt.timestep, 2.0 * mju_sqrt(mass / STIFFNESS));
 }
 
-static void reset(const mjModel *m, mjtNum *state, void *data, int instance)
-{
-    (void)m, (void)state, (void)instance;
-    (void)data;
-}
-
 static void compute(const mjModel *m, mjData *d, int instance, int capability)
 {
     const int ball = site(m, instance, "ball"), socket = site(m, instance, "socket");
@@ -90,7 +84,6 @@ mjPLUGIN_LIB_INIT(ballsocket_$name)
     plugin.capabilityflags = mjPLUGIN_PASSIVE;
     plugin.nstate = no_state;
     plugin.init = begin;
-    plugin.reset = reset;
     plugin.compute = compute;
     mjp_registerPlugin(&plugin);
 }
