@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,15 +18,18 @@ from .variables import variables
 
 _MM, _MPA = 1e-3, 1e6
 
-STEP = 1e-3  # suggested step of a simulation in s
-_STOP, _STOP_OF_BALL = 0.1, 0.02  # suggested ends of a simulation in s
+_STOP, _STEP = 0.1, 1e-3  # suggested end and step of a simulation in s
+_STOP_OF_BALL, _STEPS_OF_BALL = 0.02, 20  # suggested end in s with a ball of 1 kg inside, and number of steps
 _TOUCH = 0.22  # time of the first touch of a pushed ball over the simulated time; between two outputs
 _TOLERANCE = 1e-10  # relative and absolute tolerance of the integration of states, as in `simulate`
 
 
-def suggested_stop(ball_mass: float | None) -> float:
-    """Return the suggested end of a simulation in s, without or with a ball inside."""
-    return _STOP if ball_mass is None else _STOP_OF_BALL
+def suggested_times(ball_mass: float | None) -> tuple[float, float]:
+    """Return the suggested end and step of a simulation in s; a bounce takes a time as the root of the mass in kg."""
+    if ball_mass is None:
+        return _STOP, _STEP
+    stop = _STOP_OF_BALL * math.sqrt(ball_mass)
+    return stop, stop / _STEPS_OF_BALL
 
 
 def write_cross_check(
@@ -36,7 +40,8 @@ def write_cross_check(
     Raises OSError: a folder that cannot be written to.
     """
     stem, (given, reference) = path.with_suffix(""), reference_tables(element, ball_mass)
-    options = f"StartTime, 0\nStopTime, {suggested_stop(ball_mass)}\nStepSize, {STEP}\nRelTol, 1e-6\n"
+    stop, step = suggested_times(ball_mass)
+    options = f"StartTime, 0\nStopTime, {stop}\nStepSize, {step}\nRelTol, 1e-6\n"
     texts = {"in.csv": given, "ref.csv": reference, "ref.opt": options}
     inputs, results, chosen = (write_text(Path(f"{stem}_{ending}"), text) for ending, text in texts.items())
     return inputs, results, chosen
@@ -49,7 +54,8 @@ def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float 
     Without a ball inside, the inputs are a prescribed motion, which is constant for bristles: hosts differ in how
     inputs vary in a step. With a ball they are a force, which pushes it through its clearance, and a torque.
     """
-    time = numpy.arange(round(suggested_stop(ball_mass) / STEP) + 1) * STEP
+    stop, step = suggested_times(ball_mass)
+    time = numpy.arange(round(stop / step) + 1) * step
     if ball_mass is None:
         count = bristle_count(element)
         motion = trajectory(element, numpy.full(len(time), _STOP / 2) if count else time)
@@ -103,7 +109,7 @@ def _integrate_ball(
 def _integrate(rates: Any, time: Numbers, start: Numbers) -> Numbers:
     from scipy.integrate import solve_ivp  # slow to import
 
-    options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": STEP}
+    options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": time[1]}
     return solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, **options).y.T
 
 
