@@ -57,17 +57,17 @@ def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float 
     stop, step = suggested_times(ball_mass)
     time = numpy.arange(round(stop / step) + 1) * step
     if ball_mass is None:
-        count = bristle_count(element)
-        motion = trajectory(element, numpy.full(len(time), _STOP / 2) if count else time)
-        states = numpy.hstack([motion, _integrate_deflections(element, time, motion[0])]) if count else motion
-        given, results = states_in_si(motion), reference_loads(element, states)
+        held = trajectory(element, numpy.array([_STOP / 2]))[0]
+        states = _integrate(element, time, held) if bristle_count(element) else trajectory(element, time)
+        given, results = states_in_si(states[:, :9]), reference_loads(element, states)
     else:
         distance = max(_MM * element.constants.clearance, 1e-6 * element.constants.socket_radius)
         acceleration = 2.0 * distance / (_TOUCH * time[-1]) ** 2
-        rates = numpy.array([0.3, 0.0, 1.0]) * acceleration, numpy.array([0.0, 50.0, 100.0])  # m/s², rad/s²
-        mass, inertia = ball_mass, 0.4 * ball_mass * (_MM * element.constants.ball_radius) ** 2
-        given = numpy.tile([*(mass * rates[0]), *(inertia * rates[1])], (len(time), 1))
-        states = _integrate_ball(element, time, ball_mass, rates)
+        applied = numpy.array([0.3, 0.0, 1.0]) * acceleration, numpy.array([0.0, 50.0, 100.0])  # m/s², rad/s²
+        inertia = 0.4 * ball_mass * (_MM * element.constants.ball_radius) ** 2
+        given = numpy.tile([*(ball_mass * applied[0]), *(inertia * applied[1])], (len(time), 1))
+        rest = [*(element.rest_position if isinstance(element, PreloadedElement) else (0.0, 0.0, 0.0)), *(0.0,) * 6]
+        states = _integrate(element, time, rest, ball_mass, applied)
         results = numpy.hstack([states_in_si(states[:, :9]), reference_loads(element, states)])
     listed = variables(element, ball_mass)
     inputs, outputs = (
@@ -76,41 +76,31 @@ def reference_tables(element: ForceElement | PreloadedElement, ball_mass: float 
     return _csv_text(inputs, time, given), _csv_text(outputs, time, results)
 
 
-def _integrate_deflections(element: ForceElement | PreloadedElement, time: Numbers, motion: Numbers) -> Numbers:
-    """Integrate the deflections of bristles (times, 4) in mm at a constant position, velocity and spin (9,)."""
-
-    def rates(now: float, deflection: Numbers) -> Any:
-        return load_at(element, numpy.append(motion, deflection)).deflection_rate
-
-    return _integrate(rates, time, numpy.zeros(bristle_count(element)))
-
-
-def _integrate_ball(
-    element: ForceElement | PreloadedElement, time: Numbers, mass: float, applied: tuple[Numbers, Numbers]
+def _integrate(
+    element: ForceElement | PreloadedElement,
+    time: Numbers,
+    motion: Any,
+    mass: float = math.inf,
+    applied: tuple[Any, Any] = (0.0, 0.0),
 ) -> Numbers:
-    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from rest at its start position.
+    """Integrate motion and deflections (times, 9 and 4) of a solid ball (kg) from a motion at the first time.
 
-    Applied force and torque give it the accelerations `applied` in m/s² and rad/s².
+    Applied force and torque give it the accelerations `applied` in m/s² and rad/s². A ball of infinite mass is held at
+    its first position, velocity and spin.
     """
+    from scipy.integrate import solve_ivp  # slow to import
+
     count, inertia = bristle_count(element), 0.4 * TONNE * mass * element.constants.ball_radius**2
-    start = numpy.zeros(9 + count)
-    if isinstance(element, PreloadedElement):
-        start[:3] = element.rest_position
 
     def rates(now: float, state: Numbers) -> Any:
         load = load_at(element, state)
+        velocity = state[3:6] if mass < math.inf else numpy.zeros(3)
         acceleration = numpy.array(load.force) / (TONNE * mass) + applied[0] / _MM
         turning = numpy.array(load.moment) / inertia + applied[1]
-        return [*state[3:6], *acceleration, *turning, *(load.deflection_rate if count else ())]
-
-    return _integrate(rates, time, start)
-
-
-def _integrate(rates: Any, time: Numbers, start: Numbers) -> Numbers:
-    from scipy.integrate import solve_ivp  # slow to import
+        return [*velocity, *acceleration, *turning, *(load.deflection_rate if count else ())]
 
     options = {"method": "LSODA", "rtol": _TOLERANCE, "atol": _TOLERANCE, "max_step": time[1]}
-    return solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, **options).y.T
+    return solve_ivp(rates, (0.0, time[-1]), [*motion, *(0.0,) * count], t_eval=time, **options).y.T
 
 
 def load_at(element: ForceElement | PreloadedElement, state: Numbers) -> Any:
